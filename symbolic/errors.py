@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What can go wrong with input, as classes that carry data and say what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+
+class SoftImpactError(Exception):
+    """Base of every error that a user can cause and mend (exit code 2)."""
+
+
+class ModelFileError(SoftImpactError):
+    """A robot description cannot be read."""
+
+    def __init__(self, path: str, reason: str) -> None:
+        super().__init__(f"{path}: {reason}")
+        self.path, self.reason = path, reason
+
+
+class InvalidInertia(ModelFileError):
+    """A body's mass or inertia is missing or physically impossible."""
+
+    def __init__(self, path: str, body: str, reason: str) -> None:
+        super().__init__(path, f"body '{body}': {reason}")
+        self.body = body
+
+
+class UnsupportedModel(ModelFileError):
+    """The description holds something that this version cannot model."""
+
+
+class UnknownName(SoftImpactError):
+    """A name that does not exist, with those that do."""
+
+    def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
+        self.name, self.known = name, tuple(known)
+        super().__init__(f"unknown {what} '{name}'; known: {', '.join(self.known) or '(none)'}")
+
+
+class FrameNotFound(UnknownName):
+    """A frame that the robot does not have; lists the frames that exist."""
+
+    def __init__(self, name: str, known: Iterable[str]) -> None:
+        super().__init__("frame", name, known)
+
+
+class InvalidValue(SoftImpactError):
+    """A number, vector or option outside what its meaning allows."""
+
+    def __init__(self, field: str, reason: str) -> None:
+        super().__init__(f"{field}: {reason}")
+        self.field, self.reason = field, reason
+
+
+class WrongLength(InvalidValue):
+    """A vector whose length does not fit the robot."""
+
+    def __init__(self, field: str, found: int, expected: int, names: Sequence[str] = ()) -> None:
+        order = f" (in the order {', '.join(names)})" if names else ""
+        super().__init__(field, f"has {found} values, but {expected} are needed{order}")
+        self.found, self.expected = found, expected
+
+
+class SingularDirection(SoftImpactError):
+    """The contact point cannot move along the direction of impact."""
+
+    def __init__(self, direction: Sequence[float], hint: str) -> None:
+        self.direction = tuple(float(d) for d in direction)
+        shown = ", ".join(f"{d:g}" for d in self.direction)
+        super().__init__(f"the contact point cannot move along direction [{shown}]: {hint}")
+
+
+class NoEquilibrium(SoftImpactError):
+    """No static equilibrium under gravity was found."""
+
+    def __init__(self, residual: float, hint: str) -> None:
+        self.residual = residual
+        super().__init__(
+            f"no static equilibrium under gravity (residual torque {residual:.3g} N·m): {hint}"
+        )

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Read a robot from URDF or MJCF through MuJoCo's model compiler."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from .errors import InvalidInertia, ModelFileError, UnsupportedModel
+from .rigid import Array, Inertia, Placement, rotation_from_axis
+from .robot import BASE, Frame, Joint, JointKind, Robot
+
+KINDS = {
+    int(mujoco.mjtJoint.mjJNT_HINGE): JointKind.HINGE,
+    int(mujoco.mjtJoint.mjJNT_SLIDE): JointKind.SLIDE,
+}
+
+
+def load_robot(path: str | Path, tip: str | None = None) -> Robot:
+    """Read a robot from a URDF (``.urdf``) or MJCF (``.xml``) file; meshes are not needed.
+
+    Every body and every site becomes a frame. The model's gravity is not kept.
+
+    Args:
+        path: the file.
+        tip: frame taken as the contact point where none is named.
+
+    Raises:
+        ModelFileError: the file is missing, not readable as URDF or MJCF, or holds no joint.
+        InvalidInertia: a mass or inertia is missing or impossible.
+        UnsupportedModel: ball or free joints, or closed chains.
+        FrameNotFound: the robot has no frame ``tip``.
+    """
+    path = Path(path)
+    model = _compile(path)
+    _reject_unsupported(model, path)
+    robot = _RobotBuilder(model, path).robot(tip)
+    if not robot.joints:
+        raise ModelFileError(str(path), "has no joints")
+    if tip is not None:
+        robot.frame(tip)
+    return robot
+
+
+def _compile(path: Path) -> mujoco.MjModel:
+    if not path.is_file():
+        raise ModelFileError(str(path), "no such file")
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+    except ValueError as error:
+        raise ModelFileError(str(path), f"not a URDF or MJCF: {_one_line(error)}") from None
+    spec.compiler.fusestatic = False
+    _drop_meshes(spec, keep_shapes=path.suffix != ".urdf")
+    for body in spec.bodies[1:]:
+        _check_mass(body, str(path))
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise _compile_error(str(path), _one_line(error)) from None
+
+
+def _drop_meshes(spec: mujoco.MjSpec, keep_shapes: bool) -> None:
+    """Drop what only rendering and collision need, and with it every file beside the model.
+
+    In MJCF simple shapes stay: a body without an inertial element takes its inertia from them.
+    """
+    for geom in list(spec.geoms):
+        if keep_shapes and geom.type < mujoco.mjtGeom.mjGEOM_MESH and not geom.meshname:
+            geom.material = ""
+        else:
+            spec.delete(geom)
+    for group in (spec.meshes, spec.materials, spec.textures, spec.pairs, spec.keys):
+        for item in list(group):
+            spec.delete(item)
+
+
+def _check_mass(body: mujoco.MjsBody, path: str) -> None:
+    if not math.isfinite(body.mass):
+        raise InvalidInertia(path, body.name, "mass must be a finite number")
+    if body.mass < 0:
+        raise InvalidInertia(path, body.name, f"mass is negative ({body.mass:g} kg)")
+
+
+def _compile_error(path: str, reason: str) -> ModelFileError:
+    named = reason.split("Element name '")
+    body = named[1].split("'")[0] if len(named) > 1 else "?"
+    if "A + B >= C" in reason:
+        return InvalidInertia(
+            path, body, "inertia violates the triangle inequality (A + B ≥ C for its moments)"
+        )
+    if "mass and inertia of moving bodies" in reason:
+        return InvalidInertia(
+            path, body, "moves but has no mass and inertia; give it an <inertial> element"
+        )
+    return ModelFileError(path, reason)
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())
+
+
+def _reject_unsupported(model: mujoco.MjModel, path: Path) -> None:
+    for i in range(model.njnt):
+        if int(model.jnt_type[i]) not in KINDS:
+            raise UnsupportedModel(
+                str(path),
+                f"joint '{model.joint(i).name}' is a ball or free joint; "
+                "only hinges and slides on a fixed base are supported",
+            )
+    loops = (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD)
+    if any(int(kind) in map(int, loops) for kind in model.eq_type):
+        raise UnsupportedModel(str(path), "closed chains (equality connect or weld)")
+
+
+class _RobotBuilder:
+    """Turns a compiled model's arrays into joints, each with all that moves rigidly with it."""
+
+    def __init__(self, model: mujoco.MjModel, path: Path) -> None:
+        self.model, self.path = model, path
+        self.joints: list[Joint] = []
+        self.inertias: list[Inertia] = []
+        self.frames: dict[str, Frame] = {}
+        self.actuated = _actuated_joints(model)
+
+    def robot(self, tip: str | None) -> Robot:
+        """Walk the bodies, parents before children."""
+        carriers = {0: (BASE, Placement.identity())}
+        for body in range(1, self.model.nbody):
+            carriers[body] = self._add_body(body, *carriers[int(self.model.body_parentid[body])])
+        for site in range(self.model.nsite):
+            joint, pose = carriers[int(self.model.site_bodyid[site])]
+            local = _placement(self.model.site_pos[site], self.model.site_quat[site])
+            self._add_frame(self.model.site(site).name, joint, pose @ local)
+        joints = [
+            Joint(**{**vars(joint), "inertia": inertia})
+            for joint, inertia in zip(self.joints, self.inertias, strict=True)
+        ]
+        name = self.model.names.split(b"\0")[0].decode() or self.path.stem
+        return Robot(name, tuple(joints), self.frames, tip)
+
+    def _add_body(self, body: int, carrier: int, pose: Placement) -> tuple[int, Placement]:
+        """Add a body's joints; return the joint that carries it and its pose in that joint."""
+        model = self.model
+        pose = pose @ _placement(model.body_pos[body], model.body_quat[body])
+        for joint in self._joints_of(body):
+            axis_frame = _frame_along(model.jnt_axis[joint], model.jnt_pos[joint])
+            self._add_joint(joint, carrier, pose @ axis_frame)
+            carrier, pose = len(self.joints) - 1, axis_frame.inverse()
+        if carrier != BASE:
+            self.inertias[carrier] += _inertia(model, body).seen_from(pose)
+        self._add_frame(model.body(body).name, carrier, pose)
+        return carrier, pose
+
+    def _joints_of(self, body: int) -> Iterator[int]:
+        first = int(self.model.body_jntadr[body])
+        yield from range(first, first + int(self.model.body_jntnum[body]))
+
+    def _add_joint(self, joint: int, parent: int, placement: Placement) -> None:
+        model = self.model
+        address = int(model.jnt_qposadr[joint])
+        limited = bool(model.jnt_limited[joint])
+        lower, upper = model.jnt_range[joint] if limited else (-math.inf, math.inf)
+        self.joints.append(
+            Joint(
+                name=model.joint(joint).name or f"joint{joint + 1}",
+                kind=KINDS[int(model.jnt_type[joint])],
+                parent=parent,
+                placement=placement,
+                inertia=Inertia.zero(),
+                offset=-float(model.qpos0[address]) + 0.0,
+                lower=float(lower),
+                upper=float(upper),
+                armature=float(model.dof_armature[model.jnt_dofadr[joint]]),
+                stiffness=float(np.ravel(model.jnt_stiffness[joint])[0]),
+                spring_reference=float(model.qpos_spring[address]),
+                actuated=not self.actuated or joint in self.actuated,
+            )
+        )
+        self.inertias.append(Inertia.zero())
+
+    def _add_frame(self, name: str, joint: int, placement: Placement) -> None:
+        if name:
+            self.frames.setdefault(name, Frame(name, joint, placement))
+
+
+def _actuated_joints(model: mujoco.MjModel) -> set[int]:
+    """Joints that an actuator drives; a model without actuators has motors everywhere."""
+    on_joint = int(mujoco.mjtTrn.mjTRN_JOINT)
+    return {
+        int(target[0])
+        for kind, target in zip(model.actuator_trntype, model.actuator_trnid, strict=True)
+        if int(kind) == on_joint
+    }
+
+
+def _placement(position: Array, quaternion: Array) -> Placement:
+    rotation = np.zeros(9)
+    mujoco.mju_quat2Mat(rotation, np.asarray(quaternion, dtype=float))
+    return Placement(rotation.reshape(3, 3), position)
+
+
+def _frame_along(axis: Array, position: Array) -> Placement:
+    """Frame at ``position`` whose z axis is ``axis``, turned the shortest way."""
+    axis = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
+    swing = np.cross([0.0, 0.0, 1.0], axis)
+    sine = float(np.linalg.norm(swing))
+    if sine < np.finfo(float).eps:
+        return Placement(np.diag([1.0, np.sign(axis[2]), np.sign(axis[2])]), position)
+    return Placement(rotation_from_axis(swing / sine, math.atan2(sine, axis[2])), position)
+
+
+def _inertia(model: mujoco.MjModel, body: int) -> Inertia:
+    principal = _placement(model.body_ipos[body], model.body_iquat[body])
+    R = principal.rotation
+    tensor = R @ np.diag(model.body_inertia[body]) @ R.T
+    return Inertia.from_center_of_mass(model.body_mass[body], principal.translation, tensor)

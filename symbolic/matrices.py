@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""CasADi matrices of any kind (SX, MX, DM), and the linear algebra the physics needs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any, cast
+
+import casadi as ca
+
+Matrix = Any
+"""A CasADi matrix: SX, MX or DM. CasADi ships no types that a checker could use."""
+
+
+@lru_cache(maxsize=256)
+def _as_function(build: Callable[..., Matrix], sizes: tuple[int, ...], key: tuple[Any, ...]) -> Matrix:
+    symbols = [ca.SX.sym(f"x{i}", size) for i, size in enumerate(sizes)]
+    return ca.Function(build.__name__.strip("_"), symbols, [ca.cse(build(*key, *symbols))])
+
+
+def on_scalars(build: Callable[..., Matrix], key: tuple[Any, ...], *arguments: Matrix) -> Matrix:
+    """Evaluate ``build(*key, *arguments)``, which works on scalars, for any kind of matrix.
+
+    SX arguments enter the expression itself; MX and DM arguments go through a cached Function.
+    """
+    if any(isinstance(argument, ca.SX) for argument in arguments):
+        return build(*key, *arguments)
+    columns = [argument if isinstance(argument, ca.MX) else ca.DM(argument) for argument in arguments]
+    return _as_function(build, tuple(column.numel() for column in columns), key)(*columns)
+
+
+class Factorisation:
+    """M = L D Lᵀ of a symmetric positive definite matrix, without square roots.
+
+    Works entry by entry, so that an SX graph holds no operation on a structural zero.
+    """
+
+    def __init__(self, matrix: Matrix) -> None:
+        n = matrix.shape[0]
+        self.n = n
+        self.d: list[Matrix] = []
+        self.l: list[list[Matrix]] = [[0.0] * n for _ in range(n)]
+        for j in range(n):
+            scaled = [self.l[j][k] * self.d[k] for k in range(j)]
+            self.d.append(matrix[j, j] - _dot(self.l[j][:j], scaled))
+            for i in range(j + 1, n):
+                self.l[i][j] = (matrix[i, j] - _dot(self.l[i][:j], scaled)) / self.d[j]
+
+    def halfway(self, column: Matrix) -> list[Matrix]:
+        """Return y with L y = column; then xᵀM⁻¹x = Σ y²/d."""
+        y: list[Matrix] = []
+        for i in range(self.n):
+            y.append(column[i] - _dot(self.l[i][:i], y))
+        return y
+
+    def solve(self, columns: Matrix) -> Matrix:
+        """Return M⁻¹ columns."""
+        return ca.horzcat(*[self._solve_one(columns[:, j]) for j in range(columns.shape[1])])
+
+    def _solve_one(self, column: Matrix) -> Matrix:
+        x = [y / d for y, d in zip(self.halfway(column), self.d, strict=True)]
+        for i in reversed(range(self.n)):
+            x[i] = x[i] - _dot([self.l[k][i] for k in range(i + 1, self.n)], x[i + 1 :])
+        return ca.vertcat(*x)
+
+    def inner(self, first: list[Matrix], second: list[Matrix]) -> Matrix:
+        """Return aᵀM⁻¹b from the halfway solutions of a and b."""
+        return _dot(first, [b / d for b, d in zip(second, self.d, strict=True)])
+
+
+def _dot(first: list[Matrix], second: list[Matrix]) -> Matrix:
+    total: Matrix = 0.0
+    for a, b in zip(first, second, strict=True):
+        total = total + a * b
+    return total
+
+
+def symmetric(entries: Callable[[int, int], Matrix], n: int) -> Matrix:
+    """Return the n×n matrix with the given entries on and below the diagonal, mirrored above."""
+    lower = {(i, j): entries(i, j) for i in range(n) for j in range(i + 1)}
+    rows = [ca.horzcat(*[lower[max(i, j), min(i, j)] for j in range(n)]) for i in range(n)]
+    return ca.vertcat(*rows)
+
+
+def count_flops(expression: Matrix) -> int:
+    """Number of additions, multiplications and the like in an SX expression.
+
+    Shared subexpressions count once; sines, cosines and the reading of inputs do not count.
+    """
+    symbols = ca.symvar(ca.veccat(expression))
+    function = ca.Function("count", symbols, [ca.cse(expression)])
+    free = {ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST, ca.OP_SIN, ca.OP_COS, ca.OP_PARAMETER}
+    operations = [function.instruction_id(k) for k in range(function.n_instructions())]
+    return cast(int, sum(operation not in free for operation in operations))

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A robot as frozen data: a tree of hinges and slides, the bodies they move, and named frames."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .errors import FrameNotFound, WrongLength
+from .rigid import Array, Inertia, Placement, rotation_about_z
+
+BASE = -1
+"""Index of the base where a joint's index is expected."""
+
+
+class JointKind(Enum):
+    """What a joint lets its body do about or along its z axis."""
+
+    HINGE = "hinge"
+    SLIDE = "slide"
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint, and all that moves rigidly with it.
+
+    Attributes:
+        name: as in the file.
+        kind: hinge (coordinate in rad) or slide (m).
+        parent: index of the joint that carries this one, or ``BASE``.
+        placement: the joint's frame in the parent joint's frame at coordinate zero; its axis is z.
+        offset: constant added to the coordinate.
+        inertia: of the moved bodies, in the joint's frame.
+        lower: lower limit of the coordinate (-inf without one).
+        upper: upper limit of the coordinate (inf without one).
+        armature: reflected rotor inertia [kg m², kg].
+        stiffness: of a spring in parallel with the joint [N·m/rad, N/m].
+        spring_reference: coordinate at which that spring is unloaded.
+        actuated: whether a motor drives the joint; passive joints have none.
+    """
+
+    name: str
+    kind: JointKind
+    parent: int
+    placement: Placement
+    inertia: Inertia
+    offset: float = 0.0
+    lower: float = -np.inf
+    upper: float = np.inf
+    armature: float = 0.0
+    stiffness: float = 0.0
+    spring_reference: float = 0.0
+    actuated: bool = True
+
+    def pose(self, coordinate: float) -> Placement:
+        """Return the joint's moved frame in the parent joint's frame."""
+        value = coordinate + self.offset
+        if self.kind is JointKind.HINGE:
+            return self.placement @ Placement(rotation_about_z(value), np.zeros(3))
+        return self.placement @ Placement(np.eye(3), np.array([0.0, 0.0, value]))
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A named frame fixed to a joint's body (or to the base)."""
+
+    name: str
+    joint: int
+    placement: Placement
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A fixed-base tree of hinge and slide joints, parents before children.
+
+    Attributes:
+        name: of the model.
+        joints: in the file's order; a configuration q has one coordinate for each.
+        frames: by name.
+        tip: frame taken as the contact point where none is named.
+    """
+
+    name: str
+    joints: tuple[Joint, ...]
+    frames: Mapping[str, Frame]
+    tip: str | None = None
+
+    @property
+    def n(self) -> int:
+        """Number of joints."""
+        return len(self.joints)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, in the order of q."""
+        return tuple(joint.name for joint in self.joints)
+
+    @property
+    def armature(self) -> Array:
+        """Reflected rotor inertias, shape (n,)."""
+        return np.array([joint.armature for joint in self.joints])
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """Lower and upper joint limits, shape (n,) each."""
+        lower = np.array([joint.lower for joint in self.joints])
+        return lower, np.array([joint.upper for joint in self.joints])
+
+    def frame(self, name: str) -> Frame:
+        """Return a frame by name; raises FrameNotFound, which lists the frames there are."""
+        if name not in self.frames:
+            raise FrameNotFound(name, self.frames)
+        return self.frames[name]
+
+    def ancestors(self, joint: int) -> list[int]:
+        """Indices from ``joint`` down to the base, itself first."""
+        path = []
+        while joint != BASE:
+            path.append(joint)
+            joint = self.joints[joint].parent
+        return path
+
+    def vector(self, field: str, values: ArrayLike) -> Array:
+        """Check that ``values`` has one entry a joint; raises WrongLength."""
+        array = np.asarray(values, dtype=float)
+        if array.shape != (self.n,):
+            raise WrongLength(field, array.size, self.n, self.joint_names)
+        return array
+
+    def with_armature(self, armature: ArrayLike) -> Robot:
+        """Return the robot with other reflected rotor inertias."""
+        values = self.vector("rotor_inertia", armature)
+        joints = tuple(
+            replace(joint, armature=float(value))
+            for joint, value in zip(self.joints, values, strict=True)
+        )
+        return replace(self, joints=joints)
+
+    def digest(self) -> str:
+        """Return a hash of every number and name that the dynamics depend on."""
+        text = hashlib.sha256()
+        for joint in self.joints:
+            numbers = [
+                *joint.placement.rotation.flat,
+                *joint.placement.translation,
+                joint.inertia.mass,
+                *joint.inertia.first_moment,
+                *joint.inertia.about_origin.flat,
+                joint.offset,
+                joint.armature,
+                joint.stiffness,
+                joint.spring_reference,
+                joint.lower,
+                joint.upper,
+            ]
+            words = " ".join(f"{float(x) + 0.0:.12e}" for x in numbers)
+            text.update(
+                f"{joint.name} {joint.kind.value} {joint.parent} {joint.actuated} {words}\n".encode()
+            )
+        return text.hexdigest()
+
+
+def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
+    """Return the robot with some joints welded at given coordinates, their masses kept.
+
+    Args:
+        robot: any robot.
+        locked: coordinate [rad, m] of each joint to weld, by name.
+    """
+    carrier: dict[int, tuple[int, Placement]] = {BASE: (BASE, Placement.identity())}
+    kept: list[Joint] = []
+    for index, joint in enumerate(robot.joints):
+        parent, where = carrier[joint.parent]
+        if joint.name not in locked:
+            placement = where @ joint.placement
+            kept.append(replace(joint, parent=parent, placement=placement))
+            carrier[index] = (len(kept) - 1, Placement.identity())
+            continue
+        pose = where @ joint.pose(locked[joint.name])
+        carrier[index] = (parent, pose)
+        if parent != BASE:
+            body = kept[parent]
+            kept[parent] = replace(body, inertia=body.inertia + joint.inertia.seen_from(pose))
+    frames = {
+        name: Frame(name, carrier[frame.joint][0], carrier[frame.joint][1] @ frame.placement)
+        for name, frame in robot.frames.items()
+    }
+    return replace(robot, joints=tuple(kept), frames=frames)
+
+
+def chain_to(robot: Robot, frame: str, rest: Sequence[float] | None = None) -> Robot:
+    """Return the chain from the base to a frame; joints off it are welded, their masses kept.
+
+    Args:
+        robot: any robot.
+        frame: name of a frame; raises FrameNotFound.
+        rest: coordinates of all joints at which those off the chain are welded (default zero).
+    """
+    path = set(robot.ancestors(robot.frame(frame).joint))
+    values = np.zeros(robot.n) if rest is None else robot.vector("rest", rest)
+    locked = {j.name: float(values[i]) for i, j in enumerate(robot.joints) if i not in path}
+    return replace(lock_joints(robot, locked), tip=frame)
