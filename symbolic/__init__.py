@@ -1,2 +1,96 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The physics as CasADi expressions."""
+"""The physics as CasADi expressions: robot, dynamics, compliance, reduction, impact factors."""
+
+from .approach import approach_velocity, generalised_velocity, least_velocity, unit_direction
+from .chain import Chain, chain, free_end
+from .contact import Contact
+from .drives import Drives, drives
+from .dynamics import (
+    STANDARD_GRAVITY,
+    bias_torques,
+    gravity_torques,
+    mass_matrix,
+    potential_energy,
+    stiffness_of_potential,
+)
+from .elastic import LinearModel
+from .equilibrium import link_angles_at_rest, motor_angles_at_rest
+from .errors import (
+    FrameNotFound,
+    InvalidInertia,
+    InvalidValue,
+    ModelFileError,
+    NoEquilibrium,
+    SingularDirection,
+    SoftImpactError,
+    UnknownName,
+    UnsupportedModel,
+    WrongLength,
+)
+from .factors import ContactMobility, contact_mobility, directional_giaf, giaf, giif
+from .impact_model import ImpactModel, impact_model
+from .kinematics import contact_point_jacobian, direction_jacobian, frame_jacobian, frame_pose
+from .loading import load_robot
+from .matrices import Matrix, count_flops
+from .reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
+from .regions import REGIONS, BodyRegion, body_region
+from .robot import Frame, Joint, JointKind, Robot, chain_to, lock_joints
+
+__all__ = [
+    "REGIONS",
+    "STANDARD_GRAVITY",
+    "BodyRegion",
+    "Chain",
+    "Contact",
+    "ContactMobility",
+    "Drives",
+    "Frame",
+    "FrameNotFound",
+    "ImpactModel",
+    "InvalidInertia",
+    "InvalidValue",
+    "Joint",
+    "JointKind",
+    "LinearModel",
+    "Matrix",
+    "ModelFileError",
+    "NoEquilibrium",
+    "ReducedModel",
+    "Robot",
+    "SingularDirection",
+    "SoftImpactError",
+    "UnknownName",
+    "UnsupportedModel",
+    "WrongLength",
+    "approach_velocity",
+    "bias_torques",
+    "body_region",
+    "chain",
+    "chain_to",
+    "contact_mobility",
+    "contact_point_jacobian",
+    "count_flops",
+    "direction_jacobian",
+    "directional_giaf",
+    "drives",
+    "frame_jacobian",
+    "frame_pose",
+    "free_end",
+    "generalised_velocity",
+    "giaf",
+    "giif",
+    "gravity_torques",
+    "impact_model",
+    "least_velocity",
+    "link_angles_at_rest",
+    "load_robot",
+    "lock_joints",
+    "mass_matrix",
+    "motor_angles_at_rest",
+    "potential_energy",
+    "reduce_to_two_masses",
+    "reflected_mass",
+    "static_stiffness",
+    "stiffness_of_potential",
+    "unit_direction",
+]

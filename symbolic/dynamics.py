@@ -46,9 +46,7 @@ class Composite:
 
     def __add__(self, other: Composite) -> Composite:
         tensor = [a + b for a, b in zip(self.tensor, other.tensor, strict=True)]
-        return Composite(
-            self.mass + other.mass, self.first_moment + other.first_moment, tensor
-        )
+        return Composite(self.mass + other.mass, self.first_moment + other.first_moment, tensor)
 
     def in_parent(self, move: Motion) -> Composite:
         """Return the same masses in the frame of the joint's parent."""
@@ -193,9 +191,7 @@ def _potential_hessian(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> M
     return ca.substitute(ca.densify(hessian), symbol, q)
 
 
-def gravity_torques(
-    robot: Robot, q: Matrix, gravity: Sequence[float] = STANDARD_GRAVITY
-) -> Matrix:
+def gravity_torques(robot: Robot, q: Matrix, gravity: Sequence[float] = STANDARD_GRAVITY) -> Matrix:
     """Return the gradient ∂V/∂q of the potential energy, length n [N·m, N]."""
     return on_scalars(_potential_gradient, (customised(robot), tuple(gravity)), q)
 
@@ -255,9 +251,7 @@ def _bias_torques(robot: Robot, gravity: tuple[float, ...], q: Matrix, velocity:
     return ca.vertcat(*torques)
 
 
-def _newton_euler(
-    inertia: Inertia, w: Matrix, dw: Matrix, a: Matrix
-) -> tuple[Matrix, Matrix]:
+def _newton_euler(inertia: Inertia, w: Matrix, dw: Matrix, a: Matrix) -> tuple[Matrix, Matrix]:
     """Force and moment about the origin that give a body its motion."""
     h = ca.SX(ca.sparsify(ca.DM(np.array(inertia.first_moment))))
     h = ca.densify(h)

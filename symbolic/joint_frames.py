@@ -58,7 +58,9 @@ def _with_sparse_frames(robot: Robot) -> Robot:
     frames = {
         name: frame
         if frame.joint == BASE
-        else replace(frame, placement=_without_noise(moves[frame.joint].inverse() @ frame.placement))
+        else replace(
+            frame, placement=_without_noise(moves[frame.joint].inverse() @ frame.placement)
+        )
         for name, frame in robot.frames.items()
     }
     return replace(robot, joints=tuple(joints), frames=frames)

@@ -10,7 +10,9 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from .errors import InvalidInertia, ModelFileError, UnsupportedModel
+from softimpact.robots import built_in_robots
+
+from .errors import InvalidInertia, ModelFileError, UnknownName, UnsupportedModel
 from .rigid import Array, Inertia, Placement, rotation_from_axis
 from .robot import BASE, Frame, Joint, JointKind, Robot
 
@@ -20,14 +22,20 @@ KINDS = {
 }
 
 
-def load_robot(path: str | Path, tip: str | None = None) -> Robot:
-    """Read a robot from a URDF (``.urdf``) or MJCF (``.xml``) file; meshes are not needed.
+ROTOR_SET = "rotor_inertia:"
+"""Prefix of the MJCF ``custom/numeric`` elements that hold named sets of rotor inertias."""
 
-    Every body and every site becomes a frame. The model's gravity is not kept.
+
+def load_robot(model: str | Path, tip: str | None = None) -> Robot:
+    """Read a built-in robot, or one from a URDF (``.urdf``) or MJCF (``.xml``) file.
+
+    Meshes are not needed. Every body and every site becomes a frame. The model's gravity is not
+    kept. Of MJCF's ``custom`` elements the text ``tip`` names the contact frame and the numerics
+    ``rotor_inertia:NAME`` hold sets of reflected rotor inertias.
 
     Args:
-        path: the file.
-        tip: frame taken as the contact point where none is named.
+        model: name of a built-in robot, or path of a file.
+        tip: frame taken as the contact point where none is named; default the file's.
 
     Raises:
         ModelFileError: the file is missing, not readable as URDF or MJCF, or holds no joint.
@@ -35,15 +43,51 @@ def load_robot(path: str | Path, tip: str | None = None) -> Robot:
         UnsupportedModel: ball or free joints, or closed chains.
         FrameNotFound: the robot has no frame ``tip``.
     """
-    path = Path(path)
-    model = _compile(path)
-    _reject_unsupported(model, path)
-    robot = _RobotBuilder(model, path).robot(tip)
+    path = _model_path(model)
+    compiled = _compile(path)
+    _reject_unsupported(compiled, path)
+    robot = _RobotBuilder(compiled, path).robot(tip or _custom_texts(compiled).get("tip"))
     if not robot.joints:
         raise ModelFileError(str(path), "has no joints")
-    if tip is not None:
-        robot.frame(tip)
+    if robot.tip is not None:
+        robot.frame(robot.tip)
     return robot
+
+
+def _model_path(model: str | Path) -> Path:
+    path = Path(model)
+    if path.suffix in (".urdf", ".xml"):
+        return path
+    known = built_in_robots()
+    if str(model) not in known:
+        raise UnknownName("robot (neither built in nor a .urdf or .xml file)", str(model), known)
+    return known[str(model)]
+
+
+def _custom_texts(model: mujoco.MjModel) -> dict[str, str]:
+    """MJCF ``custom/text`` elements by name."""
+    texts = {}
+    for i in range(model.ntext):
+        first, size = int(model.text_adr[i]), int(model.text_size[i])
+        name = mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_TEXT), i)
+        texts[name] = bytes(model.text_data[first : first + size]).rstrip(b"\0").decode()
+    return texts
+
+
+def _rotor_inertia_sets(model: mujoco.MjModel, path: Path) -> dict[str, tuple[float, ...]]:
+    sets = {}
+    for i in range(model.nnumeric):
+        name = model.numeric(i).name
+        if not name.startswith(ROTOR_SET):
+            continue
+        first, size = int(model.numeric_adr[i]), int(model.numeric_size[i])
+        if size != model.njnt:
+            raise ModelFileError(
+                str(path), f"numeric '{name}' has {size} values for {model.njnt} joints"
+            )
+        values = model.numeric_data[first : first + size]
+        sets[name.removeprefix(ROTOR_SET)] = tuple(float(value) for value in values)
+    return sets
 
 
 def _compile(path: Path) -> mujoco.MjModel:
@@ -88,6 +132,8 @@ def _check_mass(body: mujoco.MjsBody, path: str) -> None:
 def _compile_error(path: str, reason: str) -> ModelFileError:
     named = reason.split("Element name '")
     body = named[1].split("'")[0] if len(named) > 1 else "?"
+    if "positive eigenvalues" in reason:
+        return InvalidInertia(path, body, "inertia has an eigenvalue that is not positive")
     if "A + B >= C" in reason:
         return InvalidInertia(
             path, body, "inertia violates the triangle inequality (A + B ≥ C for its moments)"
@@ -140,7 +186,8 @@ class _RobotBuilder:
             for joint, inertia in zip(self.joints, self.inertias, strict=True)
         ]
         name = self.model.names.split(b"\0")[0].decode() or self.path.stem
-        return Robot(name, tuple(joints), self.frames, tip)
+        sets = _rotor_inertia_sets(self.model, self.path)
+        return Robot(name, tuple(joints), self.frames, tip, sets)
 
     def _add_body(self, body: int, carrier: int, pose: Placement) -> tuple[int, Placement]:
         """Add a body's joints; return the joint that carries it and its pose in that joint."""

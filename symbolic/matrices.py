@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any, cast
+from typing import Any
 
 import casadi as ca
 
@@ -14,7 +14,9 @@ Matrix = Any
 
 
 @lru_cache(maxsize=256)
-def _as_function(build: Callable[..., Matrix], sizes: tuple[int, ...], key: tuple[Any, ...]) -> Matrix:
+def _as_function(
+    build: Callable[..., Matrix], sizes: tuple[int, ...], key: tuple[Any, ...]
+) -> Matrix:
     symbols = [ca.SX.sym(f"x{i}", size) for i, size in enumerate(sizes)]
     return ca.Function(build.__name__.strip("_"), symbols, [ca.cse(build(*key, *symbols))])
 
@@ -26,7 +28,9 @@ def on_scalars(build: Callable[..., Matrix], key: tuple[Any, ...], *arguments: M
     """
     if any(isinstance(argument, ca.SX) for argument in arguments):
         return build(*key, *arguments)
-    columns = [argument if isinstance(argument, ca.MX) else ca.DM(argument) for argument in arguments]
+    columns = [
+        argument if isinstance(argument, ca.MX) else ca.DM(argument) for argument in arguments
+    ]
     return _as_function(build, tuple(column.numel() for column in columns), key)(*columns)
 
 
@@ -92,4 +96,4 @@ def count_flops(expression: Matrix) -> int:
     function = ca.Function("count", symbols, [ca.cse(expression)])
     free = {ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST, ca.OP_SIN, ca.OP_COS, ca.OP_PARAMETER}
     operations = [function.instruction_id(k) for k in range(function.n_instructions())]
-    return cast(int, sum(operation not in free for operation in operations))
+    return sum(operation not in free for operation in operations)

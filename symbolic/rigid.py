@@ -30,7 +30,9 @@ class Placement:
 
     def __post_init__(self) -> None:
         rotation = np.array(self.rotation, dtype=float)
-        snapped = np.where(abs(rotation - rotation.round()) < ROTATION_NOISE, rotation.round(), rotation)
+        snapped = np.where(
+            abs(rotation - rotation.round()) < ROTATION_NOISE, rotation.round(), rotation
+        )
         object.__setattr__(self, "rotation", _frozen(snapped + 0.0, (3, 3)))
         object.__setattr__(self, "translation", _frozen(self.translation, (3,)))
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .errors import FrameNotFound, WrongLength
+from .errors import FrameNotFound, UnknownName, WrongLength
 from .rigid import Array, Inertia, Placement, rotation_about_z
 
 BASE = -1
@@ -83,12 +83,15 @@ class Robot:
         joints: in the file's order; a configuration q has one coordinate for each.
         frames: by name.
         tip: frame taken as the contact point where none is named.
+        rotor_inertia_sets: reflected rotor inertias by the name of their source, each with one
+            entry a joint.
     """
 
     name: str
     joints: tuple[Joint, ...]
     frames: Mapping[str, Frame]
     tip: str | None = None
+    rotor_inertia_sets: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     @property
     def n(self) -> int:
@@ -111,6 +114,11 @@ class Robot:
         lower = np.array([joint.lower for joint in self.joints])
         return lower, np.array([joint.upper for joint in self.joints])
 
+    @property
+    def actuated(self) -> tuple[bool, ...]:
+        """Whether each joint has a motor."""
+        return tuple(joint.actuated for joint in self.joints)
+
     def frame(self, name: str) -> Frame:
         """Return a frame by name; raises FrameNotFound, which lists the frames there are."""
         if name not in self.frames:
@@ -125,11 +133,17 @@ class Robot:
             joint = self.joints[joint].parent
         return path
 
-    def vector(self, field: str, values: ArrayLike) -> Array:
+    def rotor_inertia_set(self, name: str) -> Array:
+        """Return a named set of reflected rotor inertias; raises UnknownName."""
+        if name not in self.rotor_inertia_sets:
+            raise UnknownName("rotor inertia set", name, self.rotor_inertia_sets)
+        return np.array(self.rotor_inertia_sets[name])
+
+    def vector(self, name: str, values: ArrayLike) -> Array:
         """Check that ``values`` has one entry a joint; raises WrongLength."""
         array = np.asarray(values, dtype=float)
         if array.shape != (self.n,):
-            raise WrongLength(field, array.size, self.n, self.joint_names)
+            raise WrongLength(name, array.size, self.n, self.joint_names)
         return array
 
     def with_armature(self, armature: ArrayLike) -> Robot:
@@ -159,9 +173,8 @@ class Robot:
                 joint.upper,
             ]
             words = " ".join(f"{float(x) + 0.0:.12e}" for x in numbers)
-            text.update(
-                f"{joint.name} {joint.kind.value} {joint.parent} {joint.actuated} {words}\n".encode()
-            )
+            head = f"{joint.name} {joint.kind.value} {joint.parent} {joint.actuated}"
+            text.update(f"{head} {words}\n".encode())
         return text.hexdigest()
 
 
@@ -190,7 +203,12 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
         name: Frame(name, carrier[frame.joint][0], carrier[frame.joint][1] @ frame.placement)
         for name, frame in robot.frames.items()
     }
-    return replace(robot, joints=tuple(kept), frames=frames)
+    stays = [joint.name not in locked for joint in robot.joints]
+    sets = {
+        name: tuple(value for value, stay in zip(values, stays, strict=True) if stay)
+        for name, values in robot.rotor_inertia_sets.items()
+    }
+    return replace(robot, joints=tuple(kept), frames=frames, rotor_inertia_sets=sets)
 
 
 def chain_to(robot: Robot, frame: str, rest: Sequence[float] | None = None) -> Robot:
