@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Study files: what to design, read from TOML and checked field by field."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from softimpact.symbolic import (
+    Contact,
+    ImpactModel,
+    InvalidValue,
+    Robot,
+    UnknownName,
+    approach_velocity,
+    body_region,
+    chain_to,
+    drives,
+    impact_model,
+    load_robot,
+    unit_direction,
+)
+from softimpact.symbolic.drives import PerJoint, per_joint
+from softimpact.symbolic.rigid import Array
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Vector3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class RobotSection(_Section):
+    """Which robot, and its drives."""
+
+    model: str
+    tip: str | None = None
+    rotor_inertia: str | Finite | list[Finite] | None = None
+    position_gain: Finite | list[Finite] | None = None
+    computed_torque_gain: Finite | None = None
+
+
+class ImpactSection(_Section):
+    """What is hit, how fast and from where."""
+
+    region: str
+    clamped: bool = True
+    direction: Vector3
+    speed: Positive
+
+
+class StiffnessSection(_Section):
+    """Bounds on the joint stiffness and the design to improve on [N·m/rad]."""
+
+    lower: Positive | list[Positive]
+    upper: Positive | list[Positive]
+    nominal: Positive | list[Positive]
+
+
+class AccuracySection(_Section):
+    """Forces on the tip [N] and how far [m] the springs may give way under each."""
+
+    forces: Annotated[list[Vector3], Field(min_length=1)]
+    max_deflection: Positive
+
+
+class TaskSection(_Section):
+    """Where the tip is held: where one of the poses has it."""
+
+    pose_of: str
+
+
+class PoseSection(_Section):
+    """A candidate configuration."""
+
+    name: str
+    q: list[Finite]
+    recovered: bool = False
+
+
+class StudyFile(_Section):
+    """A study file, as written."""
+
+    title: str = ""
+    robot: RobotSection
+    impact: ImpactSection
+    stiffness: StiffnessSection
+    accuracy: AccuracySection
+    task: TaskSection
+    poses: Annotated[list[PoseSection], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _poses_are_named_once(self) -> StudyFile:
+        names = [pose.name for pose in self.poses]
+        repeated = {name for name in names if names.count(name) > 1}
+        if repeated:
+            raise ValueError(f"poses: named more than once: {', '.join(sorted(repeated))}")
+        if self.task.pose_of not in names:
+            raise ValueError(f"task.pose_of: no pose is named '{self.task.pose_of}'")
+        return self
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """A candidate configuration.
+
+    Attributes:
+        name: of the pose.
+        q: link angles as given, length n [rad].
+        recovered: whether the source does not print it.
+    """
+
+    name: str
+    q: Array
+    recovered: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """A design problem, checked: a robot, an impact, bounds and candidate configurations.
+
+    Attributes:
+        title: for figures and reports.
+        source: the study file.
+        model: the robot with the nominal joint stiffness, all joints elastic.
+        contact: what it hits.
+        direction: unit vector of the tip's velocity, base axes.
+        speed: of the tip [m/s].
+        lower, upper: bounds on the joint stiffness, length n [N·m/rad].
+        nominal: the joint stiffness to improve on, length n [N·m/rad].
+        forces: on the tip, k×3 [N].
+        max_deflection: of the springs under each force [m].
+        task_pose: the pose that fixes where the tip is held.
+        poses: all candidates.
+    """
+
+    title: str
+    source: Path
+    model: ImpactModel
+    contact: Contact
+    direction: Array
+    speed: float
+    lower: Array
+    upper: Array
+    nominal: Array
+    forces: Array
+    max_deflection: float
+    task_pose: Pose
+    poses: tuple[Pose, ...]
+
+    @property
+    def robot(self) -> Robot:
+        """The robot, a chain to its tip."""
+        return self.model.robot
+
+
+def load_study(path: str | Path, overrides: dict[str, dict[str, Any]] | None = None) -> Study:
+    """Read and check a study file.
+
+    Args:
+        path: a TOML file.
+        overrides: values that replace the file's, by section and field, as a command line gives.
+
+    Raises:
+        InvalidValue: a field is missing, unknown, of the wrong type or out of range.
+        SoftImpactError: the robot, a frame, a region or a vector is wrong.
+    """
+    source = Path(path)
+    content = _read(source)
+    for section, fields in (overrides or {}).items():
+        content[section] = {**content.get(section, {}), **fields}
+    try:
+        return _build(StudyFile.model_validate(content), source)
+    except ValidationError as error:
+        raise _first_problem(source, error) from None
+
+
+def _read(source: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(source.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InvalidValue(str(source), "no such study file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidValue(str(source), f"cannot be read: {error}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InvalidValue(str(source), f"not valid TOML: {error}") from None
+
+
+def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
+    first = error.errors()[0]
+    field = ".".join(str(part) for part in first["loc"]) or "study"
+    more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+    return InvalidValue(f"{source}: {field}", f"{first['msg']}{more}")
+
+
+def _build(file: StudyFile, source: Path) -> Study:
+    robot = _robot(file.robot, source)
+    lower = per_joint(robot, "stiffness.lower", file.stiffness.lower)
+    upper = per_joint(robot, "stiffness.upper", file.stiffness.upper)
+    nominal = per_joint(robot, "stiffness.nominal", file.stiffness.nominal)
+    _require_order(robot, lower, upper)
+    model = _model(robot, file.robot, nominal)
+    direction = unit_direction(file.impact.direction)
+    poses = tuple(_pose(robot, pose) for pose in file.poses)
+    for pose in poses:
+        approach_velocity(model, pose.q, direction)
+    return Study(
+        title=file.title or source.stem,
+        source=source,
+        model=model,
+        contact=Contact(body_region(file.impact.region), file.impact.clamped),
+        direction=direction,
+        speed=file.impact.speed,
+        lower=lower,
+        upper=upper,
+        nominal=nominal,
+        forces=np.array(file.accuracy.forces),
+        max_deflection=file.accuracy.max_deflection,
+        task_pose=next(pose for pose in poses if pose.name == file.task.pose_of),
+        poses=poses,
+    )
+
+
+def _robot(section: RobotSection, source: Path) -> Robot:
+    """Load the robot; a path is taken relative to the study file."""
+    beside = source.parent / section.model
+    robot = load_robot(beside if beside.is_file() else section.model)
+    tip = section.tip or robot.tip
+    if tip is None:
+        raise UnknownName("frame (give robot.tip)", "", robot.frames)
+    return chain_to(robot, tip)
+
+
+def _model(robot: Robot, section: RobotSection, nominal: Array) -> ImpactModel:
+    rotors: PerJoint | None
+    if isinstance(section.rotor_inertia, str):
+        rotors = robot.rotor_inertia_set(section.rotor_inertia)
+    else:
+        rotors = section.rotor_inertia
+    built = drives(robot, nominal, rotors, section.position_gain, section.computed_torque_gain)
+    return impact_model(robot, drives_=built)
+
+
+def _require_order(robot: Robot, lower: Array, upper: Array) -> None:
+    for name, low, high in zip(robot.joint_names, lower, upper, strict=True):
+        if low > high:
+            raise InvalidValue(
+                "stiffness", f"lower bound {low:g} is above the upper {high:g} at joint '{name}'"
+            )
+
+
+def _pose(robot: Robot, section: PoseSection) -> Pose:
+    q = robot.vector(f"poses.{section.name}.q", section.q)
+    lower, upper = robot.limits
+    for name, value, low, high in zip(robot.joint_names, q, lower, upper, strict=True):
+        if not low <= value <= high:
+            raise InvalidValue(
+                f"poses.{section.name}.q",
+                f"{value:g} at joint '{name}' is outside its limits [{low:g}, {high:g}]",
+            )
+    return Pose(section.name, q, section.recovered)
