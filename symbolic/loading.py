@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import mujoco
@@ -93,6 +94,23 @@ def _rotor_inertia_sets(model: mujoco.MjModel, path: Path) -> dict[str, tuple[fl
 def _compile(path: Path) -> mujoco.MjModel:
     if not path.is_file():
         raise ModelFileError(str(path), "no such file")
+    with _warnings() as heard:
+        return _compile_spec(path, heard)
+
+
+@contextmanager
+def _warnings() -> Iterator[list[str]]:
+    """Collect MuJoCo's warnings; left alone it appends them to a log in the working directory."""
+    heard: list[str] = []
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(heard.append)
+    try:
+        yield heard
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def _compile_spec(path: Path, heard: list[str]) -> mujoco.MjModel:
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except ValueError as error:
@@ -101,6 +119,8 @@ def _compile(path: Path) -> mujoco.MjModel:
     _drop_meshes(spec, keep_shapes=path.suffix != ".urdf")
     for body in spec.bodies[1:]:
         _check_mass(body, str(path))
+    if any("NaN" in warning for warning in heard):
+        raise ModelFileError(str(path), "a number is NaN")
     try:
         return spec.compile()
     except ValueError as error:
@@ -150,6 +170,10 @@ def _one_line(error: Exception) -> str:
 
 
 def _reject_unsupported(model: mujoco.MjModel, path: Path) -> None:
+    arrays = (model.body_pos, model.body_quat, model.body_ipos, model.body_inertia)
+    arrays += (model.jnt_pos, model.jnt_axis, model.site_pos, model.dof_armature)
+    if not all(np.isfinite(array).all() for array in arrays):
+        raise ModelFileError(str(path), "a number is infinite")
     for i in range(model.njnt):
         if int(model.jnt_type[i]) not in KINDS:
             raise UnsupportedModel(
