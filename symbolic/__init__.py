@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The physics as CasADi expressions: robot, dynamics, compliance, reduction, impact factors."""
 
+from .analysis import Analysis, ChainNumbers, analyse
 from .approach import approach_velocity, generalised_velocity, least_velocity, unit_direction
 from .chain import Chain, chain, free_end
 from .contact import Contact
@@ -39,8 +40,10 @@ from .robot import Frame, Joint, JointKind, Robot, chain_to, lock_joints
 __all__ = [
     "REGIONS",
     "STANDARD_GRAVITY",
+    "Analysis",
     "BodyRegion",
     "Chain",
+    "ChainNumbers",
     "Contact",
     "ContactMobility",
     "Drives",
@@ -62,6 +65,7 @@ __all__ = [
     "UnknownName",
     "UnsupportedModel",
     "WrongLength",
+    "analyse",
     "approach_velocity",
     "bias_torques",
     "body_region",

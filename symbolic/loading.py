@@ -170,9 +170,9 @@ def _one_line(error: Exception) -> str:
 
 
 def _reject_unsupported(model: mujoco.MjModel, path: Path) -> None:
-    arrays = (model.body_pos, model.body_quat, model.body_ipos, model.body_inertia)
-    arrays += (model.jnt_pos, model.jnt_axis, model.site_pos, model.dof_armature)
-    if not all(np.isfinite(array).all() for array in arrays):
+    of_bodies = [model.body_pos, model.body_quat, model.body_ipos, model.body_inertia]
+    of_joints = [model.jnt_pos, model.jnt_axis, model.dof_armature, model.site_pos]
+    if not all(np.isfinite(array).all() for array in of_bodies + of_joints):
         raise ModelFileError(str(path), "a number is infinite")
     for i in range(model.njnt):
         if int(model.jnt_type[i]) not in KINDS:
