@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Options that commands share, as the command line declares them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+DRIVES = "Drives (a number for all joints, or a JSON list)"
+
+Model = Annotated[
+    str,
+    typer.Argument(
+        metavar="MODEL",
+        help="Built-in robot, or path of a .urdf or MJCF .xml file.",
+        show_default=False,
+    ),
+]
+Tip = Annotated[
+    str | None,
+    typer.Option("--tip", metavar="FRAME", help="Contact frame; default the model's own."),
+]
+Configuration = Annotated[
+    str,
+    typer.Option(
+        "--q",
+        metavar="LIST",
+        help="Link angles of the chain to the tip, in the file's joint order (rad, m).",
+    ),
+]
+MotorAngles = Annotated[
+    bool,
+    typer.Option(
+        "--motor-angles", help="--q holds motor angles; gravity bends the springs from there."
+    ),
+]
+Direction = Annotated[
+    str,
+    typer.Option("--direction", metavar="LIST", help="Direction of the impact in the base's axes."),
+]
+JointStiffness = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LIST|X",
+        help="k_s (N·m/rad), inf for a rigid joint; default all rigid.",
+        rich_help_panel=DRIVES,
+    ),
+]
+RotorInertia = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LIST|X|NAME",
+        help="Reflected inertia (kg m²), or one of the model's named sets; default the file's.",
+        rich_help_panel=DRIVES,
+    ),
+]
+PositionGain = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LIST|X",
+        help="Diagonal of K_p (N·m/rad); default zero.",
+        rich_help_panel=DRIVES,
+    ),
+]
+ComputedTorqueGain = Annotated[
+    float | None,
+    typer.Option(
+        metavar="X",
+        help="k_p (rad/s²) of computed-torque control instead: K_p = k_p M.",
+        rich_help_panel=DRIVES,
+    ),
+]
+GearRatio = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LIST|X",
+        help="N; --rotor-inertia is then the motors' own and counts N² times.",
+        rich_help_panel=DRIVES,
+    ),
+]
+Gravity = Annotated[
+    str | None,
+    typer.Option(metavar="LIST", help="Gravity that enters K0 (m/s²); default none."),
+]
+Order = Annotated[int, typer.Option(min=1, help="Number of masses of the chain.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")]

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact robots``: the built-in robots."""
+
+from __future__ import annotations
+
+from .options import Json
+
+
+def robots(json: Json = False) -> None:
+    """List the built-in robots."""
+    from softimpact.robots import built_in_robots
+    from softimpact.symbolic import load_robot
+
+    from .output import print_json, print_table
+
+    found = {name: (load_robot(name), path) for name, path in built_in_robots().items()}
+    entries = [
+        {
+            "name": name,
+            "joints": robot.joint_names,
+            "tip": robot.tip,
+            "frames": tuple(robot.frames),
+            "rotor_inertia_sets": dict(robot.rotor_inertia_sets),
+            "source": path,
+        }
+        for name, (robot, path) in found.items()
+    ]
+    if json:
+        print_json({"robots": entries})
+        return
+    print_table(
+        "Built-in robots",
+        ("name", "joints", "tip", "frames", "rotor inertia sets", "source"),
+        [
+            (
+                name,
+                str(robot.n),
+                robot.tip,
+                ", ".join(robot.frames),
+                ", ".join(robot.rotor_inertia_sets) or None,
+                path.name,
+            )
+            for name, (robot, path) in found.items()
+        ],
+    )

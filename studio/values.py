@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers, vectors and names as they are typed on the command line."""
+
+from __future__ import annotations
+
+import json
+import math
+
+from softimpact.symbolic import InvalidValue, Robot
+from softimpact.symbolic.drives import PerJoint
+
+
+def vector(field: str, text: str, length: int | None = None) -> list[float]:
+    """Return a JSON list of finite numbers; raises InvalidValue.
+
+    Args:
+        field: name of the option, for messages.
+        text: as typed.
+        length: that it must have, if any.
+    """
+    values = _parsed(field, text)
+    if not isinstance(values, list):
+        raise InvalidValue(field, f"needs a JSON list of numbers such as [0, 0.5], not '{text}'")
+    numbers = [_number(field, value, f"entry {i + 1}") for i, value in enumerate(values)]
+    for i, number in enumerate(numbers):
+        if not math.isfinite(number):
+            raise InvalidValue(field, f"entry {i + 1} must be finite, but is {number:g}")
+    if length is not None and len(numbers) != length:
+        raise InvalidValue(field, f"has {len(numbers)} values, but {length} are needed")
+    return numbers
+
+
+def per_joint(field: str, text: str) -> PerJoint:
+    """Return one number for all joints or a list of them; ``inf`` counts as a number."""
+    values = _parsed(field, text)
+    if isinstance(values, list):
+        return [_number(field, value, f"entry {i + 1}") for i, value in enumerate(values)]
+    return _number(field, values, "the value")
+
+
+def rotor_inertia(robot: Robot, text: str) -> PerJoint:
+    """Return rotor inertias typed as a number, a list, or the name of one of the robot's sets."""
+    if text.strip().replace("-", "_").isidentifier() and not _is_number(text):
+        return robot.rotor_inertia_set(text.strip())
+    return per_joint("rotor_inertia", text)
+
+
+def _parsed(field: str, text: str) -> object:
+    if _is_number(text):
+        return float(text)
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        raise InvalidValue(
+            field, f"needs a number or a JSON list such as [0, 0.5], not '{text}'"
+        ) from None
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _number(field: str, value: object, which: str) -> float:
+    if isinstance(value, str) and value.strip().lower() in ("inf", "infinity"):
+        return math.inf
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise InvalidValue(field, f"{which} is not a number: {json.dumps(value)}")
+    try:
+        return float(value)
+    except OverflowError:
+        raise InvalidValue(field, f"{which} is too large") from None
