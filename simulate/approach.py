@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How a robot arrives at an impact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from softimpact.symbolic import (
+    ImpactModel,
+    InvalidValue,
+    approach_velocity,
+    unit_direction,
+)
+from softimpact.symbolic.rigid import Array
+
+REACHED = 1e-6
+"""Error of the contact point's velocity along n that a given link velocity may have."""
+
+
+@dataclass(frozen=True, eq=False)
+class Approach:
+    """A configuration and a velocity at first touch.
+
+    Attributes:
+        q: link angles, length n [rad, m].
+        direction: n, along which the contact point moves into the body, length 3.
+        speed: of the contact point along n [m/s].
+        link_velocity: joint velocities per 1 m/s of speed, length n; None takes those of least
+            norm that move the contact point along n alone.
+    """
+
+    q: Array
+    direction: Array
+    speed: float
+    link_velocity: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Arrival:
+    """An approach that fits a robot: ``direction`` has length 1 and the link velocity is known."""
+
+    q: Array
+    direction: Array
+    speed: float
+    link_velocity: Array
+
+
+def arrival_of(model: ImpactModel, approach: Approach) -> Arrival:
+    """Return a checked approach.
+
+    Raises:
+        InvalidValue: a number that is not finite, a speed ≤ 0, a direction of length 0, or a link
+            velocity that does not move the contact point by 1 m/s along n.
+        WrongLength: q or link_velocity does not fit the robot.
+        SingularDirection: the contact point cannot move along n.
+    """
+    q = _finite(model, "q", approach.q)
+    n = unit_direction(approach.direction)
+    if not 0 < approach.speed < np.inf:
+        raise InvalidValue("speed", f"must be finite and greater than 0 m/s, not {approach.speed}")
+    if approach.link_velocity is None:
+        velocity = approach_velocity(model, q, n)
+    else:
+        velocity = _finite(model, "link_velocity", approach.link_velocity)
+    reached = float(n @ np.array(model.jacobian(q)) @ velocity)
+    if abs(reached - 1) > REACHED:
+        raise InvalidValue(
+            "link_velocity", f"must move the contact point by 1 m/s along n, not by {reached:.6g}"
+        )
+    return Arrival(q, n, float(approach.speed), velocity)
+
+
+def _finite(model: ImpactModel, field: str, values: Array) -> Array:
+    vector = model.robot.vector(field, values)
+    if not np.isfinite(vector).all():
+        raise InvalidValue(field, "must hold finite numbers")
+    return vector
