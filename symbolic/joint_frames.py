@@ -18,7 +18,7 @@ import numpy as np
 from .rigid import ROTATION_NOISE, Array, Inertia, Placement, rotation_about_z
 from .robot import BASE, Joint, JointKind, Robot
 
-NEARLY_PARALLEL = 1e-3
+NEARLY_PARALLEL = 2e-2
 """Sine of the angle between axes below which their common normal is too far away to be used."""
 
 NOISE = 1e-14

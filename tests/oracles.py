@@ -38,8 +38,8 @@ def configurations(robot: Robot, count: int, seed: int = 0) -> Iterator[Array]:
 def assert_near(ours: object, theirs: object, tolerance: float = TOLERANCE) -> None:
     """Compare with the largest entry as scale."""
     a, b = np.asarray(ours, dtype=float), np.asarray(theirs, dtype=float)
-    if a.ndim == 2 and b.ndim == 1:
-        a = a.ravel()
+    if a.ndim != b.ndim:  # CasADi has no vectors
+        a, b = a.ravel(), b.ravel()
     assert a.shape == b.shape
     scale = abs(b).max(initial=0.0)
     np.testing.assert_allclose(a, b, rtol=0, atol=tolerance * (scale if scale > 1e-9 else 1.0))
@@ -62,18 +62,20 @@ class Pinocchio:
     def of_robot(robot: Robot) -> Pinocchio:
         """Build a robot joint by joint (for robots that no file describes)."""
         model = pin.Model()
-        for joint in robot.joints:
+        indices = {BASE: 0}
+        for i in _depth_first(robot):  # Pinocchio wants every subtree in one piece
+            joint = robot.joints[i]
             kind = pin.JointModelRZ() if joint.kind is JointKind.HINGE else pin.JointModelPZ()
             place = pin.SE3(np.array(joint.placement.rotation), joint.placement.translation)
-            parent = 0 if joint.parent == BASE else joint.parent + 1
-            index = model.addJoint(parent, kind, place, joint.name)
+            index = model.addJoint(indices[joint.parent], kind, place, joint.name)
+            indices[i] = index
             body, com = joint.inertia, joint.inertia.first_moment / joint.inertia.mass
             steiner = body.mass * (com @ com * np.eye(3) - np.outer(com, com))
             inertia = pin.Inertia(body.mass, com, body.about_origin - steiner)
             model.appendBodyToJoint(index, inertia, pin.SE3.Identity())
         for frame in robot.frames.values():
             place = pin.SE3(np.array(frame.placement.rotation), frame.placement.translation)
-            carrier = 0 if frame.joint == BASE else frame.joint + 1
+            carrier = indices[frame.joint]
             model.addFrame(pin.Frame(frame.name, carrier, place, pin.FrameType.BODY))
         return Pinocchio(model, robot)
 
@@ -87,7 +89,8 @@ class Pinocchio:
 
     def mass_matrix(self, q: Array) -> Array:
         """Return M."""
-        upper = np.triu(pin.crba(self.model, self.data, self.configuration(q)))
+        found = pin.crba(self.model, self.data, self.configuration(q))
+        upper = np.triu(found.reshape(self.model.nv, self.model.nv))
         full = upper + np.triu(upper, 1).T
         return full[np.ix_(self.order, self.order)]
 
@@ -106,7 +109,7 @@ class Pinocchio:
         pin.updateFramePlacements(self.model, self.data)
         axes = pin.LOCAL_WORLD_ALIGNED
         J = pin.getFrameJacobian(self.model, self.data, index, axes)
-        return J[:, self.order]
+        return J.reshape(6, self.model.nv)[:, self.order]
 
     def pose(self, frame: str, q: Array) -> pin.SE3:
         """Return the pose of a frame in the base."""
@@ -115,6 +118,13 @@ class Pinocchio:
 
     def _frame(self, name: str) -> int:
         return int(self.model.getFrameId(name, pin.FrameType.BODY))
+
+
+def _depth_first(robot: Robot, parent: int = BASE) -> Iterator[int]:
+    for i, joint in enumerate(robot.joints):
+        if joint.parent == parent:
+            yield i
+            yield from _depth_first(robot, i)
 
 
 class Mujoco:
