@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""M, bias, gravity and their Hessian against Pinocchio, over real and random robots."""
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from oracles import Pinocchio, assert_near, configurations, example_urdf
+from random_robots import robots, vectors
+
+from softimpact.symbolic import (
+    STANDARD_GRAVITY,
+    bias_torques,
+    gravity_torques,
+    load_robot,
+    mass_matrix,
+    potential_energy,
+    stiffness_of_potential,
+)
+
+GRAVITY = (1.3, -2.1, -9.0)
+EXAMPLES = (
+    "panda.urdf",  # seven hinges, two sliding fingers
+    "ur5_robot.urdf",
+    "ur10_robot.urdf",
+    "xarm7.urdf",
+    "kinova.urdf",  # continuous joints, axes off the right angle by rounded digits
+    "baxter.urdf",  # two arms, four slides
+    "talos_reduced.urdf",  # humanoid on a fixed base
+    "simple_humanoid.urdf",
+    "tiago_pro.urdf",  # lift, two arms
+    "so101.urdf",
+    "double_pendulum.urdf",
+    "double_pendulum_continuous.urdf",
+)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_dynamics_agree_with_pinocchio(name):
+    path = example_urdf(name)
+    robot = load_robot(path)
+    oracle = Pinocchio.of_urdf(path, robot)
+    random = np.random.default_rng(1)
+    for q in configurations(robot, 3):
+        velocity = random.normal(size=robot.n)
+        assert_near(mass_matrix(robot, q), oracle.mass_matrix(q))
+        assert_near(bias_torques(robot, q, velocity, GRAVITY), oracle.bias(q, velocity, GRAVITY))
+        assert_near(gravity_torques(robot, q, GRAVITY), oracle.bias(q, 0 * q, GRAVITY))
+
+
+@settings(max_examples=60, deadline=None)
+@given(robots(), vectors(5), vectors(5))
+def test_dynamics_of_random_trees_agree_with_pinocchio(robot, q, velocity):
+    q, velocity = q[: robot.n], velocity[: robot.n]
+    oracle = Pinocchio.of_robot(robot)
+    assert_near(mass_matrix(robot, q), oracle.mass_matrix(q))
+    assert_near(bias_torques(robot, q, velocity, GRAVITY), oracle.bias(q, velocity, GRAVITY))
+    assert_near(gravity_torques(robot, q, GRAVITY), oracle.bias(q, 0 * q, GRAVITY))
+
+
+def test_gravity_defaults_to_standard_gravity():
+    robot = load_robot("panda")
+    q = next(configurations(robot, 1))
+    assert_near(gravity_torques(robot, q), gravity_torques(robot, q, STANDARD_GRAVITY))
+    assert STANDARD_GRAVITY == (0.0, 0.0, -9.81)
+
+
+def test_without_gravity_nothing_pulls():
+    robot = load_robot("panda")
+    q = next(configurations(robot, 1))
+    assert not np.array(gravity_torques(robot, q, (0, 0, 0))).any()
+    assert not np.array(bias_torques(robot, q, 0 * q, (0, 0, 0))).any()
+    assert not np.array(stiffness_of_potential(robot, q, (0, 0, 0))).any()
+
+
+def test_every_kind_of_matrix_gives_the_same_numbers():
+    robot = load_robot("panda")
+    q, velocity = configurations(robot, 2)
+    x, v = ca.SX.sym("x", robot.n), ca.SX.sym("v", robot.n)
+    X, V = ca.MX.sym("x", robot.n), ca.MX.sym("v", robot.n)
+    for quantity in (mass_matrix, gravity_torques, potential_energy, stiffness_of_potential):
+        scalar = ca.Function("f", [x], [quantity(robot, x)])(q)
+        graph = ca.Function("f", [X], [quantity(robot, X)])(q)
+        assert_near(scalar, quantity(robot, q), 1e-14)
+        assert_near(graph, quantity(robot, q), 1e-14)
+        assert_near(quantity(robot, list(q)), quantity(robot, q), 0)
+    bias = bias_torques(robot, q, velocity)
+    assert_near(ca.Function("f", [x, v], [bias_torques(robot, x, v)])(q, velocity), bias, 1e-14)
+    assert_near(ca.Function("f", [X, V], [bias_torques(robot, X, V)])(q, velocity), bias, 1e-14)
+    mixed = ca.Function("f", [x], [bias_torques(robot, x, velocity)])(q)
+    assert_near(mixed, bias, 1e-14)
+    mixed = ca.Function("f", [V], [bias_torques(robot, q, V)])(velocity)
+    assert_near(mixed, bias, 1e-14)
+
+
+def test_springs_of_the_file_store_energy():
+    robot = load_robot("rr")
+    q = np.array([0.3, 0.01, -0.4, -0.02])
+    assert_near(potential_energy(robot, q), 0.5 * 1e4 * (0.01**2 + 0.02**2))
+    assert_near(stiffness_of_potential(robot, q), np.diag([0, 1e4, 0, 1e4]))
+    assert_near(gravity_torques(robot, q), [0, 100.0, 0, -200.0])
