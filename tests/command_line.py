@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line, run within the test's process."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from softimpact.studio.cli import main
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a command left behind."""
+
+    code: int
+    out: str
+    err: str
+
+
+def run(*arguments: object) -> Outcome:
+    """Run ``softimpact`` with arguments."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = main([str(argument) for argument in arguments])
+    return Outcome(code, out.getvalue(), err.getvalue())
+
+
+def run_json(*arguments: object) -> dict[str, Any]:
+    """Run a command with ``--json``; return its one object. NaN and Infinity are not JSON."""
+    outcome = run(*arguments, "--json")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.out.count("\n") == 1
+
+    def not_json(constant: str) -> None:
+        raise AssertionError(f"{constant} in JSON")
+
+    result = json.loads(outcome.out, parse_constant=not_json)
+    assert isinstance(result, dict)
+    return result
+
+
+def refusal(*arguments: object) -> str:
+    """Run a command that must be refused; return its message.
+
+    Exit code 2, one line on stderr, nothing on stdout.
+    """
+    outcome = run(*arguments)
+    assert outcome.code == 2, outcome
+    assert outcome.out == ""
+    assert outcome.err.startswith("error: ")
+    assert outcome.err.count("\n") == 1
+    assert outcome.err.endswith("\n")
+    return outcome.err

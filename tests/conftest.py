@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Options, settings and robots that all tests share."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import settings
+
+from softimpact.symbolic import Robot, load_robot
+
+OPTIONAL = {
+    "slow": "takes more than a few seconds",
+    "embedded": "needs a cross toolchain or an emulator",
+}
+"""Markers whose tests run only with the option of the same name."""
+
+settings.register_profile("softimpact", deadline=None, derandomize=True, database=None)
+settings.load_profile("softimpact")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    for marker, reason in OPTIONAL.items():
+        parser.addoption(
+            f"--{marker}", action="store_true", help=f"run tests marked {marker}: {reason}"
+        )
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    for marker, reason in OPTIONAL.items():
+        if config.getoption(f"--{marker}"):
+            continue
+        skip = pytest.mark.skip(reason=f"{reason}; run with --{marker}")
+        for item in items:
+            if marker in item.keywords:
+                item.add_marker(skip)
+
+
+@pytest.fixture(scope="session")
+def panda() -> Robot:
+    """The built-in Panda, chain to its hand's centre point."""
+    return load_robot("panda")
