@@ -4,6 +4,7 @@
 from .approach import Approach
 from .history import Fidelity, ImpactHistory, PeakDefinition
 from .impact import simulate_impact
+from .safe_speed import largest_safe_speed
 from .simulator import SimulationFailed
 
 __all__ = [
@@ -12,5 +13,6 @@ __all__ = [
     "ImpactHistory",
     "PeakDefinition",
     "SimulationFailed",
+    "largest_safe_speed",
     "simulate_impact",
 ]

@@ -12,6 +12,7 @@ from softimpact.symbolic.chain import ChainEnd
 
 from .approach import Approach, Arrival, arrival_of
 from .events import first_contact
+from .full import full_scene
 from .history import Fidelity, ImpactHistory
 from .linear import (
     LinearSystem,
@@ -82,6 +83,8 @@ def _scene(
     end: ChainEnd | None,
     tolerance: float,
 ) -> Scene:
+    if fidelity == "full":
+        return full_scene(model, arrival, contact, tolerance)
     at = (model, arrival.q, arrival.direction)
     velocity = arrival.link_velocity
     build: dict[str, Callable[[], LinearSystem]] = {
