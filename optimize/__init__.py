@@ -1,2 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""."""
+"""Design problems: which joint stiffness and which posture hurt least."""
+
+from .design import Design, Gains, PoseResult, SolverFailure, design
+from .poses import Candidate, candidates
+from .solve import Mode, Outcome
+from .study import Pose, Study, load_study
+
+__all__ = [
+    "Candidate",
+    "Design",
+    "Gains",
+    "Mode",
+    "Outcome",
+    "Pose",
+    "PoseResult",
+    "SolverFailure",
+    "Study",
+    "candidates",
+    "design",
+    "load_study",
+]

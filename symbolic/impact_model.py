@@ -62,7 +62,7 @@ class ImpactModel:
         """Return K0 over motors and deflections (MSM Eq. 45)."""
         potential = self._potential(q)
         return elastic_stiffness(
-            self.drives.springs, self._gains(q), potential, self.drives.elastic
+            self.drives.springs, self.position_gains(q), potential, self.drives.elastic
         )
 
     def contact_jacobian(self, q: Matrix, direction: Matrix) -> Matrix:
@@ -125,8 +125,8 @@ class ImpactModel:
             return ca.DM(self.robot.n, self.robot.n)
         return stiffness_of_potential(self.robot, q, self.gravity)
 
-    def _gains(self, q: Matrix) -> Matrix:
-        """K_p = diag(gains) + k_p M_θθ over the actuated joints; the rest is zero."""
+    def position_gains(self, q: Matrix) -> Matrix:
+        """Return K_p = diag(gains) + k_p M_θθ over the motors, n×n, sparse where it is zero."""
         gains = ca.diag(self.drives.gains)
         if self.drives.computed_torque_gain is None:
             return ca.sparsify(gains) if isinstance(gains, ca.DM) else gains

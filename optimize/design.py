@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Co-design of joint stiffness and posture: every pose of a study, in both modes."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic.rigid import Array
+
+from .compiled import c_compiler, compiled_nlp
+from .nlp import DesignNlp, build_nlp, parameters
+from .poses import Candidate, candidates, tip_pose
+from .repair import accurate_springs, largest_deflection, posture_at_pose
+from .solve import Bounds, Mode, Outcome, Program, Start, nlp_solver, solve
+from .study import Study
+from .timing import Timing, impact_timing
+
+MODES: tuple[Mode, ...] = ("table", "free")
+
+
+@dataclass(frozen=True, eq=False)
+class PoseResult:
+    """What the design found for one pose.
+
+    Attributes:
+        candidate: the pose.
+        force_before: peak force with the nominal stiffness [N].
+        deflection_before: largest deflection with the nominal stiffness [m].
+        table: outcome with the posture held, None if that mode was not asked for.
+        free: outcome with the posture sought as well, None likewise.
+    """
+
+    candidate: Candidate
+    force_before: float
+    deflection_before: float
+    table: Outcome | None
+    free: Outcome | None
+
+
+@dataclass(frozen=True, eq=False)
+class Gains:
+    """Where the gain over the task's pose with nominal stiffness comes from; forces in N.
+
+    Attributes:
+        before: the task's pose, nominal stiffness.
+        springs: the task's pose, best stiffness.
+        posture: best of the given poses, nominal stiffness.
+        both: best posture and stiffness.
+    """
+
+    before: float
+    springs: float
+    posture: float
+    both: float
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """Results of a study.
+
+    Attributes:
+        study: what was asked.
+        poses: results in the study's order.
+        winner: the solved outcome of least force.
+        gains: what springs and posture bought; None where a mode was not run.
+        timing: of the impacts simulated.
+        compiled: whether the NLP ran as machine code.
+    """
+
+    study: Study
+    poses: tuple[PoseResult, ...]
+    winner: Outcome
+    gains: Gains | None
+    timing: Timing
+    compiled: bool
+
+    def outcomes(self, mode: Mode) -> list[Outcome]:
+        """Return the outcomes of a mode, in the study's order."""
+        found = [pose.table if mode == "table" else pose.free for pose in self.poses]
+        return [outcome for outcome in found if outcome is not None]
+
+
+class SolverFailure(Exception):
+    """No start of a study was solved; carries the best feasible point found, if any."""
+
+    exit_code = 3
+
+    def __init__(self, outcomes: Sequence[Outcome]) -> None:
+        self.outcomes = tuple(outcomes)
+        self.best = min(outcomes, key=lambda outcome: (outcome.violation > 1e-5, outcome.violation))
+        statuses = sorted({outcome.status for outcome in outcomes})
+        super().__init__(
+            f"none of {len(outcomes)} starts was solved (Ipopt: {', '.join(statuses)}); "
+            f"the best point, from {self.best.name}, has a peak force of {self.best.force:.1f} N "
+            f"and violates a constraint by {self.best.violation:.2g}"
+        )
+
+
+def design(
+    study: Study,
+    modes: Sequence[Mode] = MODES,
+    executor: Executor | None = None,
+    on_outcome: Callable[[Outcome], None] | None = None,
+) -> Design:
+    """Find the joint stiffness and the posture of least peak force.
+
+    Args:
+        study: the problem.
+        modes: ``table`` seeks k_s for each pose, ``free`` k_s and the posture from each pose.
+        executor: where the searches run; default a process for each core.
+        on_outcome: called with every outcome as it arrives.
+
+    Raises:
+        SolverFailure: no search was solved.
+    """
+    poses = candidates(study)
+    timing = impact_timing(study, [pose.q for pose in poses])
+    nlp = build_nlp(study.model, len(study.forces), timing.steps)
+    before = [peak_force(study, nlp, timing, pose.q, study.nominal) for pose in poses]
+    unit = float(np.median(before))
+    position, rotation = tip_pose(study.model, study.task_pose.q)
+    numbers = parameters(study, position, rotation, timing.step, unit)
+    program = _program(nlp)
+    starts = [_start(study, pose, mode) for mode in modes for pose in poses]
+    bounds = Bounds(*study.robot.limits, study.lower, study.upper, unit)
+    outcomes = _run(program, starts, bounds, numbers, executor, on_outcome)
+    solved = [outcome for outcome in outcomes.values() if outcome.solved]
+    if not solved:
+        raise SolverFailure(list(outcomes.values()))
+    results = tuple(
+        PoseResult(
+            pose,
+            force,
+            largest_deflection(study, pose.q, study.nominal),
+            outcomes.get((pose.pose.name, "table")),
+            outcomes.get((pose.pose.name, "free")),
+        )
+        for pose, force in zip(poses, before, strict=True)
+    )
+    winner = min(solved, key=lambda outcome: outcome.force)
+    gains = _gains(study, results, winner)
+    return Design(study, results, winner, gains, timing, program.library is not None)
+
+
+def peak_force(study: Study, nlp: DesignNlp, timing: Timing, q: Array, springs: Array) -> float:
+    """Return the peak of the first contact [N] as the NLP sees it."""
+    x = np.concatenate([q, np.log10(springs), [0.0]])
+    numbers = parameters(study, np.zeros(3), np.eye(3), timing.step, 1.0)
+    return float(np.array(nlp.oracle(x, numbers)[1])[nlp.forces].max())
+
+
+def _program(nlp: DesignNlp) -> Program:
+    library = compiled_nlp(nlp_solver(nlp.oracle), c_compiler())
+    return Program(nlp.oracle.serialize(), library, nlp.n, nlp.pose, nlp.forces)
+
+
+def _start(study: Study, candidate: Candidate, mode: Mode) -> Start:
+    q = candidate.q
+    if mode == "free":
+        position, rotation = tip_pose(study.model, study.task_pose.q)
+        q = _or_else(posture_at_pose(study, q, position, rotation), study.task_pose.q)
+    springs = accurate_springs(study, q, study.nominal)
+    softer = accurate_springs(study, q, np.sqrt(study.lower * study.upper))
+    fallbacks = [(q, softer), (q, study.upper)]
+    if mode == "free":
+        fallbacks.append((study.task_pose.q, study.upper))
+    return Start(candidate.pose.name, mode, q, springs, tuple(fallbacks))
+
+
+def _or_else(found: Array | None, otherwise: Array) -> Array:
+    return otherwise if found is None else found
+
+
+def _run(
+    program: Program,
+    starts: Sequence[Start],
+    bounds: Bounds,
+    numbers: Array,
+    executor: Executor | None,
+    on_outcome: Callable[[Outcome], None] | None,
+) -> dict[tuple[str, Mode], Outcome]:
+    if executor is None:
+        workers = min(len(starts), len(os.sched_getaffinity(0)))
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(workers, mp_context=context) as pool:
+            return _run(program, starts, bounds, numbers, pool, on_outcome)
+    futures = [executor.submit(solve, program, start, bounds, numbers) for start in starts]
+    outcomes = {}
+    for future in as_completed(futures):
+        outcome = future.result()
+        outcomes[outcome.name, outcome.mode] = outcome
+        if on_outcome is not None:
+            on_outcome(outcome)
+    return outcomes
+
+
+def _gains(study: Study, results: Sequence[PoseResult], winner: Outcome) -> Gains | None:
+    task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
+    if task.table is None or any(result.free is None for result in results):
+        return None
+    return Gains(
+        before=task.force_before,
+        springs=task.table.force,
+        posture=min(result.force_before for result in results),
+        both=winner.force,
+    )

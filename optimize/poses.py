@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Candidate postures held against the task: which are turned about the base, and by how much."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic import ImpactModel, JointKind, frame_pose
+from softimpact.symbolic.rigid import Array
+
+from .study import Pose, Study
+
+TURNED = 0.1
+"""Angle [rad] about the base from which a pose counts as another one, turned."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A pose as the study gives it, and as it serves the task.
+
+    Attributes:
+        pose: as given.
+        turned: angle about the first joint's axis by which it differs from the task [rad]; zero
+            unless it is so large that the pose is another one, turned.
+        q: posture with that turn taken back, length n [rad].
+        offset: distance of the tip from the task's position at q [m].
+    """
+
+    pose: Pose
+    turned: float
+    q: Array
+    offset: float
+
+
+def tip_pose(model: ImpactModel, q: Array) -> tuple[Array, Array]:
+    """Return the tip's position, length 3 [m], and rotation, 3×3."""
+    position, rotation = _tip_function(model)(q)
+    return np.array(position).ravel(), np.array(rotation)
+
+
+@lru_cache(maxsize=8)
+def _tip_function(model: ImpactModel) -> ca.Function:
+    q = ca.SX.sym("q", model.robot.n)
+    pose = frame_pose(model.robot, model.tip, q)
+    return ca.Function("tip", [q], [pose.position, pose.rotation])
+
+
+def candidates(study: Study) -> list[Candidate]:
+    """Return the study's poses; those turned about the base are turned back to the task.
+
+    A fixed base robot does not feel a turn about its first axis if the impact turns with it, so
+    turning the pose back compares like with like.
+    """
+    task = tip_pose(study.model, study.task_pose.q)
+    return [_candidate(study, pose, task) for pose in study.poses]
+
+
+def _candidate(study: Study, pose: Pose, task: tuple[Array, Array]) -> Candidate:
+    turned = 0.0
+    if study.robot.joints[0].kind is JointKind.HINGE:
+        turn = _best_turn(study.model, pose.q, task)
+        turned = turn if abs(turn) > TURNED else 0.0
+    q = pose.q.copy()
+    q[0] -= turned
+    position, _ = tip_pose(study.model, q)
+    return Candidate(pose, turned, q, float(np.linalg.norm(position - task[0])))
+
+
+def _best_turn(model: ImpactModel, q: Array, task: tuple[Array, Array]) -> float:
+    """Angle of the first joint that, taken back, brings the tip's axes nearest to the task's."""
+
+    def agreement(turn: float) -> float:
+        moved = q.copy()
+        moved[0] -= turn
+        position, rotation = tip_pose(model, moved)
+        miss = np.sum((position - task[0]) ** 2)
+        return float(np.sum(rotation * task[1]) - miss / np.sum(task[0] ** 2))
+
+    # over turns the agreement is a + b cos + c sin: three samples give its maximum
+    at = [agreement(turn) for turn in (0.0, 2 * np.pi / 3, -2 * np.pi / 3)]
+    cosine = 2 * at[0] - at[1] - at[2]
+    sine = np.sqrt(3.0) * (at[1] - at[2])
+    return float(np.arctan2(sine, cosine))

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Solve the design NLP from one start; everything here runs in a worker process."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Literal
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic.rigid import Array
+
+Mode = Literal["table", "free"]
+"""``table``: the posture is given and k_s is sought; ``free``: both are sought."""
+
+IPOPT = {
+    "hessian_approximation": "limited-memory",
+    "limited_memory_max_history": 20,
+    "max_iter": 300,
+    "tol": 1e-6,
+    "acceptable_tol": 1e-5,
+    "acceptable_iter": 8,
+    "print_level": 0,
+    "sb": "yes",
+}
+"""Options of Ipopt: the exact Hessian halves the iterations but costs seven times each."""
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """An NLP that a process can load.
+
+    Attributes:
+        oracle: the problem's functions, serialised.
+        library: their compiled form, None to run in CasADi's virtual machine.
+        n: number of joints.
+        pose: entries of g that are the tip's pose error.
+        forces: entries of g that are f_k − F.
+    """
+
+    oracle: str
+    library: Path | None
+    n: int
+    pose: slice
+    forces: slice
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where a search begins.
+
+    Attributes:
+        name: of the pose.
+        mode: table or free.
+        q: posture, length n [rad].
+        springs: joint stiffness, length n [N·m/rad].
+        fallbacks: postures and stiffnesses to try if the search fails from the first.
+    """
+
+    name: str
+    mode: Mode
+    q: Array
+    springs: Array
+    fallbacks: tuple[tuple[Array, Array], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """Limits of the variables, length n each; and the force that F = 1 stands for [N]."""
+
+    q_lower: Array
+    q_upper: Array
+    springs_lower: Array
+    springs_upper: Array
+    unit: float
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a search found.
+
+    Attributes:
+        name: of the pose it started from.
+        mode: table or free.
+        status: Ipopt's.
+        solved: whether a local optimum was found.
+        iterations: of all attempts.
+        attempts: number of starts used, 1 unless the first failed.
+        seconds: wall time.
+        q: posture, length n [rad].
+        springs: joint stiffness, length n [N·m/rad].
+        force: peak of the first contact [N].
+        violation: largest violation of a constraint, in the NLP's units (m, rad, shares).
+    """
+
+    name: str
+    mode: Mode
+    status: str
+    solved: bool
+    iterations: int
+    attempts: int
+    seconds: float
+    q: Array
+    springs: Array
+    force: float
+    violation: float
+
+
+FEASIBLE = 1e-5
+"""Violation up to which a point counts as feasible."""
+
+
+@lru_cache(maxsize=4)
+def _solver(oracle: str, library: Path | None) -> tuple[ca.Function, ca.Function]:
+    options = {"ipopt": IPOPT, "print_time": False, "error_on_fail": False}
+    functions = ca.Function.deserialize(oracle)
+    if library is not None:
+        return ca.nlpsol("design", "ipopt", str(library), options), functions
+    return nlp_solver(functions), functions
+
+
+def nlp_solver(oracle: ca.Function) -> ca.Function:
+    """Return Ipopt on the problem, in CasADi's virtual machine."""
+    x, p = (ca.MX.sym(name, oracle.numel_in(name)) for name in ("x", "p"))
+    f, g = oracle(x, p)
+    options = {"ipopt": IPOPT, "print_time": False, "error_on_fail": False}
+    return ca.nlpsol("design", "ipopt", {"x": x, "p": p, "f": f, "g": g}, options)
+
+
+def solve(program: Program, start: Start, bounds: Bounds, parameters: Array) -> Outcome:
+    """Search from a start, and from its fallbacks in turn as long as Ipopt fails.
+
+    Returns:
+        The first solved point; if none is, the feasible point of least force, else the one of
+        least violation.
+    """
+    begin = time.perf_counter()
+    found: list[Outcome] = []
+    for q, springs in ((start.q, start.springs), *start.fallbacks):
+        found.append(_attempt(program, start, q, springs, bounds, parameters))
+        if found[-1].solved:
+            break
+    best = min(found, key=_preference)
+    return Outcome(
+        **{
+            **vars(best),
+            "iterations": sum(outcome.iterations for outcome in found),
+            "attempts": len(found),
+            "seconds": time.perf_counter() - begin,
+        }
+    )
+
+
+def _preference(outcome: Outcome) -> tuple[bool, bool, float]:
+    feasible = outcome.violation <= FEASIBLE
+    return not outcome.solved, not feasible, outcome.force if feasible else outcome.violation
+
+
+def _constraint_bounds(program: Program, mode: Mode) -> tuple[Array, Array]:
+    """Bounds on g: the tip's pose is held where the posture is free, all else is at most zero."""
+    size = program.forces.stop
+    lower, upper = np.full(size, -np.inf), np.zeros(size)
+    lower[program.pose], upper[program.pose] = (0.0, 0.0) if mode == "free" else (-np.inf, np.inf)
+    return lower, upper
+
+
+def _attempt(
+    program: Program, start: Start, q: Array, springs: Array, bounds: Bounds, parameters: Array
+) -> Outcome:
+    solver, functions = _solver(program.oracle, program.library)
+    n = program.n
+    posture = np.clip(q, bounds.q_lower, bounds.q_upper)
+    x0 = np.concatenate([posture, np.log10(springs), [0.0]])
+    x0[-1] = np.array(functions(x0, parameters)[1])[program.forces].max()
+    lower, upper = _constraint_bounds(program, start.mode)
+    q_lower, q_upper = (
+        (posture, posture) if start.mode == "table" else (bounds.q_lower, bounds.q_upper)
+    )
+    solution = solver(
+        x0=x0,
+        p=parameters,
+        lbx=np.concatenate([q_lower, np.log10(bounds.springs_lower), [0.0]]),
+        ubx=np.concatenate([q_upper, np.log10(bounds.springs_upper), [np.inf]]),
+        lbg=lower,
+        ubg=upper,
+    )
+    x, g = np.array(solution["x"]).ravel(), np.array(solution["g"]).ravel()
+    stats = solver.stats()
+    violation = float(np.maximum(np.maximum(lower - g, g - upper), 0.0).max())
+    return Outcome(
+        name=start.name,
+        mode=start.mode,
+        status=stats["return_status"],
+        solved=bool(stats["success"]) and violation <= FEASIBLE,
+        iterations=int(stats["iter_count"]),
+        attempts=1,
+        seconds=0.0,
+        q=x[:n],
+        springs=10 ** x[n : 2 * n],
+        force=float(x[-1] * bounds.unit),
+        violation=violation,
+    )

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How long the impacts of a study last, and how finely they must be stepped."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from softimpact.symbolic.rigid import Array
+
+from .nlp import NODES, build_nlp, parameters
+from .study import Study
+
+SHORTEST, LONGEST = 0.02, 0.64
+"""Durations tried [s]."""
+
+MARGIN = 1.5
+"""Duration simulated, as a multiple of the longest first contact among the candidates."""
+
+LARGEST_PHASE = 1.0
+"""Largest angular frequency times the step; the leapfrog is stable below 2."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Time steps of the simulated impacts.
+
+    Attributes:
+        duration: simulated [s].
+        steps: number of steps, a multiple of the force nodes.
+    """
+
+    duration: float
+    steps: int
+
+    @property
+    def step(self) -> float:
+        """Time step [s]."""
+        return self.duration / self.steps
+
+
+def impact_timing(study: Study, postures: Sequence[Array]) -> Timing:
+    """Return a duration that holds every first contact, and steps that resolve the robot.
+
+    Contacts are tried with the nominal and the stiffest springs; frequencies with the stiffest.
+    """
+    frequency = max(_largest_frequency(study, q) for q in postures)
+    duration = SHORTEST
+    while True:
+        timing = Timing(duration, _steps(duration, frequency))
+        longest = _longest_contact(study, postures, timing)
+        if longest is not None or duration >= LONGEST:
+            break
+        duration *= 2.0
+    wanted = min(LONGEST, MARGIN * (duration if longest is None else longest))
+    return Timing(wanted, _steps(wanted, frequency))
+
+
+def _steps(duration: float, frequency: float) -> int:
+    fewest = max(2 * NODES, duration * frequency / LARGEST_PHASE)
+    return NODES * int(np.ceil(fewest / NODES))
+
+
+def _largest_frequency(study: Study, q: Array) -> float:
+    linear = study.model.with_springs(study.upper).linear(q, study.direction)
+    mass, stiffness = np.array(linear.mass.matrix), np.array(linear.stiffness)
+    return float(np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(mass, stiffness))).max()))
+
+
+def _longest_contact(study: Study, postures: Sequence[Array], timing: Timing) -> float | None:
+    """Longest first contact [s]; None if one of them outlasts the duration."""
+    nlp = build_nlp(study.model, len(study.forces), timing.steps)
+    numbers = parameters(study, np.zeros(3), np.eye(3), timing.step, 1.0)
+    longest = 0.0
+    for q in postures:
+        for springs in (study.nominal, study.upper):
+            x = np.concatenate([q, np.log10(springs), [0.0]])
+            force = np.array(nlp.oracle(x, numbers)[1])[nlp.forces].ravel()
+            if force[-1] > 0.0:
+                return None
+            longest = max(longest, timing.duration * np.count_nonzero(force) / NODES)
+    return longest
