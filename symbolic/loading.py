@@ -22,6 +22,8 @@ KINDS = {
     int(mujoco.mjtJoint.mjJNT_SLIDE): JointKind.SLIDE,
 }
 
+SHAPES = range(int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_MESH))
+"""Geoms that need no file and have a volume."""
 
 ROTOR_SET = "rotor_inertia:"
 """Prefix of the MJCF ``custom/numeric`` elements that hold named sets of rotor inertias."""
@@ -31,8 +33,10 @@ def load_robot(model: str | Path, tip: str | None = None) -> Robot:
     """Read a built-in robot, or one from a URDF (``.urdf``) or MJCF (``.xml``) file.
 
     Meshes are not needed. Every body and every site becomes a frame. The model's gravity is not
-    kept. Of MJCF's ``custom`` elements the text ``tip`` names the contact frame and the numerics
-    ``rotor_inertia:NAME`` hold sets of reflected rotor inertias.
+    kept, nor are couplings between joints (URDF ``mimic``, MJCF ``equality/joint``, tendons): weld
+    such joints with ``chain_to`` or ``lock_joints``. Of MJCF's ``custom`` elements the text ``tip``
+    names the contact frame and the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor
+    inertias.
 
     Args:
         model: name of a built-in robot, or path of a file.
@@ -116,30 +120,49 @@ def _compile_spec(path: Path, heard: list[str]) -> mujoco.MjModel:
     except ValueError as error:
         raise ModelFileError(str(path), f"not a URDF or MJCF: {_one_line(error)}") from None
     spec.compiler.fusestatic = False
-    _drop_meshes(spec, keep_shapes=path.suffix != ".urdf")
+    hollow = _drop_meshes(spec, keep_shapes=path.suffix != ".urdf")
     for body in spec.bodies[1:]:
         _check_mass(body, str(path))
+    for joint in spec.joints:
+        if joint.armature < 0:
+            raise ModelFileError(str(path), f"joint '{joint.name}': armature is negative")
     if any("NaN" in warning for warning in heard):
         raise ModelFileError(str(path), "a number is NaN")
     try:
-        return spec.compile()
+        model = spec.compile()
     except ValueError as error:
         raise _compile_error(str(path), _one_line(error)) from None
+    for body in hollow:
+        if model.body_weldid[body.id] != 0:
+            raise InvalidInertia(
+                str(path), body.name, "takes its inertia from a mesh; give it an <inertial> element"
+            )
+    return model
 
 
-def _drop_meshes(spec: mujoco.MjSpec, keep_shapes: bool) -> None:
+def _drop_meshes(spec: mujoco.MjSpec, keep_shapes: bool) -> list[mujoco.MjsBody]:
     """Drop what only rendering and collision need, and with it every file beside the model.
 
     In MJCF simple shapes stay: a body without an inertial element takes its inertia from them.
+    Returns the bodies that would have taken theirs from a mesh.
     """
+    hollow = []
+    always = spec.compiler.inertiafromgeom == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
     for geom in list(spec.geoms):
-        if keep_shapes and geom.type < mujoco.mjtGeom.mjGEOM_MESH and not geom.meshname:
+        if keep_shapes and int(geom.type) in SHAPES and not geom.meshname:
             geom.material = ""
-        else:
-            spec.delete(geom)
-    for group in (spec.meshes, spec.materials, spec.textures, spec.pairs, spec.keys):
+            continue
+        body = geom.parent
+        if keep_shapes and geom.mass != 0 and (always or not body.explicitinertial):
+            hollow.append(body)
+        spec.delete(geom)
+    for site in spec.sites:
+        site.material = ""
+    files = (spec.meshes, spec.hfields, spec.skins, spec.materials, spec.textures)
+    for group in (*files, spec.pairs, spec.sensors, spec.keys):
         for item in list(group):
             spec.delete(item)
+    return hollow
 
 
 def _check_mass(body: mujoco.MjsBody, path: str) -> None:
@@ -160,7 +183,7 @@ def _compile_error(path: str, reason: str) -> ModelFileError:
         )
     if "mass and inertia of moving bodies" in reason:
         return InvalidInertia(
-            path, body, "moves but has no mass and inertia; give it an <inertial> element"
+            path, body, "moves but has no mass and inertia > 0; give it an <inertial> element"
         )
     return ModelFileError(path, reason)
 
@@ -175,15 +198,26 @@ def _reject_unsupported(model: mujoco.MjModel, path: Path) -> None:
     if not all(np.isfinite(array).all() for array in of_bodies + of_joints):
         raise ModelFileError(str(path), "a number is infinite")
     for i in range(model.njnt):
+        name = _joint_name(model, i)
         if int(model.jnt_type[i]) not in KINDS:
             raise UnsupportedModel(
                 str(path),
-                f"joint '{model.joint(i).name}' is a ball or free joint; "
+                f"joint '{name}' is a ball or free joint; "
                 "only hinges and slides on a fixed base are supported",
             )
     loops = (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD)
     if any(int(kind) in map(int, loops) for kind in model.eq_type):
         raise UnsupportedModel(str(path), "closed chains (equality connect or weld)")
+    if np.any(getattr(model, "jnt_stiffnesspoly", 0.0)):
+        raise UnsupportedModel(str(path), "springs whose stiffness depends on the deflection")
+    names = [_joint_name(model, i) for i in range(model.njnt)]
+    twice = [name for name in names if names.count(name) > 1]
+    if twice:
+        raise ModelFileError(str(path), f"two joints go by '{twice[0]}'; name every joint")
+
+
+def _joint_name(model: mujoco.MjModel, joint: int) -> str:
+    return str(model.joint(joint).name) or f"joint{joint + 1}"
 
 
 class _RobotBuilder:
@@ -237,7 +271,7 @@ class _RobotBuilder:
         lower, upper = model.jnt_range[joint] if limited else (-math.inf, math.inf)
         self.joints.append(
             Joint(
-                name=model.joint(joint).name or f"joint{joint + 1}",
+                name=_joint_name(model, joint),
                 kind=KINDS[int(model.jnt_type[joint])],
                 parent=parent,
                 placement=placement,
@@ -246,7 +280,7 @@ class _RobotBuilder:
                 lower=float(lower),
                 upper=float(upper),
                 armature=float(model.dof_armature[model.jnt_dofadr[joint]]),
-                stiffness=float(np.ravel(model.jnt_stiffness[joint])[0]),
+                stiffness=float(model.jnt_stiffness[joint]),
                 spring_reference=float(model.qpos_spring[address]),
                 actuated=not self.actuated or joint in self.actuated,
             )
@@ -260,11 +294,11 @@ class _RobotBuilder:
 
 def _actuated_joints(model: mujoco.MjModel) -> set[int]:
     """Joints that an actuator drives; a model without actuators has motors everywhere."""
-    on_joint = int(mujoco.mjtTrn.mjTRN_JOINT)
+    on_joint = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
     return {
         int(target[0])
         for kind, target in zip(model.actuator_trntype, model.actuator_trnid, strict=True)
-        if int(kind) == on_joint
+        if int(kind) in on_joint
     }
 
 
