@@ -156,7 +156,7 @@ class Robot:
         return replace(self, joints=joints)
 
     def digest(self) -> str:
-        """Return a hash of every number and name that the dynamics depend on."""
+        """Return a hash of every number and name that the robot's expressions depend on."""
         text = hashlib.sha256()
         for joint in self.joints:
             numbers = [
@@ -172,10 +172,16 @@ class Robot:
                 joint.lower,
                 joint.upper,
             ]
-            words = " ".join(f"{float(x) + 0.0:.12e}" for x in numbers)
             head = f"{joint.name} {joint.kind.value} {joint.parent} {joint.actuated}"
-            text.update(f"{head} {words}\n".encode())
+            text.update(f"{head} {_in_words(numbers)}\n".encode())
+        for frame in self.frames.values():
+            numbers = [*frame.placement.rotation.flat, *frame.placement.translation]
+            text.update(f"{frame.name} {frame.joint} {_in_words(numbers)}\n".encode())
         return text.hexdigest()
+
+
+def _in_words(numbers: Sequence[float]) -> str:
+    return " ".join(f"{float(x) + 0.0:.12e}" for x in numbers)
 
 
 def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
@@ -183,8 +189,11 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
 
     Args:
         robot: any robot.
-        locked: coordinate [rad, m] of each joint to weld, by name.
+        locked: coordinate [rad, m] of each joint to weld, by name; raises UnknownName.
     """
+    for name in locked:
+        if name not in robot.joint_names:
+            raise UnknownName("joint", name, robot.joint_names)
     carrier: dict[int, tuple[int, Placement]] = {BASE: (BASE, Placement.identity())}
     kept: list[Joint] = []
     for index, joint in enumerate(robot.joints):

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The robot as data: names, limits, hashes, and sub-robots with welded joints."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from oracles import assert_near, configurations, example_urdf
+from random_robots import robots, vectors
+
+from softimpact.symbolic import (
+    FrameNotFound,
+    UnknownName,
+    WrongLength,
+    chain_to,
+    frame_jacobian,
+    frame_pose,
+    gravity_torques,
+    load_robot,
+    lock_joints,
+    mass_matrix,
+)
+
+
+@pytest.fixture(scope="module")
+def panda():
+    return load_robot("panda")
+
+
+def test_what_the_panda_is(panda):
+    assert panda.n == 7
+    assert panda.joint_names == tuple(f"joint{i}" for i in range(1, 8))
+    assert panda.tip == "hand_tcp"
+    assert panda.actuated == (True,) * 7
+    lower, upper = panda.limits
+    assert (lower < upper).all()
+    assert panda.ancestors(6) == [6, 5, 4, 3, 2, 1, 0]
+    assert panda.ancestors(-1) == []
+
+
+def test_rotor_inertia_sets_are_found_by_name(panda):
+    assert_near(panda.rotor_inertia_set("drake_fr3"), panda.armature)
+    assert_near(panda.rotor_inertia_set("menagerie_panda"), np.full(7, 0.1))
+    with pytest.raises(UnknownName, match=r"rotor inertia set 'drake'.*drake_fr3") as caught:
+        panda.rotor_inertia_set("drake")
+    assert "menagerie_fr3" in caught.value.known
+
+
+def test_with_armature_changes_only_that(panda):
+    other = panda.with_armature(np.arange(7))
+    assert_near(other.armature, np.arange(7.0))
+    assert_near(panda.armature[0], 0.605721456)
+    q = next(configurations(panda, 1))
+    assert_near(mass_matrix(other, q), mass_matrix(panda, q), 0)  # links only
+    with pytest.raises(WrongLength):
+        panda.with_armature([1.0])
+
+
+def test_vector_names_the_joints_it_wants(panda):
+    with pytest.raises(
+        WrongLength, match=r"q: has 3 values, but 7 are needed.*joint1, joint2"
+    ) as e:
+        panda.vector("q", [1, 2, 3])
+    assert (e.value.field, e.value.found, e.value.expected) == ("q", 3, 7)
+    with pytest.raises(WrongLength):
+        panda.vector("q", np.zeros((7, 1)))
+
+
+def test_frame_not_found_lists_frames(panda):
+    with pytest.raises(FrameNotFound, match=r"'tool'.*flange"):
+        panda.frame("tool")
+
+
+def test_digest_sees_every_number_and_no_identity(panda):
+    assert load_robot("panda").digest() == panda.digest()
+    assert panda.with_armature(np.ones(7)).digest() != panda.digest()
+    joint = panda.joints[3]
+    for change in ({"name": "x"}, {"offset": 1e-3}, {"lower": -1.0}, {"actuated": False}):
+        joints = (*panda.joints[:3], replace(joint, **change), *panda.joints[4:])
+        assert replace(panda, joints=joints).digest() != panda.digest()
+
+
+def test_digest_sees_where_the_frames_are(panda):
+    """The contact point's frame is part of what is generated."""
+    frame = panda.frames["hand_tcp"]
+    moved = replace(frame, placement=frame.placement @ frame.placement)
+    other = replace(panda, frames={**panda.frames, "hand_tcp": moved})
+    assert other.digest() != panda.digest()
+
+
+@settings(max_examples=30, deadline=None)
+@given(robots(min_joints=2), vectors(5))
+def test_welding_joints_keeps_the_rest_of_the_dynamics(robot, q):
+    """M, gravity and J of the welded robot are those of the free one, without the welded rows."""
+    q = q[: robot.n]
+    welded = {j.name: float(q[i]) for i, j in enumerate(robot.joints) if i % 2}
+    kept = [i for i in range(robot.n) if i % 2 == 0]
+    part = lock_joints(robot, welded)
+    assert part.n == len(kept)
+    assert_near(mass_matrix(part, q[kept]), np.array(mass_matrix(robot, q))[np.ix_(kept, kept)])
+    gravity = (1.0, 2.0, -9.0)
+    whole = np.array(gravity_torques(robot, q, gravity)).ravel()
+    assert_near(gravity_torques(part, q[kept], gravity), whole[kept])
+    assert_near(
+        frame_jacobian(part, "tip", q[kept]), np.array(frame_jacobian(robot, "tip", q))[:, kept]
+    )
+    assert_near(frame_pose(part, "tip", q[kept]).position, frame_pose(robot, "tip", q).position)
+
+
+def test_welding_keeps_the_rotor_sets_of_the_rest(panda):
+    part = lock_joints(panda, {"joint2": 0.3})
+    assert part.joint_names == tuple(f"joint{i}" for i in (1, 3, 4, 5, 6, 7))
+    assert len(part.rotor_inertia_sets["drake_fr3"]) == 6
+    assert part.rotor_inertia_set("drake_fr3")[1] == panda.armature[2]
+
+
+def test_welding_a_joint_that_does_not_exist_is_an_error(panda):
+    with pytest.raises(UnknownName, match=r"joint 'jiont2'.*joint2"):
+        lock_joints(panda, {"jiont2": 0.3})
+
+
+def test_chain_to_a_hand_of_a_branched_robot():
+    robot = load_robot(example_urdf("baxter.urdf"))
+    part = chain_to(robot, "left_gripper_base_link")
+    assert part.tip == "left_gripper_base_link"
+    assert part.n == 7
+    assert all(name.startswith("left_") for name in part.joint_names)
+    on = [robot.joint_names.index(name) for name in part.joint_names]
+    q = np.zeros(robot.n)
+    q[on] = next(configurations(part, 1))
+    assert_near(mass_matrix(part, q[on]), np.array(mass_matrix(robot, q))[np.ix_(on, on)])
+    assert_near(
+        frame_jacobian(part, "left_gripper_base_link", q[on]),
+        np.array(frame_jacobian(robot, "left_gripper_base_link", q))[:, on],
+    )
+
+
+def test_chain_to_welds_the_others_where_told():
+    robot = load_robot(example_urdf("panda.urdf"))
+    rest = np.zeros(robot.n)
+    rest[-2:] = 0.04  # fingers apart
+    closed, apart = chain_to(robot, "panda_hand"), chain_to(robot, "panda_hand", rest)
+    assert closed.n == apart.n == 7
+    q = next(configurations(closed, 1))
+    assert abs(np.array(mass_matrix(closed, q) - mass_matrix(apart, q))).max() > 1e-9
+    with pytest.raises(WrongLength, match="rest"):
+        chain_to(robot, "panda_hand", [0.0])
+    with pytest.raises(FrameNotFound):
+        chain_to(robot, "hand")
