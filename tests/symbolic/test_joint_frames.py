@@ -101,4 +101,3 @@ def test_the_panda_keeps_few_constants():
         assert joint.inertia.first_moment[2] == 0.0
         assert joint.inertia.mass == 0.0
         assert joint.inertia.about_origin[1, 1] == 0.0
-

@@ -117,7 +117,7 @@ def test_frames_of_the_base_do_not_move():
 @pytest.mark.parametrize("quantity", [frame_pose, frame_jacobian, contact_point_jacobian])
 def test_unknown_frame_lists_the_known_ones(quantity):
     robot = load_robot("panda")
-    with pytest.raises(FrameNotFound, match="unknown frame 'hnad'.*known:.*hand_tcp") as caught:
+    with pytest.raises(FrameNotFound, match=r"unknown frame 'hnad'.*known:.*hand_tcp") as caught:
         quantity(robot, "hnad", np.zeros(7))
     assert caught.value.name == "hnad"
     assert "flange" in caught.value.known

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Linear algebra over any kind of matrix."""
+
+import casadi as ca
+import numpy as np
+import pytest
+from oracles import assert_near
+
+from softimpact.symbolic import count_flops, load_robot
+from softimpact.symbolic.dynamics import _mass_matrix
+from softimpact.symbolic.matrices import Factorisation, _as_function, on_scalars, symmetric
+
+
+def positive_definite(n: int, seed: int = 0) -> np.ndarray:
+    """Return a random symmetric positive definite matrix."""
+    half = np.random.default_rng(seed).normal(size=(n, n))
+    return half @ half.T + 0.1 * np.eye(n)
+
+
+@pytest.mark.parametrize("n", [1, 2, 7])
+def test_factorisation_solves_and_measures(n):
+    M, b = positive_definite(n), np.random.default_rng(1).normal(size=(n, 3))
+    factors = Factorisation(ca.DM(M))
+    assert_near(factors.solve(ca.DM(b)), np.linalg.solve(M, b))
+    y = [factors.halfway(ca.DM(b[:, k])) for k in range(3)]
+    gram = [[float(factors.inner(first, second)) for second in y] for first in y]
+    assert_near(gram, b.T @ np.linalg.solve(M, b))
+
+
+@pytest.mark.parametrize("kind", [ca.SX, ca.MX])
+def test_factorisation_of_symbols_gives_the_same_numbers(kind):
+    M, b = positive_definite(4), np.random.default_rng(1).normal(size=(4, 2))
+    symbol, right = kind.sym("M", 4, 4), kind.sym("b", 4, 2)
+    solve = ca.Function("solve", [symbol, right], [Factorisation(symbol).solve(right)])
+    assert_near(solve(M, b), np.linalg.solve(M, b))
+
+
+def test_structural_zeros_cost_nothing():
+    diagonal = Factorisation(ca.diag(ca.SX.sym("d", 5))).solve(ca.SX.sym("b", 5))
+    assert count_flops(diagonal) == 5
+
+
+def test_symmetric_mirrors_the_lower_half():
+    assert_near(
+        symmetric(lambda i, j: ca.DM(10 * i + j), 3), [[0, 10, 20], [10, 11, 21], [20, 21, 22]]
+    )
+
+
+def test_count_flops_counts_shared_work_once_and_no_sines():
+    x, y = ca.SX.sym("x"), ca.SX.sym("y")
+    assert count_flops(x) == 0
+    assert count_flops(x + y) == 1
+    assert count_flops(ca.vertcat((x + y) * x, (x + y) * y)) == 3
+    assert count_flops(ca.sin(x) * ca.cos(y)) == 1
+    assert count_flops(ca.sqrt(x) / y) == 2
+
+
+def test_functions_are_built_once_for_a_robot():
+    robot = load_robot("rr")
+    before = _as_function.cache_info().misses
+    for _ in range(3):
+        on_scalars(_mass_matrix, (robot,), np.zeros(4))
+    assert _as_function.cache_info().misses == before + 1
+
+
+def test_a_row_serves_as_a_configuration():
+    robot = load_robot("rr")
+    q = np.array([0.1, 0.2, 0.3, 0.4])
+    column = on_scalars(_mass_matrix, (robot,), q)
+    assert_near(on_scalars(_mass_matrix, (robot,), q[None]), column, 0)
