@@ -15,6 +15,7 @@ import typer
 
 from .analyze_command import analyze
 from .robots_command import robots
+from .simulate_command import simulate
 
 USER_ERROR, INTERRUPTED = 2, 130
 """Exit codes; a failed solver's is 3 and comes with its exception."""
@@ -23,6 +24,7 @@ app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 app.command()(robots)
 app.command()(analyze)
+app.command()(simulate)
 
 
 @app.callback(invoke_without_command=True)
