@@ -10,7 +10,7 @@ from typing import get_args
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue, UnknownName
 from softimpact.symbolic.chain import ChainEnd
 
-from .approach import Approach, Arrival, arrival_of
+from .approach import Approach, Arrival, arrival_of, check_contact
 from .events import first_contact
 from .full import full_scene
 from .history import Fidelity, ImpactHistory
@@ -59,6 +59,7 @@ def simulate_impact(
         raise UnknownName("fidelity", fidelity, get_args(Fidelity))
     if not 1e-14 <= tolerance <= 1e-2:
         raise InvalidValue("tolerance", f"must be from 1e-14 to 1e-2, not {tolerance:g}")
+    check_contact(contact)
     arrival = arrival_of(model, approach)
     scene = _scene(model, arrival, contact, fidelity, order, end, tolerance)
     found = first_contact(scene, duration)

@@ -7,6 +7,7 @@ tolerance fits all; time is scaled to the span of a run, so that one integrator 
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import casadi as ca
@@ -104,7 +105,8 @@ class Scene:
         try:
             end = simulator.integrate(**start, p=p)
         except RuntimeError as error:
-            raise SimulationFailed(str(error).strip().splitlines()[-1]) from None
+            flags = re.findall(r'returned "(\w+)"', str(error))
+            raise SimulationFailed(flags[0] if flags else str(error)) from None
         states = np.array(end["xf"] if damped else ca.vertcat(end["xf"], end["zf"]))
         depth, closing, force = (np.array(row).ravel() for row in simulator.observe(states, p))
         return Run(np.linspace(0, span, NODES + 1), states, depth, closing, force)

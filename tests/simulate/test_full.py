@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The nonlinear robot: against MuJoCo, and where it must agree with simpler models."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+from oracles import configurations
+
+from softimpact.robots import built_in_robots
+from softimpact.simulate import Approach, simulate_impact
+from softimpact.symbolic import (
+    Contact,
+    ImpactModel,
+    InvalidValue,
+    Robot,
+    approach_velocity,
+    body_region,
+    drives,
+    impact_model,
+    load_robot,
+    unit_direction,
+)
+from softimpact.symbolic.rigid import Array
+
+HEAD = Contact(body_region("head"))
+CHEST = Contact(body_region("chest"))
+POSE = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
+ALONG_Y = np.array([0.0, 1.0, 0.0])
+
+
+def with_elastic_joints(path: Path, stiffness: float) -> mujoco.MjModel:
+    """Let a second hinge on the same axis, with a spring, follow every joint of an MJCF."""
+    spec = mujoco.MjSpec.from_file(str(path))
+    spec.option.gravity = [0, 0, 0]
+    for joint in list(spec.joints):
+        spring = joint.parent.add_joint(name=f"{joint.name}_spring", axis=joint.axis)
+        spring.pos, spring.stiffness = joint.pos, [stiffness, 0, 0]
+    model = spec.compile()
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+    return model
+
+
+def peak_by_mujoco(
+    model: mujoco.MjModel,
+    approach: Approach,
+    link_velocity: Array,
+    coordinates: slice,
+    site: str,
+    contact: Contact,
+    duration: float,
+) -> float:
+    """Step MuJoCo by 5 µs with the contact force applied from outside; return the largest."""
+    data = mujoco.MjData(model)
+    model.opt.timestep, model.opt.integrator = 5e-6, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    data.qpos[coordinates] = approach.q
+    data.qvel[coordinates] = approach.speed * link_velocity
+    mujoco.mj_forward(model, data)
+    point, n = model.site(site), unit_direction(approach.direction)
+    start, body = data.site_xpos[point.id].copy(), int(np.ravel(point.bodyid)[0])
+    x_0, highest, step = 0.0, 0.0, model.opt.timestep
+    for _ in range(round(duration / step)):
+        x_c = float(n @ (data.site_xpos[point.id] - start))
+        x_0 = node_after(step, x_0, x_c, contact)
+        force = contact.hertz_stiffness * max(x_c - x_0, 0.0) ** 1.5
+        highest = max(highest, force)
+        data.qfrc_applied[:] = 0
+        mujoco.mj_applyFT(
+            model, data, -force * n, np.zeros(3), data.site_xpos[point.id], body, data.qfrc_applied
+        )
+        mujoco.mj_step(model, data)
+    return highest
+
+
+def node_after(step: float, x_0: float, x_c: float, contact: Contact) -> float:
+    """Implicit Euler step of c_h ẋ_0 = f_c − k_h x_0."""
+    k_f, k_h, c_h = contact.hertz_stiffness, contact.region.stiffness, contact.region.damping
+    x = x_0
+    for _ in range(8):
+        depth = max(x_c - x, 0.0)
+        residual = c_h * (x - x_0) / step - k_f * depth**1.5 + k_h * x
+        x -= residual / (c_h / step + 1.5 * k_f * depth**0.5 + k_h)
+    return x
+
+
+def test_panda_agrees_with_mujoco(panda: Robot) -> None:
+    model = impact_model(panda, drives_=drives(panda, 3e3))
+    approach = Approach(POSE, np.array([0.4, 1.0, -0.3]), 1.5)
+    ours = simulate_impact(model, approach, HEAD, "full")
+    linear = simulate_impact(model, approach, HEAD)
+    theirs = peak_by_mujoco(
+        with_elastic_joints(built_in_robots()["panda"], 3e3),
+        approach,
+        approach_velocity(model, POSE, unit_direction(approach.direction)),
+        slice(0, None, 2),  # motors; deflections are between them
+        "hand_tcp",
+        HEAD,
+        ours.time_of_first_contact_peak + 1e-3,
+    )
+    assert ours.first_contact == pytest.approx(theirs, rel=1e-3)
+    assert abs(ours.first_contact - theirs) < 0.3 * abs(linear.first_contact - theirs)
+
+
+def test_rr_agrees_with_mujoco() -> None:
+    robot = load_robot("rr")
+    approach = Approach(np.array([0.2, 0.0, 0.9, 0.0]), np.array([1.0, 0.5, 0.0]), 3.0)
+    model = impact_model(robot, "P")
+    ours = simulate_impact(model, approach, CHEST, "full")
+    linear = simulate_impact(model, approach, CHEST)
+    theirs = peak_by_mujoco(
+        mujoco.MjModel.from_xml_path(str(built_in_robots()["rr"])),
+        approach,
+        approach_velocity(model, approach.q, unit_direction(approach.direction)),
+        slice(None),
+        "P",
+        CHEST,
+        ours.time_of_first_contact_peak + 1e-3,
+    )
+    assert ours.first_contact == pytest.approx(theirs, rel=1e-3)
+    assert abs(ours.first_contact - theirs) < 0.3 * abs(linear.first_contact - theirs)
+
+
+def every_kind_of_drive(robot: Robot) -> list[ImpactModel]:
+    some = np.array([np.inf, 8e3, 1e3, 9e3, np.inf, 5e3, 1e4])
+    gravity = (1.0, -2.0, -9.0)
+    return [
+        impact_model(robot),
+        impact_model(robot, drives_=drives(robot, 1e3), gravity=gravity),
+        impact_model(robot, drives_=drives(robot, some, position_gain=1e4), gravity=gravity),
+        impact_model(robot, drives_=drives(robot, some, computed_torque_gain=6050.0)),
+    ]
+
+
+@pytest.mark.parametrize("kind", range(4))
+def test_slow_impacts_are_linear(panda: Robot, kind: int) -> None:
+    model = every_kind_of_drive(panda)[kind]
+    errors = []
+    for speed in (1e-2, 1e-3):
+        approach = Approach(POSE, np.array([0.5, 1.0, 0.3]), speed)
+        full = simulate_impact(model, approach, CHEST, "full")
+        linear = simulate_impact(model, approach, CHEST)
+        errors.append(abs(full.first_contact / linear.first_contact - 1))
+    assert errors[1] < 2e-5
+    assert errors[1] < 0.2 * errors[0]  # in proportion to speed
+
+
+def test_linearised_is_near_where_joints_need_not_rush(panda: Robot) -> None:
+    errors = []
+    for i, q in enumerate(configurations(panda, 20, seed=3)):
+        random = np.random.default_rng(i)
+        model = impact_model(panda, drives_=drives(panda, 10 ** random.uniform(3, 5)))
+        n = unit_direction(random.normal(size=3))
+        if np.linalg.norm(approach_velocity(model, q, n)) > 4:  # rad/s for 1 m/s
+            continue
+        contact = (HEAD, CHEST)[i % 2]
+        full = simulate_impact(model, Approach(q, n, 1.0), contact, "full")
+        linear = simulate_impact(model, Approach(q, n, 1.0), contact)
+        errors.append(abs(full.first_contact / linear.first_contact - 1))
+    assert len(errors) > 8
+    assert np.mean(errors) < 0.006
+    assert max(errors) < 0.025
+    assert min(errors) > 1e-6  # the two are not the same model
+
+
+def test_turning_about_the_base_axis_changes_nothing(panda: Robot) -> None:
+    model = impact_model(panda, drives_=drives(panda, 5e3), gravity=(0.0, 0.0, -9.81))
+    angle = 0.8
+    c, s = np.cos(angle), np.sin(angle)
+    here = simulate_impact(model, Approach(POSE, ALONG_Y, 1.0), HEAD, "full")
+    turned = Approach(POSE + angle * np.eye(7)[0], np.array([-s, c, 0.0]), 1.0)
+    there = simulate_impact(model, turned, HEAD, "full")
+    np.testing.assert_allclose(there.force, here.force, atol=1e-7 * here.first_contact)
+
+
+def test_passive_joints_must_be_at_rest() -> None:
+    model = impact_model(load_robot("rr"), "P")
+    approach = Approach(np.array([0.0, 0.0, 1.0, 0.01]), ALONG_Y, 1.0)
+    with pytest.raises(InvalidValue, match="joint 'q4' has no motor and is not at rest"):
+        simulate_impact(model, approach, HEAD, "full")
