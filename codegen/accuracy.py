@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Golden results of a package's functions, and what single precision loses of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from decimal import Context, Decimal, localcontext
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .evaluate import evaluate_exactly, evaluate_rounded
+from .exact import DIGITS
+from .functions import CFunction, Output
+from .samples import Sample, as_columns
+
+MARGIN = 4.0
+"""Stated float bound over the largest error measured: for other C libraries and fused
+multiply-adds, and for the configurations between those measured."""
+
+DOUBLE_ERROR = 1e-12
+"""Bound on a double build's error that holds for all but very long chains."""
+
+
+def golden_results(function: CFunction, samples: Sequence[Sample]) -> list[list[float]]:
+    """Return the compared entries of all outputs for each sample, right to the last bit."""
+    results = []
+    for sample in samples:
+        arguments: list[Sequence[float | Decimal]] = [sample.q, _exact_unit(sample.n)]
+        arguments += sample.parameters
+        values = evaluate_exactly(function.graph, arguments)[: len(function.outputs)]
+        results.append([entry for output in values for entry in output])
+    return results
+
+
+def _exact_unit(n: Sequence[float]) -> list[Decimal]:
+    with localcontext(Context(prec=DIGITS)):
+        length = sum((Decimal(x) * Decimal(x) for x in n), Decimal(0)).sqrt()
+        return [Decimal(x) / length for x in n]
+
+
+def is_regular(function: CFunction, samples: Sequence[Sample]) -> NDArray[np.bool_]:
+    """Return for which samples the function answers instead of reporting a singularity."""
+    return _evaluate(function, samples, np.float64)[1]
+
+
+def double_error(
+    function: CFunction, samples: Sequence[Sample], golden: Sequence[Sequence[float]]
+) -> float:
+    """Return the bound on a double build's error against exact results; at least 1e-12."""
+    reference, _ = _evaluate(function, samples, np.float64)
+    exact = np.array(golden).T
+    first, worst = 0, 0.0
+    for output, found in zip(function.outputs, reference, strict=True):
+        right = exact[first : first + len(found)]
+        worst = max(worst, float(_error(output, found, right).max()))
+        first += len(found)
+    return max(DOUBLE_ERROR, _rounded_up(MARGIN * worst) if worst else 0.0)
+
+
+def float_error(function: CFunction, samples: Sequence[Sample]) -> float:
+    """Return the bound on a float build's error that a package states.
+
+    It is ``MARGIN`` times the largest error over the samples, rounded up to one digit.
+    """
+    reference, regular = _evaluate(function, samples, np.float64)
+    narrow, still_regular = _evaluate(function, samples, np.float32)
+    both = regular & still_regular
+    worst = 0.0
+    for output, wide, got in zip(function.outputs, reference, narrow, strict=True):
+        worst = max(worst, float(_error(output, got[:, both], wide[:, both]).max()))
+    return _rounded_up(MARGIN * max(worst, float(np.finfo(np.float32).eps)))
+
+
+def _error(output: Output, found: NDArray[Any], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Error of each sample's entries over the largest of them, or absolute for shares of 1."""
+    scale: Any = 1.0 if output.share else abs(right).max(axis=0)
+    return np.asarray(abs(found.astype(float) - right).max(axis=0) / scale)
+
+
+def _rounded_up(value: float) -> float:
+    exponent = math.floor(math.log10(value))
+    return float(f"{math.ceil(value / 10.0**exponent)}e{exponent}")
+
+
+def _evaluate(
+    function: CFunction, samples: Sequence[Sample], kind: type[np.floating[Any]]
+) -> tuple[list[NDArray[Any]], NDArray[np.bool_]]:
+    """Return all outputs, and for which samples all guards hold."""
+    q, n, *parameters = as_columns(samples)
+    arguments = [q, _rounded_unit(n, kind), *parameters]
+    values = evaluate_rounded(function.graph, arguments, kind)
+    regular = np.ones(len(samples), dtype=bool)
+    outputs = len(function.outputs)
+    for guard, (value,) in zip(function.guards, values[outputs:], strict=True):
+        regular &= (value > guard.low) & (guard.high is None or value < guard.high)
+    return values[:outputs], regular
+
+
+def _rounded_unit(n: NDArray[np.float64], kind: type[np.floating[Any]]) -> NDArray[np.float64]:
+    narrow = n.astype(kind)
+    narrow = narrow / abs(narrow).max(axis=0)
+    length = np.sqrt(narrow[0] * narrow[0] + narrow[1] * narrow[1] + narrow[2] * narrow[2])
+    return np.asarray(narrow / length, dtype=np.float64)

@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a package computes: its C functions as expressions over one set of symbols."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic import (
+    Drives,
+    ImpactModel,
+    Matrix,
+    Robot,
+    directional_giaf,
+    giaf,
+    giif,
+)
+
+from .graph import Graph, graph_of
+
+IMMOVABLE = 1e3
+"""A contact point counts as unable to move where it feels this many times the robot's mass."""
+
+CHAIN_ENDS = 1e-10
+"""Square of the share of a mass's pull that must reach further masses for a chain to go on."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A field of the parameter struct, with one entry a joint."""
+
+    name: str
+    unit: str
+    meaning: str
+    positive: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Output:
+    """What a C function writes.
+
+    Attributes:
+        name: of the struct's field or of the argument.
+        value: SX, a scalar, a column or a matrix.
+        unit: of its entries.
+        meaning: in words.
+        symmetric: whether a square matrix is.
+        share: whether it is a share of 1, whose error counts absolutely.
+    """
+
+    name: str
+    value: Matrix
+    unit: str
+    meaning: str
+    symmetric: bool = False
+    share: bool = False
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape as a C array; () for a scalar."""
+        rows, columns = self.value.shape
+        if rows == columns == 1:
+            return ()
+        return (rows * columns,) if 1 in (rows, columns) else (rows, columns)
+
+    @property
+    def places(self) -> list[tuple[int, ...]]:
+        """Return the C indices of the entries that are compared: one of two that are equal."""
+        return [
+            place for place in np.ndindex(self.shape) if not self.symmetric or place[0] >= place[1]
+        ]
+
+    def entry(self, place: tuple[int, ...]) -> Matrix:
+        """Return the expression at C indices."""
+        if len(place) == 2:
+            return self.value[place[0], place[1]]
+        return self.value[place[0] if place else 0]
+
+
+@dataclass(frozen=True, eq=False)
+class Guard:
+    """A number that must lie between two bounds, or else the configuration is singular."""
+
+    value: Matrix
+    low: float
+    high: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class CFunction:
+    """A function of the package.
+
+    Attributes:
+        name: without the package's prefix.
+        summary: one line for the header.
+        outputs: one is an argument of its own, several share a struct.
+        direction: whether it takes the direction of impact n.
+        parameters: names of the struct's fields it reads.
+        guards: what tells singular configurations apart.
+    """
+
+    name: str
+    summary: str
+    outputs: tuple[Output, ...]
+    symbols: tuple[Matrix, ...] = field(repr=False)
+    direction: bool = False
+    parameters: tuple[str, ...] = ()
+    guards: tuple[Guard, ...] = ()
+
+    @cached_property
+    def graph(self) -> Graph:
+        """The outputs' compared entries, then the guards."""
+        values = [ca.vertcat(*[o.entry(place) for place in o.places]) for o in self.outputs]
+        return graph_of(self.symbols, [*values, *(guard.value for guard in self.guards)])
+
+    @cached_property
+    def flops(self) -> int:
+        """Operations for the outputs; checks, sines and cosines do not count."""
+        return self.graph.only(range(len(self.outputs))).flops
+
+    @property
+    def sines_and_cosines(self) -> int:
+        """How many sines and cosines it takes."""
+        return self.graph.count(ca.OP_SIN, ca.OP_COS)
+
+
+def parameters_of(robot: Robot) -> tuple[Parameter, ...]:
+    """Return the fields of a robot's parameter struct."""
+    rotors = "rotor inertia, reflected to the joint"
+    gains = "proportional gain of the motor's controller"
+    if not is_elastic(robot):
+        return (
+            Parameter("rotor_inertia", "kg m^2", f"{rotors}; may be 0", positive=False),
+            Parameter("position_gain", "N m/rad", f"{gains}", positive=False),
+        )
+    return (
+        Parameter("joint_stiffness", "N m/rad", "stiffness of the joint's spring", positive=True),
+        Parameter("rotor_inertia", "kg m^2", rotors, positive=True),
+        Parameter("position_gain", "N m/rad", f"{gains}", positive=False),
+    )
+
+
+def is_elastic(robot: Robot) -> bool:
+    """Whether every joint gets a spring behind its motor.
+
+    A robot with passive joints or with springs of its own describes its compliance itself.
+    """
+    return all(robot.actuated) and not any(joint.stiffness for joint in robot.joints)
+
+
+def functions_of(
+    robot: Robot, tip: str, gravity: tuple[float, float, float], chain_order: int
+) -> tuple[CFunction, ...]:
+    """Return all functions of a robot's package.
+
+    Those of the operational space inertia are left out where the contact point cannot move in all
+    three directions at any configuration.
+    """
+    builder = _Builder(robot, tip, gravity)
+    functions = [
+        builder.mass_matrix(),
+        builder.jacobian(),
+        builder.generalised_mass_matrix(),
+        builder.stiffness_matrix(),
+        builder.contact_jacobian(),
+        builder.reflected_mass(),
+        builder.reduced_model(),
+        builder.chain(chain_order),
+    ]
+    if builder.moves_in_space():
+        functions += [builder.osim(), builder.giaf(), builder.directional_giaf()]
+    return tuple(functions)
+
+
+class _Builder:
+    """Holds the symbols that all functions share."""
+
+    def __init__(self, robot: Robot, tip: str, gravity: tuple[float, float, float]) -> None:
+        n = robot.n
+        self.q, self.n = ca.SX.sym("q", n), ca.SX.sym("n", 3)
+        self.values = {p.name: ca.SX.sym(p.name, n) for p in parameters_of(robot)}
+        elastic = (is_elastic(robot),) * n
+        gains = self.values["position_gain"] * ca.sparsify(
+            ca.DM([float(a) for a in robot.actuated])
+        )
+        springs = self.values.get("joint_stiffness", ca.SX(n, 1))
+        drives = Drives(self.values["rotor_inertia"], springs, elastic, gains)
+        self.model = ImpactModel(robot, tip, drives, gravity)
+        moved = sum(joint.inertia.mass for joint in robot.joints)
+        self.heaviest = float(f"{IMMOVABLE * moved:.2g}")
+
+    def moves_in_space(self) -> bool:
+        """Whether the contact point can move in all directions somewhere."""
+        q = np.random.default_rng(1).uniform(-1, 1, self.model.robot.n)
+        return bool(np.linalg.matrix_rank(np.array(self.model.jacobian(ca.DM(q))), 1e-6) == 3)
+
+    def _function(
+        self, name: str, summary: str, outputs: tuple[Output, ...], guards: tuple[Guard, ...] = ()
+    ) -> CFunction:
+        symbols = (self.q, self.n, *self.values.values())
+        read = {symbol.name() for output in outputs for symbol in ca.symvar(output.value)}
+
+        def reads(vector: Matrix) -> bool:
+            return any(vector[i].name() in read for i in range(vector.numel()))
+
+        parameters = tuple(key for key, symbol in self.values.items() if reads(symbol))
+        return CFunction(name, summary, outputs, symbols, reads(self.n), parameters, guards)
+
+    def _movable(self, mass: Matrix) -> Guard:
+        return Guard(mass, 0.0, self.heaviest)
+
+    def mass_matrix(self) -> CFunction:
+        M = Output("M", self.model.mass_matrix(self.q), "kg m^2", "links only", symmetric=True)
+        return self._function("mass_matrix", "Mass matrix M(q) of the links, without rotors.", (M,))
+
+    def jacobian(self) -> CFunction:
+        J = Output("J", self.model.jacobian(self.q), "m/rad", "base axes")
+        summary = "Translational Jacobian J(q) of the contact point: velocity = J dq/dt."
+        return self._function("jacobian", summary, (J,))
+
+    def generalised_mass_matrix(self) -> CFunction:
+        M0 = self.model.generalised_mass(self.q).matrix
+        output = Output("M0", ca.densify(M0), "kg m^2", "", symmetric=True)
+        summary = "Mass matrix M0 over the generalised coordinates (MSM Eq. 42)."
+        return self._function("generalised_mass_matrix", summary, (output,))
+
+    def stiffness_matrix(self) -> CFunction:
+        K0 = ca.densify(self.model.generalised_stiffness(self.q))
+        output = Output("K0", K0, "N m/rad", "", symmetric=True)
+        summary = "Stiffness matrix K0 over the generalised coordinates (MSM Eq. 45)."
+        return self._function("stiffness_matrix", summary, (output,))
+
+    def contact_jacobian(self) -> CFunction:
+        row = ca.densify(self.model.contact_jacobian(self.q, self.n))
+        summary = "Row J_c = n'J over the generalised coordinates (MSM Eq. 4)."
+        return self._function("contact_jacobian", summary, (Output("J_c", row, "m/rad", ""),))
+
+    def reflected_mass(self) -> CFunction:
+        m_c = self.model.reflected_mass(self.q, self.n)
+        output = Output("m_c", m_c, "kg", "mass felt at the contact point")
+        summary = "Mass m_c that the contact point feels along n (MSM Eq. 36)."
+        return self._function("reflected_mass", summary, (output,), (self._movable(m_c),))
+
+    def reduced_model(self) -> CFunction:
+        reduced = self.model.reduced(self.q, self.n)
+        outputs = (
+            Output("m_c", reduced.m_c, "kg", "mass felt at the contact point"),
+            Output("k_r", reduced.k_r, "N/m", "reflected stiffness"),
+            Output("m_a", reduced.m_a, "kg", "mass on the actuators' side"),
+        )
+        summary = "Two masses and a spring that stand for the robot along n (MSM Eq. 36-38)."
+        guards = (self._movable(reduced.m_c),)
+        return self._function("reduced_model", summary, outputs, guards)
+
+    def chain(self, order: int) -> CFunction:
+        chain = self.model.chain(self.q, self.n, order)
+        mass, k = list(chain.mass), list(chain.stiffness)
+        guards = [self._movable(mass[0])]
+        for i in range(1, order):  # how much of the pull of mass i goes on to the next
+            own = (k[i - 1] + k[i - 2] if i > 1 else k[i - 1]) ** 2 / mass[i - 1]
+            guards.append(Guard(k[i - 1] ** 2 / (mass[i] * own), CHAIN_ENDS))
+        outputs = (
+            Output("mass", ca.vertcat(*mass), "kg", "the contact force acts on the first"),
+            Output("stiffness", ca.vertcat(*k), "N/m", "[i] joins mass i and i+1; last to ground"),
+        )
+        summary = f"Chain of {order} masses that stands for the robot along n."
+        return self._function("chain", summary, outputs, tuple(guards))
+
+    def osim(self) -> CFunction:
+        real, free = self.model.mobility(self.q), self.model.free_mobility(self.q)
+        outputs = (
+            Output("Lambda", real.inertia, "kg", "with rotors (GIAF Eq. 13)", symmetric=True),
+            Output("Lambda_F", free.inertia, "kg", "without (GIAF Eq. 24)", symmetric=True),
+        )
+        guards = (self._in_space(real.inertia), self._in_space(free.inertia))
+        summary = "Operational space inertias of the contact point, in the base's axes."
+        return self._function("osim", summary, outputs, guards)
+
+    def _in_space(self, inertia: Matrix) -> Guard:
+        return self._movable(ca.trace(inertia))
+
+    def giaf(self) -> CFunction:
+        """Return GIAF and GIIF in the axes in which they take the fewest operations."""
+        path = self.model.robot.ancestors(self.model.robot.frame(self.model.tip).joint)
+        candidates = [self._giaf_in(axes) for axes in (-1, *reversed(path))]
+        return min(candidates, key=lambda function: function.flops)
+
+    def _giaf_in(self, axes: int) -> CFunction:
+        real, free = self.model.mobility(self.q, axes), self.model.free_mobility(self.q, axes)
+        outputs = (
+            Output(
+                "giaf",
+                giaf(free, real),
+                "dimensionless",
+                "absorption factor (GIAF Eq. 28)",
+                share=True,
+            ),
+            Output(
+                "giif",
+                giif(free, real),
+                "dimensionless",
+                "increment factor (GIAF Eq. 27)",
+                share=True,
+            ),
+        )
+        guards = (self._in_space(real.inertia), self._in_space(free.inertia))
+        return self._function("giaf", "Generalised impact factors.", outputs, guards)
+
+    def directional_giaf(self) -> CFunction:
+        real, free = self.model.mobility(self.q), self.model.free_mobility(self.q)
+        value = directional_giaf(free, real, self.n)
+        guards = (self._in_space(real.inertia), self._in_space(free.inertia))
+        output = Output("giaf", value, "dimensionless", "1 if rotors do not count", share=True)
+        summary = "Share of the inertia along n that is not the rotors' (GIAF Eq. 29)."
+        return self._function("directional_giaf", summary, (output,), guards)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a generated package says about itself; it depends on nothing but its input."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Literal
+
+GENERATOR = "softimpact.codegen"
+
+MANIFEST = "manifest.json"
+"""File name in the package's root."""
+
+Real = Literal["double", "float"]
+
+
+@dataclass(frozen=True)
+class FunctionRecord:
+    """Cost and accuracy of one function.
+
+    Attributes:
+        name: of the C function.
+        flops: additions, multiplications and the like, without checks, sines and cosines.
+        sines_and_cosines: how many it takes.
+        double_error: bound of a double build's error against exact arithmetic.
+        float_error: bound of a float build's error; both are over the largest entry of an output,
+            or absolute for shares of 1.
+    """
+
+    name: str
+    flops: int
+    sines_and_cosines: int
+    double_error: float
+    float_error: float
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """Summary of a package.
+
+    Attributes:
+        name: prefix of all its names.
+        version: of softimpact.
+        model: name of the robot.
+        tip: its contact frame.
+        digest: hash of the robot's numbers, ``Robot.digest``.
+        real: default number type.
+        joints: names in the order of q.
+        coordinates: number of generalised coordinates.
+        gravity: whose curvature enters K0 [m/s²]; zero leaves it out.
+        chain_order: masses of the chain.
+        functions: all functions.
+        files: SHA-256 of each file by path.
+    """
+
+    name: str
+    version: str
+    model: str
+    tip: str
+    digest: str
+    real: Real
+    joints: tuple[str, ...]
+    coordinates: int
+    gravity: tuple[float, ...]
+    chain_order: int
+    functions: tuple[FunctionRecord, ...]
+    files: Mapping[str, str]
+
+    def to_json(self) -> str:
+        """Return the text of ``manifest.json``."""
+        content = {"generator": GENERATOR, **asdict(self), "files": dict(self.files)}
+        return json.dumps(content, indent=2, ensure_ascii=False) + "\n"

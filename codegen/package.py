@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Portable C99 packages of a robot's impact model."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+import softimpact
+from softimpact.symbolic import Drives, InvalidValue, Robot
+from softimpact.symbolic.impact_model import WEIGHTLESS
+
+from .accuracy import double_error, float_error, golden_results, is_regular
+from .files import replace_package, require_own, sha256
+from .functions import CFunction, Parameter, functions_of, is_elastic, parameters_of
+from .manifest import MANIFEST, FunctionRecord, Manifest, Real
+from .render import Default, Package, render
+from .samples import Sample, draw_samples
+from .source import CSource
+
+GOLDEN_CASES = 12
+"""Inputs in a package's own test."""
+
+MEASURED_SAMPLES = 4096
+"""Inputs over which float errors are measured."""
+
+LONGEST_CHAIN = 8
+"""Most masses of a generated chain; longer ones lose their last masses to rounding."""
+
+
+def generate_package(
+    robot: Robot,
+    out: str | Path,
+    *,
+    tip: str | None = None,
+    real: Real = "double",
+    name: str | None = None,
+    drives_: Drives | None = None,
+    gravity: tuple[float, float, float] = WEIGHTLESS,
+    chain_order: int = 3,
+) -> Manifest:
+    """Write a C99 package that computes a robot's impact model.
+
+    Args:
+        robot: any robot with a tree of hinges and slides, see ``load_robot``.
+        out: folder of the package; replaced as a whole if it holds an older package.
+        tip: frame whose origin is the contact point; default the robot's own.
+        real: number type that the package uses unless its build says otherwise.
+        name: prefix of all C names; default the robot's name.
+        drives_: numbers for the default parameters; without them the rotor inertias are the
+            file's armatures, gains are 0, and joint stiffnesses are left for the caller to set.
+        gravity: whose curvature enters K0 [m/s²]; zero leaves it out.
+        chain_order: number of masses of the chain.
+
+    Returns:
+        What was generated, as in the package's ``manifest.json``.
+
+    Raises:
+        FrameNotFound: the robot has no such tip.
+        InvalidValue: an argument outside its meaning.
+        ForeignFiles: the folder holds files that the generator did not write.
+        OutputNotWritable: the operating system refuses.
+    """
+    folder = Path(out)
+    require_own(folder)
+    frame = robot.frame(tip or robot.tip or "").name
+    _check(robot, real, gravity, chain_order)
+    prefix = c_name(name or robot.name)
+    parameters = parameters_of(robot)
+    golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
+    measured = draw_samples(robot, parameters, MEASURED_SAMPLES, seed=2)
+    functions = functions_of(robot, frame, gravity, chain_order)
+    golden = _regular(functions, golden)
+    tables = {function.name: golden_results(function, golden) for function in functions}
+    sources = []
+    for function in functions:
+        record = _record(prefix, function, golden, tables[function.name], measured)
+        sources.append(CSource(prefix, robot.n, parameters, function, record))
+    package = Package(
+        prefix=prefix,
+        robot=robot,
+        tip=frame,
+        real=real,
+        gravity=gravity,
+        chain_order=chain_order,
+        parameters=parameters,
+        defaults=_defaults(robot, parameters, drives_),
+        functions=tuple(sources),
+        samples=tuple(golden),
+        tables=tables,
+    )
+    files = render(package)
+    manifest = _manifest(package, {path: sha256(text) for path, text in files.items()})
+    replace_package(folder, {**files, MANIFEST: manifest.to_json()})
+    return manifest
+
+
+def c_name(name: str) -> str:
+    """Return a C identifier in lower case for a robot's name."""
+    words = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+    return words if words[:1].isalpha() else f"robot_{words}".rstrip("_")
+
+
+def _check(robot: Robot, real: str, gravity: Sequence[float], chain_order: int) -> None:
+    if real not in ("double", "float"):
+        raise InvalidValue("real", f"must be 'double' or 'float', not '{real}'")
+    if len(gravity) != 3 or not np.isfinite(gravity).all():
+        raise InvalidValue("gravity", "needs three finite numbers [x, y, z]")
+    longest = min(LONGEST_CHAIN, robot.n * (2 if is_elastic(robot) else 1))
+    if not 1 <= chain_order <= longest:
+        raise InvalidValue("chain_order", f"must be from 1 to {longest}, not {chain_order}")
+
+
+def _regular(functions: Sequence[CFunction], samples: Sequence[Sample]) -> list[Sample]:
+    """Return golden inputs to which all functions have an answer."""
+    regular = np.all([is_regular(function, samples) for function in functions], axis=0)
+    return [samples[i] for i in np.flatnonzero(regular)[:GOLDEN_CASES]]
+
+
+def _record(
+    prefix: str,
+    function: CFunction,
+    golden: Sequence[Sample],
+    table: Sequence[Sequence[float]],
+    measured: Sequence[Sample],
+) -> FunctionRecord:
+    return FunctionRecord(
+        name=f"{prefix}_{function.name}",
+        flops=function.flops,
+        sines_and_cosines=function.sines_and_cosines,
+        double_error=double_error(function, golden, table),
+        float_error=float_error(function, measured),
+    )
+
+
+def _defaults(
+    robot: Robot, parameters: Sequence[Parameter], drives_: Drives | None
+) -> tuple[Default, ...]:
+    """Return the numbers known of each parameter; None where the caller must set them."""
+    known: dict[str, Sequence[float] | None] = {
+        "joint_stiffness": None,
+        "rotor_inertia": robot.armature.tolist(),
+        "position_gain": [0.0] * robot.n,
+    }
+    if drives_ is not None:
+        known = {
+            "joint_stiffness": np.array(drives_.springs).ravel().tolist(),
+            "rotor_inertia": np.array(drives_.rotors).ravel().tolist(),
+            "position_gain": np.array(drives_.gains).ravel().tolist(),
+        }
+    defaults = []
+    for parameter in parameters:
+        values = known[parameter.name]
+        usable = values is not None and (not parameter.positive or min(values) > 0)
+        defaults.append(Default(parameter, tuple(values) if usable and values else None))
+    return tuple(defaults)
+
+
+def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
+    return Manifest(
+        name=package.prefix,
+        version=softimpact.__version__,
+        model=package.robot.name,
+        tip=package.tip,
+        digest=package.robot.digest(),
+        real=package.real,
+        joints=package.robot.joint_names,
+        coordinates=package.coordinates,
+        gravity=package.gravity,
+        chain_order=package.chain_order,
+        functions=tuple(source.record for source in package.functions),
+        files=hashes,
+    )

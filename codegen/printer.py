@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""C99 statements from a graph.
+
+Every statement defines one constant. A value that is read once is written where it is read, as
+long as the line stays short; sines and cosines of joint angles come first and are called s1, c1.
+The order of operations and every rounding are those of CasADi.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+
+from .graph import Graph
+from .operations import Binding, operation
+
+LINE = 100
+"""Longest line [columns], indentation included."""
+
+INDENT = "    "
+
+
+@dataclass(frozen=True)
+class Statements:
+    """C statements and the names of what they compute.
+
+    Attributes:
+        lines: definitions in order.
+        results: for each result of the graph, a C expression for each element: a name, or a
+            constant.
+    """
+
+    lines: tuple[str, ...]
+    results: tuple[tuple[str, ...], ...]
+
+
+def print_graph(
+    graph: Graph,
+    inputs: Sequence[Sequence[str]],
+    result_names: Sequence[Sequence[str]],
+    prefix: str,
+    angles: int | None = None,
+) -> Statements:
+    """Print a graph as C99.
+
+    Args:
+        graph: what to print.
+        inputs: C expression of each element of each input.
+        result_names: wanted name of each element of each result.
+        prefix: of the macros and of the type, e.g. ``panda`` for ``panda_real``, ``PANDA_SIN``.
+        angles: index of the input whose sines and cosines are named after their joint.
+    """
+    printer = _Printer(graph, inputs, prefix)
+    printer.name_sines(angles)
+    printer.name_results(result_names)
+    return printer.statements()
+
+
+@dataclass(frozen=True)
+class _Text:
+    """A C expression that may still be written into another one."""
+
+    text: str
+    binding: Binding
+
+    def within(self, least: Binding) -> str:
+        """Return the text as an operand of something that binds as tightly as ``least``."""
+        bare = self.binding >= least and not (least > Binding.SUM and self.text.startswith("-"))
+        return self.text if bare else f"({self.text})"
+
+
+class _Printer:
+    def __init__(self, graph: Graph, inputs: Sequence[Sequence[str]], prefix: str) -> None:
+        self.graph, self.inputs = graph, inputs
+        self.real, self.macro = f"{prefix}_real", f"{prefix.upper()}_"
+        self.uses = graph.uses()
+        self.names: dict[int, str] = {}
+        self.texts: dict[int, _Text] = {}
+        self.lines: list[str] = []
+        self.first: list[int] = []
+        self.temporaries = 0
+
+    def name_sines(self, angles: int | None) -> None:
+        """Name sines and cosines of a joint's angle, shifted or not, and put them first."""
+        found: list[tuple[int, int, int]] = []
+        for index, node in enumerate(self.graph.nodes):
+            if node.operation in (ca.OP_SIN, ca.OP_COS):
+                joint = self._joint(node.operands[0], angles)
+                if joint is not None:
+                    found.append((joint, -node.operation, index))
+        for joint, kind, index in sorted(found):
+            name = f"{'c' if -kind == ca.OP_COS else 's'}{joint + 1}"
+            if name not in self.names.values():
+                self.names[index] = name
+                self.first.append(index)
+
+    def _joint(self, index: int, angles: int | None) -> int | None:
+        """Return the joint whose angle a node is, up to a constant."""
+        nodes = self.graph.nodes
+        parts = [nodes[index], *(nodes[i] for i in nodes[index].operands)]
+        elements = [p.element for p in parts if p.operation == ca.OP_INPUT]
+        plain = all(p.operation in (ca.OP_INPUT, ca.OP_CONST) for p in parts[1:])
+        if not plain or len(elements) != 1 or elements[0][0] != angles:
+            return None
+        return elements[0][1]
+
+    def name_results(self, result_names: Sequence[Sequence[str]]) -> None:
+        """Name what is a result; the first of several equal results gives the name."""
+        for result, names in zip(self.graph.results, result_names, strict=True):
+            for index, name in zip(result, names, strict=True):
+                if self._is_computed(index):
+                    self.names.setdefault(index, name)
+
+    def _is_computed(self, index: int) -> bool:
+        return self.graph.nodes[index].operation not in (ca.OP_INPUT, ca.OP_CONST)
+
+    def statements(self) -> Statements:
+        """Print every node once."""
+        for index in self.first:
+            self._print_with_operands(index)
+        for index in range(len(self.graph.nodes)):
+            self._print(index)
+        results = tuple(
+            tuple(self.texts[index].text for index in result) for result in self.graph.results
+        )
+        return Statements(tuple(self.lines), results)
+
+    def _print_with_operands(self, index: int) -> None:
+        for operand in self.graph.nodes[index].operands:
+            self._print_with_operands(operand)
+        self._print(index)
+
+    def _print(self, index: int) -> None:
+        if index in self.texts:
+            return
+        node = self.graph.nodes[index]
+        if node.operation == ca.OP_CONST:
+            self.texts[index] = self._constant(node.value)
+        elif node.operation == ca.OP_INPUT:
+            argument, element = node.element
+            self.texts[index] = _Text(self.inputs[argument][element], Binding.ATOM)
+        else:
+            self._print_operation(index)
+
+    def _constant(self, value: float) -> _Text:
+        digits = repr(value)
+        digits = digits if "." in digits or "e" in digits else f"{digits}.0"
+        return _Text(f"{self.macro}R({digits})", Binding.ATOM)
+
+    def _print_operation(self, index: int) -> None:
+        node = self.graph.nodes[index]
+        known = operation(node.operation)
+        if known.repeats:
+            self._define(node.operands[0])
+        text = self._expression(index)
+        while len(self._definition("t0000", text)) > LINE:
+            longest = max(node.operands, key=lambda i: len(self.texts[i].text))
+            if not self._define(longest):
+                break
+            text = self._expression(index)
+        self.texts[index] = text
+        if index in self.names or self.uses[index] > 1:
+            self._define(index)
+
+    def _expression(self, index: int) -> _Text:
+        node = self.graph.nodes[index]
+        known = operation(node.operation)
+        operands = [
+            self.texts[operand].within(binding)
+            for operand, binding in zip(node.operands, known.operands, strict=True)
+        ]
+        return _Text(known.text.format(*operands, R=self.macro), known.binding)
+
+    def _define(self, index: int) -> bool:
+        """Give a value a name of its own; False if it has one or needs none."""
+        if not self._is_computed(index) or self.texts[index].text.isidentifier():
+            return False
+        name = self.names.get(index)
+        if name is None:
+            self.temporaries += 1
+            name = f"t{self.temporaries}"
+        self.lines.append(self._definition(name, self.texts[index]))
+        self.texts[index] = _Text(name, Binding.ATOM)
+        return True
+
+    def _definition(self, name: str, text: _Text) -> str:
+        return f"{INDENT}const {self.real} {name} = {text.text};"

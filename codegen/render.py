@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A package's files from its templates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import jinja2
+
+import softimpact
+from softimpact.symbolic import Robot
+
+from .functions import Parameter, is_elastic
+from .manifest import Real
+from .samples import Sample
+from .source import CSource
+
+TEMPLATES = Path(__file__).parent / "templates"
+
+
+@dataclass(frozen=True)
+class Default:
+    """Default values of a parameter; None where none are known."""
+
+    parameter: Parameter
+    values: tuple[float, ...] | None
+
+
+@dataclass(frozen=True, eq=False)
+class Package:
+    """Everything that the templates show.
+
+    Attributes:
+        prefix: of all C names.
+        robot: the rigid robot.
+        tip: contact frame.
+        real: default number type.
+        gravity: whose curvature enters K0 [m/s²].
+        chain_order: masses of the chain.
+        parameters: fields of the parameter struct.
+        defaults: of each of them.
+        functions: all C functions.
+        samples: golden inputs.
+        tables: golden results of each function by its short name.
+    """
+
+    prefix: str
+    robot: Robot
+    tip: str
+    real: Real
+    gravity: tuple[float, float, float]
+    chain_order: int
+    parameters: tuple[Parameter, ...]
+    defaults: tuple[Default, ...]
+    functions: tuple[CSource, ...]
+    samples: tuple[Sample, ...]
+    tables: Mapping[str, Sequence[Sequence[float]]]
+
+    @property
+    def elastic(self) -> bool:
+        """Whether every joint has a spring behind its motor."""
+        return is_elastic(self.robot)
+
+    @property
+    def coordinates(self) -> int:
+        """Number of generalised coordinates."""
+        return self.robot.n * (2 if self.elastic else 1)
+
+    def has(self, function: str) -> bool:
+        """Whether the package has a function of this short name."""
+        return function in self.tables
+
+
+def render(package: Package) -> dict[str, str]:
+    """Return the text of every file by its path in the package; the manifest is not among them."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        undefined=jinja2.StrictUndefined,
+        autoescape=False,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["number"] = _number
+    name = package.prefix
+    context = {
+        "package": package,
+        "name": name,
+        "NAME": name.upper(),
+        "robot": package.robot,
+        "n": package.robot.n,
+        "version": softimpact.__version__,
+    }
+    files = {
+        f"include/{name}.h": "header.h",
+        f"include/{name}_config.h": "config.h",
+        f"src/{name}_internal.h": "internal.h",
+        f"src/{name}_common.c": "common.c",
+        "test/golden.h": "golden.h",
+        "test/golden.c": "golden.c",
+        "test/run_tests.c": "run_tests.c",
+        "CMakeLists.txt": "CMakeLists.txt",
+        "README.md": "README.md",
+        "LICENSE": "LICENSE",
+    }
+    rendered = {
+        path: environment.get_template(f"{template}.jinja").render(context)
+        for path, template in files.items()
+    }
+    function = environment.get_template("function.c.jinja")
+    for source in package.functions:
+        rendered[f"src/{source.name}.c"] = function.render(context, f=source)
+    return dict(sorted(rendered.items()))
+
+
+def _number(value: float) -> str:
+    """Return the shortest decimal that reads back as the same double."""
+    return repr(float(value) + 0.0)

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""C functions as the templates show them: signatures, statements and checks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from .functions import CFunction, Output, Parameter
+from .graph import Graph, Node
+from .manifest import FunctionRecord
+from .printer import Statements, print_graph
+
+Q, DIRECTION = 0, 1
+"""Places of q and of the direction among a function's symbols."""
+
+
+@dataclass(frozen=True, eq=False)
+class CSource:
+    """A function of a package in C.
+
+    Attributes:
+        prefix: of the package's names.
+        joints: number of joints.
+        parameters: all fields of the parameter struct.
+        function: what it computes.
+        record: its cost and accuracy.
+    """
+
+    prefix: str
+    joints: int
+    parameters: Sequence[Parameter]
+    function: CFunction
+    record: FunctionRecord
+
+    @property
+    def name(self) -> str:
+        """Full name."""
+        return f"{self.prefix}_{self.function.name}"
+
+    @property
+    def struct(self) -> str | None:
+        """Type of the struct it writes; None if it has one output."""
+        return f"{self.name}_t" if len(self.function.outputs) > 1 else None
+
+    @property
+    def used_parameters(self) -> list[Parameter]:
+        """Fields of the parameter struct that it reads."""
+        return [p for p in self.parameters if p.name in self.function.parameters]
+
+    @property
+    def pointers(self) -> list[str]:
+        """Names of all arguments."""
+        inputs = ["q"]
+        if self.function.direction:
+            inputs.append("n")
+        if self.function.parameters:
+            inputs.append("p")
+        return [*inputs, self.output_argument]
+
+    @property
+    def output_argument(self) -> str:
+        """Name of the argument it writes to."""
+        return "out" if self.struct else self.function.outputs[0].name
+
+    @property
+    def arguments(self) -> list[str]:
+        """Declarations of all arguments."""
+        kinds = {
+            "q": f"const {self.prefix}_real q[{self.joints}]",
+            "n": f"const {self.prefix}_real n[3]",
+            "p": f"const {self.prefix}_params *p",
+        }
+        if self.struct:
+            written = f"{self.struct} *out"
+        else:
+            output = self.function.outputs[0]
+            star = "" if output.shape else "*"
+            written = f"{self.prefix}_real {star}{output.name}{_brackets(output)}"
+        return [*(kinds[name] for name in self.pointers[:-1]), written]
+
+    @property
+    def declaration(self) -> str:
+        """Prototype without the semicolon, wrapped if it is long."""
+        line = f"int {self.name}({', '.join(self.arguments)})"
+        if len(line) < 100:
+            return line
+        return f"int {self.name}(\n    " + ",\n    ".join(self.arguments) + ")"
+
+    def member(self, output: Output) -> str:
+        """Declaration of an output as a member of a struct or as a local variable."""
+        return f"{self.prefix}_real {output.name}{_brackets(output)}"
+
+    @cached_property
+    def statements(self) -> Statements:
+        """The computation."""
+        n = self.joints
+        inputs = [
+            [f"q[{i}]" for i in range(n)],
+            [f"u[{i}]" for i in range(3)],
+            *([f"p->{p.name}[{i}]" for i in range(n)] for p in self.parameters),
+        ]
+        names = [
+            *([self._local(output, place) for place in output.places] for output in self.outputs),
+            *([f"guard{i + 1}"] for i in range(len(self.function.guards))),
+        ]
+        return print_graph(self.function.graph, inputs, names, self.prefix, angles=Q)
+
+    @property
+    def outputs(self) -> tuple[Output, ...]:
+        """What it writes."""
+        return self.function.outputs
+
+    def _local(self, output: Output, place: tuple[int, ...]) -> str:
+        if not place:
+            return output.name if self.struct else "result"
+        joint = "_" if max(output.shape) > 9 else ""
+        return f"{output.name}_{joint.join(str(i + 1) for i in place)}"
+
+    @property
+    def guards(self) -> list[str]:
+        """Conditions of a regular configuration."""
+        macro = f"{self.prefix.upper()}_R"
+        conditions = []
+        for guard, (text,) in zip(self.function.guards, self._guard_texts, strict=True):
+            condition = f"{text} > {macro}({guard.low!r})"
+            if guard.high is not None:
+                condition += f" && {text} < {macro}({guard.high!r})"
+            conditions.append(condition)
+        return conditions
+
+    @property
+    def _guard_texts(self) -> tuple[tuple[str, ...], ...]:
+        return self.statements.results[len(self.outputs) :]
+
+    @property
+    def unchecked(self) -> list[str]:
+        """Names of results that may overflow, so that the function must look at them."""
+        if _is_bounded(self.function.graph):
+            return []
+        guarded = {
+            text
+            for guard, (text,) in zip(self.function.guards, self._guard_texts, strict=True)
+            if guard.high is not None
+        }
+        texts = [text for result in self.statements.results[: len(self.outputs)] for text in result]
+        return [
+            text for text in dict.fromkeys(texts) if text.isidentifier() and text not in guarded
+        ]
+
+    @property
+    def sparse_outputs(self) -> list[Output]:
+        """Matrices with so many zeros that these are written first, all at once."""
+        return [output for output in self.outputs if self._is_sparse(output)]
+
+    @property
+    def assignments(self) -> list[str]:
+        """Statements that write the outputs, without the zeros of sparse ones."""
+        lines = []
+        for output, texts in zip(self.outputs, self.statements.results, strict=False):
+            target = f"out->{output.name}" if self.struct else output.name
+            if not output.shape and not self.struct:
+                target = f"*{target}"
+            for place, text in zip(output.places, texts, strict=True):
+                if self._is_sparse(output) and text == self._zero:
+                    continue
+                mirrored = {place, place[::-1]} if output.symmetric else {place}
+                left = " = ".join(f"{target}{_index(at)}" for at in sorted(mirrored))
+                lines.append(f"{left} = {text};")
+        return lines
+
+    @property
+    def _zero(self) -> str:
+        return f"{self.prefix.upper()}_R(0.0)"
+
+    def _is_sparse(self, output: Output) -> bool:
+        texts = self.statements.results[self.outputs.index(output)]
+        return len(output.shape) == 2 and 2 * texts.count(self._zero) > len(texts)
+
+
+def _brackets(output: Output) -> str:
+    return _index(output.shape)
+
+
+def _index(place: tuple[int, ...]) -> str:
+    return "".join(f"[{i}]" for i in place)
+
+
+def _is_bounded(graph: Graph) -> bool:
+    """Whether sums and products of sines, cosines and the unit vector are all there is."""
+    turns = (ca.OP_SIN, ca.OP_COS)
+    plain = (ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_NEG, ca.OP_CONST)
+    angles = {i for i, node in enumerate(graph.nodes) if _is_input(node) and node.element[0] == Q}
+    for node in graph.nodes:
+        known = node.operation in (*turns, *plain) or _is_input(node)
+        outside = _is_input(node) and node.element[0] > DIRECTION
+        unturned = node.operation not in turns and not angles.isdisjoint(node.operands)
+        if not known or outside or unturned:
+            return False
+    return angles.isdisjoint(index for result in graph.results for index in result)
+
+
+def _is_input(node: Node) -> bool:
+    return node.operation == ca.OP_INPUT

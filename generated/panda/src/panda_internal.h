@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What the sources of panda share; not for their users. */
+#ifndef PANDA_INTERNAL_H
+#define PANDA_INTERNAL_H
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "panda.h"
+
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+#error "panda checks for numbers that are not finite: build it without -ffast-math"
+#endif
+
+#if defined(PANDA_USE_FLOAT)
+#define PANDA_R(x) x##f
+#define PANDA_F(function) function##f
+#define PANDA_REAL_MAX FLT_MAX
+#else
+#define PANDA_R(x) x
+#define PANDA_F(function) function
+#define PANDA_REAL_MAX DBL_MAX
+#endif
+
+#define PANDA_SIN(x) PANDA_F(sin)(x)
+#define PANDA_COS(x) PANDA_F(cos)(x)
+#define PANDA_EXP(x) PANDA_F(exp)(x)
+#define PANDA_LOG(x) PANDA_F(log)(x)
+#define PANDA_SQRT(x) PANDA_F(sqrt)(x)
+#define PANDA_FABS(x) PANDA_F(fabs)(x)
+#define PANDA_FMIN(x, y) PANDA_F(fmin)(x, y)
+#define PANDA_FMAX(x, y) PANDA_F(fmax)(x, y)
+#define PANDA_POW(x, y) PANDA_F(pow)(x, y)
+
+/* 1 if all numbers are finite; a comparison with a NaN is false. */
+static inline int panda_all_finite(const panda_real *x, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        if (!(PANDA_FABS(x[i]) <= PANDA_REAL_MAX)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Status of a parameter that must be positive. */
+static inline int panda_check_positive(const panda_real x[7])
+{
+    for (int i = 0; i < 7; ++i) {
+        if (!(x[i] > PANDA_R(0.0) && x[i] <= PANDA_REAL_MAX)) {
+            return panda_all_finite(&x[i], 1) ? PANDA_OUT_OF_RANGE : PANDA_NOT_FINITE;
+        }
+    }
+    return PANDA_OK;
+}
+
+/* Status of a parameter that must not be negative. */
+static inline int panda_check_not_negative(const panda_real x[7])
+{
+    for (int i = 0; i < 7; ++i) {
+        if (!(x[i] >= PANDA_R(0.0) && x[i] <= PANDA_REAL_MAX)) {
+            return panda_all_finite(&x[i], 1) ? PANDA_OUT_OF_RANGE : PANDA_NOT_FINITE;
+        }
+    }
+    return PANDA_OK;
+}
+
+/* Unit vector u along n; scaled first, so that no square over- or underflows. */
+static inline int panda_unit_vector(const panda_real n[3], panda_real u[3])
+{
+    if (!panda_all_finite(n, 3)) {
+        return PANDA_NOT_FINITE;
+    }
+    const panda_real xy = PANDA_FMAX(PANDA_FABS(n[0]), PANDA_FABS(n[1]));
+    const panda_real largest = PANDA_FMAX(xy, PANDA_FABS(n[2]));
+    if (!(largest > PANDA_R(0.0))) {
+        return PANDA_ZERO_DIRECTION;
+    }
+    const panda_real x = n[0]/largest;
+    const panda_real y = n[1]/largest;
+    const panda_real z = n[2]/largest;
+    const panda_real length = PANDA_SQRT(x*x + y*y + z*z);
+    u[0] = x/length;
+    u[1] = y/length;
+    u[2] = z/length;
+    return PANDA_OK;
+}
+
+#endif

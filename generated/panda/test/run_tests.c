@@ -1,0 +1,784 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Compares panda with its golden results and feeds it bad inputs; 1 on failure. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "golden.h"
+
+#if defined(PANDA_USE_FLOAT)
+#define BOUND(in_double, in_float) (in_float)
+#else
+#define BOUND(in_double, in_float) (in_double)
+#endif
+
+#define LENGTH(array) (sizeof(array)/sizeof((array)[0]))
+
+static int failures = 0;
+
+static void expect(int holds, const char *function, const char *what)
+{
+    if (!holds) {
+        ++failures;
+        printf("FAILED %s: %s\n", function, what);
+    }
+}
+
+/* Largest difference over the largest right entry, or absolute for shares of 1. */
+static double error_of(const double *found, const double *right, size_t count, int share)
+{
+    double difference = 0.0;
+    double scale = share ? 1.0 : 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        const double d = fabs(found[i] - right[i]);
+        difference = d <= difference ? difference : d;
+        scale = share ? scale : fmax(scale, fabs(right[i]));
+    }
+    return difference > 0.0 ? difference/scale : 0.0;
+}
+
+/* 1 if memory still holds the pattern that it was filled with. */
+static int is_untouched(const void *memory, size_t size)
+{
+    const unsigned char *bytes = memory;
+    for (size_t i = 0; i < size; ++i) {
+        if (bytes[i] != 0xA5u) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static void test_mass_matrix(void)
+{
+    const char *const name = "panda_mass_matrix";
+    panda_real M[7][7];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_mass_matrix[k];
+        expect(panda_mass_matrix(in->q, M) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[28];
+            size_t at = 0;
+            for (size_t i = 0; i < 7; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)M[i][j];
+                    expect(memcmp(&M[i][j], &M[j][i], sizeof M[i][j]) == 0,
+                           name, "M is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 2e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&M, 0xA5, sizeof M);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_mass_matrix(in.q, M) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_mass_matrix(in.q, M) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    expect(panda_mass_matrix(NULL, M) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_mass_matrix(in.q, NULL) == PANDA_NULL_POINTER,
+           name, "M is NULL");
+    expect(is_untouched(&M, sizeof M),
+           name, "nothing written for bad inputs");
+}
+
+static void test_jacobian(void)
+{
+    const char *const name = "panda_jacobian";
+    panda_real J[3][7];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_jacobian[k];
+        expect(panda_jacobian(in->q, J) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[21];
+            size_t at = 0;
+            for (size_t i = 0; i < 3; ++i) {
+                for (size_t j = 0; j < 7; ++j) {
+                    found[at++] = (double)J[i][j];
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 2e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&J, 0xA5, sizeof J);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_jacobian(in.q, J) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_jacobian(in.q, J) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    expect(panda_jacobian(NULL, J) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_jacobian(in.q, NULL) == PANDA_NULL_POINTER,
+           name, "J is NULL");
+    expect(is_untouched(&J, sizeof J),
+           name, "nothing written for bad inputs");
+}
+
+static void test_generalised_mass_matrix(void)
+{
+    const char *const name = "panda_generalised_mass_matrix";
+    panda_real M0[14][14];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_generalised_mass_matrix[k];
+        expect(panda_generalised_mass_matrix(in->q, &in->p, M0) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[105];
+            size_t at = 0;
+            for (size_t i = 0; i < 14; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)M0[i][j];
+                    expect(memcmp(&M0[i][j], &M0[j][i], sizeof M0[i][j]) == 0,
+                           name, "M0 is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 2e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&M0, 0xA5, sizeof M0);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_generalised_mass_matrix(in.q, &in.p, M0) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_generalised_mass_matrix(in.q, &in.p, M0) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = (panda_real)NAN;
+    expect(panda_generalised_mass_matrix(in.q, &in.p, M0) == PANDA_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[6] = -1;
+    expect(panda_generalised_mass_matrix(in.q, &in.p, M0) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = 0;
+    expect(panda_generalised_mass_matrix(in.q, &in.p, M0) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is zero");
+    in = panda_golden_inputs[0];
+    expect(panda_generalised_mass_matrix(NULL, &in.p, M0) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_generalised_mass_matrix(in.q, NULL, M0) == PANDA_NULL_POINTER,
+           name, "p is NULL");
+    expect(panda_generalised_mass_matrix(in.q, &in.p, NULL) == PANDA_NULL_POINTER,
+           name, "M0 is NULL");
+    expect(is_untouched(&M0, sizeof M0),
+           name, "nothing written for bad inputs");
+}
+
+static void test_stiffness_matrix(void)
+{
+    const char *const name = "panda_stiffness_matrix";
+    panda_real K0[14][14];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_stiffness_matrix[k];
+        expect(panda_stiffness_matrix(in->q, &in->p, K0) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[105];
+            size_t at = 0;
+            for (size_t i = 0; i < 14; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)K0[i][j];
+                    expect(memcmp(&K0[i][j], &K0[j][i], sizeof K0[i][j]) == 0,
+                           name, "K0 is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 5e-07);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&K0, 0xA5, sizeof K0);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.p.joint_stiffness[0] = (panda_real)NAN;
+    expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_NOT_FINITE,
+           name, "joint_stiffness is not a number");
+    in = panda_golden_inputs[0];
+    in.p.joint_stiffness[6] = -1;
+    expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_OUT_OF_RANGE,
+           name, "joint_stiffness is negative");
+    in = panda_golden_inputs[0];
+    in.p.joint_stiffness[0] = 0;
+    expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_OUT_OF_RANGE,
+           name, "joint_stiffness is zero");
+    in = panda_golden_inputs[0];
+    in.p.position_gain[0] = (panda_real)NAN;
+    expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_NOT_FINITE,
+           name, "position_gain is not a number");
+    in = panda_golden_inputs[0];
+    in.p.position_gain[6] = -1;
+    expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_OUT_OF_RANGE,
+           name, "position_gain is negative");
+    in = panda_golden_inputs[0];
+    expect(panda_stiffness_matrix(NULL, &in.p, K0) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_stiffness_matrix(in.q, NULL, K0) == PANDA_NULL_POINTER,
+           name, "p is NULL");
+    expect(panda_stiffness_matrix(in.q, &in.p, NULL) == PANDA_NULL_POINTER,
+           name, "K0 is NULL");
+    expect(is_untouched(&K0, sizeof K0),
+           name, "nothing written for bad inputs");
+}
+
+static void test_contact_jacobian(void)
+{
+    const char *const name = "panda_contact_jacobian";
+    panda_real J_c[14];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_contact_jacobian[k];
+        expect(panda_contact_jacobian(in->q, in->n, J_c) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[14];
+            for (size_t i = 0; i < 14; ++i) {
+                found[i] = (double)J_c[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 4e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&J_c, 0xA5, sizeof J_c);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_contact_jacobian(in.q, in.n, J_c) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_contact_jacobian(in.q, in.n, J_c) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.n[1] = (panda_real)NAN;
+    expect(panda_contact_jacobian(in.q, in.n, J_c) == PANDA_NOT_FINITE,
+           name, "n is not a number");
+    in = panda_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(panda_contact_jacobian(in.q, in.n, J_c) == PANDA_ZERO_DIRECTION,
+           name, "n is zero");
+    in = panda_golden_inputs[0];
+    expect(panda_contact_jacobian(NULL, in.n, J_c) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_contact_jacobian(in.q, NULL, J_c) == PANDA_NULL_POINTER,
+           name, "n is NULL");
+    expect(panda_contact_jacobian(in.q, in.n, NULL) == PANDA_NULL_POINTER,
+           name, "J_c is NULL");
+    expect(is_untouched(&J_c, sizeof J_c),
+           name, "nothing written for bad inputs");
+}
+
+static void test_reflected_mass(void)
+{
+    const char *const name = "panda_reflected_mass";
+    panda_real m_c;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_reflected_mass[k];
+        expect(panda_reflected_mass(in->q, in->n, &m_c) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)m_c;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 5e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&m_c, 0xA5, sizeof m_c);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_reflected_mass(in.q, in.n, &m_c) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_reflected_mass(in.q, in.n, &m_c) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.n[1] = (panda_real)NAN;
+    expect(panda_reflected_mass(in.q, in.n, &m_c) == PANDA_NOT_FINITE,
+           name, "n is not a number");
+    in = panda_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(panda_reflected_mass(in.q, in.n, &m_c) == PANDA_ZERO_DIRECTION,
+           name, "n is zero");
+    in = panda_golden_inputs[0];
+    expect(panda_reflected_mass(NULL, in.n, &m_c) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_reflected_mass(in.q, NULL, &m_c) == PANDA_NULL_POINTER,
+           name, "n is NULL");
+    expect(panda_reflected_mass(in.q, in.n, NULL) == PANDA_NULL_POINTER,
+           name, "m_c is NULL");
+    expect(is_untouched(&m_c, sizeof m_c),
+           name, "nothing written for bad inputs");
+}
+
+static void test_reduced_model(void)
+{
+    const char *const name = "panda_reduced_model";
+    panda_reduced_model_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_reduced_model[k];
+        expect(panda_reduced_model(in->q, in->n, &in->p, &out) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)out.m_c;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[1];
+            found[0] = (double)out.k_r;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[1];
+            found[0] = (double)out.m_a;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 4e-05);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.n[1] = (panda_real)NAN;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "n is not a number");
+    in = panda_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_ZERO_DIRECTION,
+           name, "n is zero");
+    in = panda_golden_inputs[0];
+    in.p.joint_stiffness[0] = (panda_real)NAN;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "joint_stiffness is not a number");
+    in = panda_golden_inputs[0];
+    in.p.joint_stiffness[6] = -1;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "joint_stiffness is negative");
+    in = panda_golden_inputs[0];
+    in.p.joint_stiffness[0] = 0;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "joint_stiffness is zero");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = (panda_real)NAN;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[6] = -1;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = 0;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is zero");
+    in = panda_golden_inputs[0];
+    in.p.position_gain[0] = (panda_real)NAN;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "position_gain is not a number");
+    in = panda_golden_inputs[0];
+    in.p.position_gain[6] = -1;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "position_gain is negative");
+    in = panda_golden_inputs[0];
+    expect(panda_reduced_model(NULL, in.n, &in.p, &out) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_reduced_model(in.q, NULL, &in.p, &out) == PANDA_NULL_POINTER,
+           name, "n is NULL");
+    expect(panda_reduced_model(in.q, in.n, NULL, &out) == PANDA_NULL_POINTER,
+           name, "p is NULL");
+    expect(panda_reduced_model(in.q, in.n, &in.p, NULL) == PANDA_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
+static void test_chain(void)
+{
+    const char *const name = "panda_chain";
+    panda_chain_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_chain[k];
+        expect(panda_chain(in->q, in->n, &in->p, &out) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[3];
+            for (size_t i = 0; i < 3; ++i) {
+                found[i] = (double)out.mass[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[3];
+            for (size_t i = 0; i < 3; ++i) {
+                found[i] = (double)out.stiffness[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 0.0008);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.n[1] = (panda_real)NAN;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "n is not a number");
+    in = panda_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_ZERO_DIRECTION,
+           name, "n is zero");
+    in = panda_golden_inputs[0];
+    in.p.joint_stiffness[0] = (panda_real)NAN;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "joint_stiffness is not a number");
+    in = panda_golden_inputs[0];
+    in.p.joint_stiffness[6] = -1;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "joint_stiffness is negative");
+    in = panda_golden_inputs[0];
+    in.p.joint_stiffness[0] = 0;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "joint_stiffness is zero");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = (panda_real)NAN;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[6] = -1;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = 0;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is zero");
+    in = panda_golden_inputs[0];
+    in.p.position_gain[0] = (panda_real)NAN;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "position_gain is not a number");
+    in = panda_golden_inputs[0];
+    in.p.position_gain[6] = -1;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "position_gain is negative");
+    in = panda_golden_inputs[0];
+    expect(panda_chain(NULL, in.n, &in.p, &out) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_chain(in.q, NULL, &in.p, &out) == PANDA_NULL_POINTER,
+           name, "n is NULL");
+    expect(panda_chain(in.q, in.n, NULL, &out) == PANDA_NULL_POINTER,
+           name, "p is NULL");
+    expect(panda_chain(in.q, in.n, &in.p, NULL) == PANDA_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
+static void test_osim(void)
+{
+    const char *const name = "panda_osim";
+    panda_osim_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_osim[k];
+        expect(panda_osim(in->q, &in->p, &out) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[6];
+            size_t at = 0;
+            for (size_t i = 0; i < 3; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)out.Lambda[i][j];
+                    expect(memcmp(&out.Lambda[i][j], &out.Lambda[j][i], sizeof out.Lambda[i][j]) == 0,
+                           name, "Lambda is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[6];
+            size_t at = 0;
+            for (size_t i = 0; i < 3; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)out.Lambda_F[i][j];
+                    expect(memcmp(&out.Lambda_F[i][j], &out.Lambda_F[j][i], sizeof out.Lambda_F[i][j]) == 0,
+                           name, "Lambda_F is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 0.0003);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_osim(in.q, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_osim(in.q, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = (panda_real)NAN;
+    expect(panda_osim(in.q, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[6] = -1;
+    expect(panda_osim(in.q, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = 0;
+    expect(panda_osim(in.q, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is zero");
+    in = panda_golden_inputs[0];
+    expect(panda_osim(NULL, &in.p, &out) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_osim(in.q, NULL, &out) == PANDA_NULL_POINTER,
+           name, "p is NULL");
+    expect(panda_osim(in.q, &in.p, NULL) == PANDA_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
+static void test_giaf(void)
+{
+    const char *const name = "panda_giaf";
+    panda_giaf_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_giaf[k];
+        expect(panda_giaf(in->q, &in->p, &out) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)out.giaf;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 1));
+            right += LENGTH(found);
+        }
+        {
+            double found[1];
+            found[0] = (double)out.giif;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 1));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 6e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_giaf(in.q, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_giaf(in.q, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = (panda_real)NAN;
+    expect(panda_giaf(in.q, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[6] = -1;
+    expect(panda_giaf(in.q, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = 0;
+    expect(panda_giaf(in.q, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is zero");
+    in = panda_golden_inputs[0];
+    expect(panda_giaf(NULL, &in.p, &out) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_giaf(in.q, NULL, &out) == PANDA_NULL_POINTER,
+           name, "p is NULL");
+    expect(panda_giaf(in.q, &in.p, NULL) == PANDA_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
+static void test_directional_giaf(void)
+{
+    const char *const name = "panda_directional_giaf";
+    panda_real giaf;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_directional_giaf[k];
+        expect(panda_directional_giaf(in->q, in->n, &in->p, &giaf) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)giaf;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 1));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 4e-05);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&giaf, 0xA5, sizeof giaf);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.n[1] = (panda_real)NAN;
+    expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_NOT_FINITE,
+           name, "n is not a number");
+    in = panda_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_ZERO_DIRECTION,
+           name, "n is zero");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = (panda_real)NAN;
+    expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[6] = -1;
+    expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = 0;
+    expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is zero");
+    in = panda_golden_inputs[0];
+    expect(panda_directional_giaf(NULL, in.n, &in.p, &giaf) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_directional_giaf(in.q, NULL, &in.p, &giaf) == PANDA_NULL_POINTER,
+           name, "n is NULL");
+    expect(panda_directional_giaf(in.q, in.n, NULL, &giaf) == PANDA_NULL_POINTER,
+           name, "p is NULL");
+    expect(panda_directional_giaf(in.q, in.n, &in.p, NULL) == PANDA_NULL_POINTER,
+           name, "giaf is NULL");
+    expect(is_untouched(&giaf, sizeof giaf),
+           name, "nothing written for bad inputs");
+}
+
+static void test_common(void)
+{
+    panda_params p;
+    expect(panda_default_params(&p) == PANDA_OK,
+           "panda_default_params", "status");
+    expect(panda_default_params(NULL) == PANDA_NULL_POINTER,
+           "panda_default_params", "NULL");
+    for (int status = -1; status <= 6; ++status) {
+        expect(strlen(panda_status_text(status)) > 0, "panda_status_text", "has a text");
+    }
+    expect(strcmp(panda_status_text(6), panda_status_text(PANDA_OK)) != 0,
+           "panda_status_text", "unknown status");
+}
+
+int main(void)
+{
+    test_common();
+    test_mass_matrix();
+    test_jacobian();
+    test_generalised_mass_matrix();
+    test_stiffness_matrix();
+    test_contact_jacobian();
+    test_reflected_mass();
+    test_reduced_model();
+    test_chain();
+    test_osim();
+    test_giaf();
+    test_directional_giaf();
+    printf(failures == 0 ? "all passed\n" : "%d failed\n", failures);
+    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What the sources of rr share; not for their users. */
+#ifndef RR_INTERNAL_H
+#define RR_INTERNAL_H
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "rr.h"
+
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+#error "rr checks for numbers that are not finite: build it without -ffast-math"
+#endif
+
+#if defined(RR_USE_FLOAT)
+#define RR_R(x) x##f
+#define RR_F(function) function##f
+#define RR_REAL_MAX FLT_MAX
+#else
+#define RR_R(x) x
+#define RR_F(function) function
+#define RR_REAL_MAX DBL_MAX
+#endif
+
+#define RR_SIN(x) RR_F(sin)(x)
+#define RR_COS(x) RR_F(cos)(x)
+#define RR_EXP(x) RR_F(exp)(x)
+#define RR_LOG(x) RR_F(log)(x)
+#define RR_SQRT(x) RR_F(sqrt)(x)
+#define RR_FABS(x) RR_F(fabs)(x)
+#define RR_FMIN(x, y) RR_F(fmin)(x, y)
+#define RR_FMAX(x, y) RR_F(fmax)(x, y)
+#define RR_POW(x, y) RR_F(pow)(x, y)
+
+/* 1 if all numbers are finite; a comparison with a NaN is false. */
+static inline int rr_all_finite(const rr_real *x, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        if (!(RR_FABS(x[i]) <= RR_REAL_MAX)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Status of a parameter that must be positive. */
+static inline int rr_check_positive(const rr_real x[4])
+{
+    for (int i = 0; i < 4; ++i) {
+        if (!(x[i] > RR_R(0.0) && x[i] <= RR_REAL_MAX)) {
+            return rr_all_finite(&x[i], 1) ? RR_OUT_OF_RANGE : RR_NOT_FINITE;
+        }
+    }
+    return RR_OK;
+}
+
+/* Status of a parameter that must not be negative. */
+static inline int rr_check_not_negative(const rr_real x[4])
+{
+    for (int i = 0; i < 4; ++i) {
+        if (!(x[i] >= RR_R(0.0) && x[i] <= RR_REAL_MAX)) {
+            return rr_all_finite(&x[i], 1) ? RR_OUT_OF_RANGE : RR_NOT_FINITE;
+        }
+    }
+    return RR_OK;
+}
+
+/* Unit vector u along n; scaled first, so that no square over- or underflows. */
+static inline int rr_unit_vector(const rr_real n[3], rr_real u[3])
+{
+    if (!rr_all_finite(n, 3)) {
+        return RR_NOT_FINITE;
+    }
+    const rr_real xy = RR_FMAX(RR_FABS(n[0]), RR_FABS(n[1]));
+    const rr_real largest = RR_FMAX(xy, RR_FABS(n[2]));
+    if (!(largest > RR_R(0.0))) {
+        return RR_ZERO_DIRECTION;
+    }
+    const rr_real x = n[0]/largest;
+    const rr_real y = n[1]/largest;
+    const rr_real z = n[2]/largest;
+    const rr_real length = RR_SQRT(x*x + y*y + z*z);
+    u[0] = x/length;
+    u[1] = y/length;
+    u[2] = z/length;
+    return RR_OK;
+}
+
+#endif

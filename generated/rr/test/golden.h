@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Inputs and right results of rr, computed in 50 digits. */
+#ifndef RR_GOLDEN_H
+#define RR_GOLDEN_H
+
+#include "rr.h"
+
+#define RR_GOLDEN_CASES 12
+
+typedef struct {
+    rr_real q[4];
+    rr_real n[3];
+    rr_params p;
+} rr_golden_input;
+
+extern const rr_golden_input rr_golden_inputs[RR_GOLDEN_CASES];
+extern const double rr_golden_mass_matrix[RR_GOLDEN_CASES][10];
+extern const double rr_golden_jacobian[RR_GOLDEN_CASES][12];
+extern const double rr_golden_generalised_mass_matrix[RR_GOLDEN_CASES][10];
+extern const double rr_golden_stiffness_matrix[RR_GOLDEN_CASES][10];
+extern const double rr_golden_contact_jacobian[RR_GOLDEN_CASES][4];
+extern const double rr_golden_reflected_mass[RR_GOLDEN_CASES][1];
+extern const double rr_golden_reduced_model[RR_GOLDEN_CASES][3];
+extern const double rr_golden_chain[RR_GOLDEN_CASES][6];
+
+#endif

@@ -1,0 +1,548 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Compares rr with its golden results and feeds it bad inputs; 1 on failure. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "golden.h"
+
+#if defined(RR_USE_FLOAT)
+#define BOUND(in_double, in_float) (in_float)
+#else
+#define BOUND(in_double, in_float) (in_double)
+#endif
+
+#define LENGTH(array) (sizeof(array)/sizeof((array)[0]))
+
+static int failures = 0;
+
+static void expect(int holds, const char *function, const char *what)
+{
+    if (!holds) {
+        ++failures;
+        printf("FAILED %s: %s\n", function, what);
+    }
+}
+
+/* Largest difference over the largest right entry, or absolute for shares of 1. */
+static double error_of(const double *found, const double *right, size_t count, int share)
+{
+    double difference = 0.0;
+    double scale = share ? 1.0 : 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        const double d = fabs(found[i] - right[i]);
+        difference = d <= difference ? difference : d;
+        scale = share ? scale : fmax(scale, fabs(right[i]));
+    }
+    return difference > 0.0 ? difference/scale : 0.0;
+}
+
+/* 1 if memory still holds the pattern that it was filled with. */
+static int is_untouched(const void *memory, size_t size)
+{
+    const unsigned char *bytes = memory;
+    for (size_t i = 0; i < size; ++i) {
+        if (bytes[i] != 0xA5u) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static void test_mass_matrix(void)
+{
+    const char *const name = "rr_mass_matrix";
+    rr_real M[4][4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_inputs); ++k) {
+        const rr_golden_input *const in = &rr_golden_inputs[k];
+        const double *right = rr_golden_mass_matrix[k];
+        expect(rr_mass_matrix(in->q, M) == RR_OK,
+               name, "status of a golden case");
+        {
+            double found[10];
+            size_t at = 0;
+            for (size_t i = 0; i < 4; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)M[i][j];
+                    expect(memcmp(&M[i][j], &M[j][i], sizeof M[i][j]) == 0,
+                           name, "M is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 5e-07);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rr_golden_input in = rr_golden_inputs[0];
+    memset(&M, 0xA5, sizeof M);
+    in.q[0] = (rr_real)NAN;
+    expect(rr_mass_matrix(in.q, M) == RR_NOT_FINITE,
+           name, "q is not a number");
+    in = rr_golden_inputs[0];
+    in.q[3] = (rr_real)INFINITY;
+    expect(rr_mass_matrix(in.q, M) == RR_NOT_FINITE,
+           name, "q is infinite");
+    in = rr_golden_inputs[0];
+    expect(rr_mass_matrix(NULL, M) == RR_NULL_POINTER,
+           name, "q is NULL");
+    expect(rr_mass_matrix(in.q, NULL) == RR_NULL_POINTER,
+           name, "M is NULL");
+    expect(is_untouched(&M, sizeof M),
+           name, "nothing written for bad inputs");
+}
+
+static void test_jacobian(void)
+{
+    const char *const name = "rr_jacobian";
+    rr_real J[3][4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_inputs); ++k) {
+        const rr_golden_input *const in = &rr_golden_inputs[k];
+        const double *right = rr_golden_jacobian[k];
+        expect(rr_jacobian(in->q, J) == RR_OK,
+               name, "status of a golden case");
+        {
+            double found[12];
+            size_t at = 0;
+            for (size_t i = 0; i < 3; ++i) {
+                for (size_t j = 0; j < 4; ++j) {
+                    found[at++] = (double)J[i][j];
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 9e-07);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rr_golden_input in = rr_golden_inputs[0];
+    memset(&J, 0xA5, sizeof J);
+    in.q[0] = (rr_real)NAN;
+    expect(rr_jacobian(in.q, J) == RR_NOT_FINITE,
+           name, "q is not a number");
+    in = rr_golden_inputs[0];
+    in.q[3] = (rr_real)INFINITY;
+    expect(rr_jacobian(in.q, J) == RR_NOT_FINITE,
+           name, "q is infinite");
+    in = rr_golden_inputs[0];
+    expect(rr_jacobian(NULL, J) == RR_NULL_POINTER,
+           name, "q is NULL");
+    expect(rr_jacobian(in.q, NULL) == RR_NULL_POINTER,
+           name, "J is NULL");
+    expect(is_untouched(&J, sizeof J),
+           name, "nothing written for bad inputs");
+}
+
+static void test_generalised_mass_matrix(void)
+{
+    const char *const name = "rr_generalised_mass_matrix";
+    rr_real M0[4][4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_inputs); ++k) {
+        const rr_golden_input *const in = &rr_golden_inputs[k];
+        const double *right = rr_golden_generalised_mass_matrix[k];
+        expect(rr_generalised_mass_matrix(in->q, &in->p, M0) == RR_OK,
+               name, "status of a golden case");
+        {
+            double found[10];
+            size_t at = 0;
+            for (size_t i = 0; i < 4; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)M0[i][j];
+                    expect(memcmp(&M0[i][j], &M0[j][i], sizeof M0[i][j]) == 0,
+                           name, "M0 is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 5e-07);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rr_golden_input in = rr_golden_inputs[0];
+    memset(&M0, 0xA5, sizeof M0);
+    in.q[0] = (rr_real)NAN;
+    expect(rr_generalised_mass_matrix(in.q, &in.p, M0) == RR_NOT_FINITE,
+           name, "q is not a number");
+    in = rr_golden_inputs[0];
+    in.q[3] = (rr_real)INFINITY;
+    expect(rr_generalised_mass_matrix(in.q, &in.p, M0) == RR_NOT_FINITE,
+           name, "q is infinite");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[0] = (rr_real)NAN;
+    expect(rr_generalised_mass_matrix(in.q, &in.p, M0) == RR_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[3] = -1;
+    expect(rr_generalised_mass_matrix(in.q, &in.p, M0) == RR_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = rr_golden_inputs[0];
+    expect(rr_generalised_mass_matrix(NULL, &in.p, M0) == RR_NULL_POINTER,
+           name, "q is NULL");
+    expect(rr_generalised_mass_matrix(in.q, NULL, M0) == RR_NULL_POINTER,
+           name, "p is NULL");
+    expect(rr_generalised_mass_matrix(in.q, &in.p, NULL) == RR_NULL_POINTER,
+           name, "M0 is NULL");
+    expect(is_untouched(&M0, sizeof M0),
+           name, "nothing written for bad inputs");
+}
+
+static void test_stiffness_matrix(void)
+{
+    const char *const name = "rr_stiffness_matrix";
+    rr_real K0[4][4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_inputs); ++k) {
+        const rr_golden_input *const in = &rr_golden_inputs[k];
+        const double *right = rr_golden_stiffness_matrix[k];
+        expect(rr_stiffness_matrix(in->q, &in->p, K0) == RR_OK,
+               name, "status of a golden case");
+        {
+            double found[10];
+            size_t at = 0;
+            for (size_t i = 0; i < 4; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)K0[i][j];
+                    expect(memcmp(&K0[i][j], &K0[j][i], sizeof K0[i][j]) == 0,
+                           name, "K0 is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 5e-07);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rr_golden_input in = rr_golden_inputs[0];
+    memset(&K0, 0xA5, sizeof K0);
+    in.q[0] = (rr_real)NAN;
+    expect(rr_stiffness_matrix(in.q, &in.p, K0) == RR_NOT_FINITE,
+           name, "q is not a number");
+    in = rr_golden_inputs[0];
+    in.q[3] = (rr_real)INFINITY;
+    expect(rr_stiffness_matrix(in.q, &in.p, K0) == RR_NOT_FINITE,
+           name, "q is infinite");
+    in = rr_golden_inputs[0];
+    in.p.position_gain[0] = (rr_real)NAN;
+    expect(rr_stiffness_matrix(in.q, &in.p, K0) == RR_NOT_FINITE,
+           name, "position_gain is not a number");
+    in = rr_golden_inputs[0];
+    in.p.position_gain[3] = -1;
+    expect(rr_stiffness_matrix(in.q, &in.p, K0) == RR_OUT_OF_RANGE,
+           name, "position_gain is negative");
+    in = rr_golden_inputs[0];
+    expect(rr_stiffness_matrix(NULL, &in.p, K0) == RR_NULL_POINTER,
+           name, "q is NULL");
+    expect(rr_stiffness_matrix(in.q, NULL, K0) == RR_NULL_POINTER,
+           name, "p is NULL");
+    expect(rr_stiffness_matrix(in.q, &in.p, NULL) == RR_NULL_POINTER,
+           name, "K0 is NULL");
+    expect(is_untouched(&K0, sizeof K0),
+           name, "nothing written for bad inputs");
+}
+
+static void test_contact_jacobian(void)
+{
+    const char *const name = "rr_contact_jacobian";
+    rr_real J_c[4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_inputs); ++k) {
+        const rr_golden_input *const in = &rr_golden_inputs[k];
+        const double *right = rr_golden_contact_jacobian[k];
+        expect(rr_contact_jacobian(in->q, in->n, J_c) == RR_OK,
+               name, "status of a golden case");
+        {
+            double found[4];
+            for (size_t i = 0; i < 4; ++i) {
+                found[i] = (double)J_c[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 8e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rr_golden_input in = rr_golden_inputs[0];
+    memset(&J_c, 0xA5, sizeof J_c);
+    in.q[0] = (rr_real)NAN;
+    expect(rr_contact_jacobian(in.q, in.n, J_c) == RR_NOT_FINITE,
+           name, "q is not a number");
+    in = rr_golden_inputs[0];
+    in.q[3] = (rr_real)INFINITY;
+    expect(rr_contact_jacobian(in.q, in.n, J_c) == RR_NOT_FINITE,
+           name, "q is infinite");
+    in = rr_golden_inputs[0];
+    in.n[1] = (rr_real)NAN;
+    expect(rr_contact_jacobian(in.q, in.n, J_c) == RR_NOT_FINITE,
+           name, "n is not a number");
+    in = rr_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(rr_contact_jacobian(in.q, in.n, J_c) == RR_ZERO_DIRECTION,
+           name, "n is zero");
+    in = rr_golden_inputs[0];
+    expect(rr_contact_jacobian(NULL, in.n, J_c) == RR_NULL_POINTER,
+           name, "q is NULL");
+    expect(rr_contact_jacobian(in.q, NULL, J_c) == RR_NULL_POINTER,
+           name, "n is NULL");
+    expect(rr_contact_jacobian(in.q, in.n, NULL) == RR_NULL_POINTER,
+           name, "J_c is NULL");
+    expect(is_untouched(&J_c, sizeof J_c),
+           name, "nothing written for bad inputs");
+}
+
+static void test_reflected_mass(void)
+{
+    const char *const name = "rr_reflected_mass";
+    rr_real m_c;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_inputs); ++k) {
+        const rr_golden_input *const in = &rr_golden_inputs[k];
+        const double *right = rr_golden_reflected_mass[k];
+        expect(rr_reflected_mass(in->q, in->n, &in->p, &m_c) == RR_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)m_c;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 1e-05);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rr_golden_input in = rr_golden_inputs[0];
+    memset(&m_c, 0xA5, sizeof m_c);
+    in.q[0] = (rr_real)NAN;
+    expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_NOT_FINITE,
+           name, "q is not a number");
+    in = rr_golden_inputs[0];
+    in.q[3] = (rr_real)INFINITY;
+    expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_NOT_FINITE,
+           name, "q is infinite");
+    in = rr_golden_inputs[0];
+    in.n[1] = (rr_real)NAN;
+    expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_NOT_FINITE,
+           name, "n is not a number");
+    in = rr_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_ZERO_DIRECTION,
+           name, "n is zero");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[0] = (rr_real)NAN;
+    expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[3] = -1;
+    expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = rr_golden_inputs[0];
+    expect(rr_reflected_mass(NULL, in.n, &in.p, &m_c) == RR_NULL_POINTER,
+           name, "q is NULL");
+    expect(rr_reflected_mass(in.q, NULL, &in.p, &m_c) == RR_NULL_POINTER,
+           name, "n is NULL");
+    expect(rr_reflected_mass(in.q, in.n, NULL, &m_c) == RR_NULL_POINTER,
+           name, "p is NULL");
+    expect(rr_reflected_mass(in.q, in.n, &in.p, NULL) == RR_NULL_POINTER,
+           name, "m_c is NULL");
+    expect(is_untouched(&m_c, sizeof m_c),
+           name, "nothing written for bad inputs");
+}
+
+static void test_reduced_model(void)
+{
+    const char *const name = "rr_reduced_model";
+    rr_reduced_model_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_inputs); ++k) {
+        const rr_golden_input *const in = &rr_golden_inputs[k];
+        const double *right = rr_golden_reduced_model[k];
+        expect(rr_reduced_model(in->q, in->n, &in->p, &out) == RR_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)out.m_c;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[1];
+            found[0] = (double)out.k_r;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[1];
+            found[0] = (double)out.m_a;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 2e-05);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rr_golden_input in = rr_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (rr_real)NAN;
+    expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "q is not a number");
+    in = rr_golden_inputs[0];
+    in.q[3] = (rr_real)INFINITY;
+    expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "q is infinite");
+    in = rr_golden_inputs[0];
+    in.n[1] = (rr_real)NAN;
+    expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "n is not a number");
+    in = rr_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_ZERO_DIRECTION,
+           name, "n is zero");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[0] = (rr_real)NAN;
+    expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[3] = -1;
+    expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = rr_golden_inputs[0];
+    in.p.position_gain[0] = (rr_real)NAN;
+    expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "position_gain is not a number");
+    in = rr_golden_inputs[0];
+    in.p.position_gain[3] = -1;
+    expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "position_gain is negative");
+    in = rr_golden_inputs[0];
+    expect(rr_reduced_model(NULL, in.n, &in.p, &out) == RR_NULL_POINTER,
+           name, "q is NULL");
+    expect(rr_reduced_model(in.q, NULL, &in.p, &out) == RR_NULL_POINTER,
+           name, "n is NULL");
+    expect(rr_reduced_model(in.q, in.n, NULL, &out) == RR_NULL_POINTER,
+           name, "p is NULL");
+    expect(rr_reduced_model(in.q, in.n, &in.p, NULL) == RR_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
+static void test_chain(void)
+{
+    const char *const name = "rr_chain";
+    rr_chain_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_inputs); ++k) {
+        const rr_golden_input *const in = &rr_golden_inputs[k];
+        const double *right = rr_golden_chain[k];
+        expect(rr_chain(in->q, in->n, &in->p, &out) == RR_OK,
+               name, "status of a golden case");
+        {
+            double found[3];
+            for (size_t i = 0; i < 3; ++i) {
+                found[i] = (double)out.mass[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[3];
+            for (size_t i = 0; i < 3; ++i) {
+                found[i] = (double)out.stiffness[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 0.002);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rr_golden_input in = rr_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (rr_real)NAN;
+    expect(rr_chain(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "q is not a number");
+    in = rr_golden_inputs[0];
+    in.q[3] = (rr_real)INFINITY;
+    expect(rr_chain(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "q is infinite");
+    in = rr_golden_inputs[0];
+    in.n[1] = (rr_real)NAN;
+    expect(rr_chain(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "n is not a number");
+    in = rr_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(rr_chain(in.q, in.n, &in.p, &out) == RR_ZERO_DIRECTION,
+           name, "n is zero");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[0] = (rr_real)NAN;
+    expect(rr_chain(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[3] = -1;
+    expect(rr_chain(in.q, in.n, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = rr_golden_inputs[0];
+    in.p.position_gain[0] = (rr_real)NAN;
+    expect(rr_chain(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
+           name, "position_gain is not a number");
+    in = rr_golden_inputs[0];
+    in.p.position_gain[3] = -1;
+    expect(rr_chain(in.q, in.n, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "position_gain is negative");
+    in = rr_golden_inputs[0];
+    expect(rr_chain(NULL, in.n, &in.p, &out) == RR_NULL_POINTER,
+           name, "q is NULL");
+    expect(rr_chain(in.q, NULL, &in.p, &out) == RR_NULL_POINTER,
+           name, "n is NULL");
+    expect(rr_chain(in.q, in.n, NULL, &out) == RR_NULL_POINTER,
+           name, "p is NULL");
+    expect(rr_chain(in.q, in.n, &in.p, NULL) == RR_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
+static void test_common(void)
+{
+    rr_params p;
+    expect(rr_default_params(&p) == RR_OK,
+           "rr_default_params", "status");
+    expect(rr_default_params(NULL) == RR_NULL_POINTER,
+           "rr_default_params", "NULL");
+    for (int status = -1; status <= 6; ++status) {
+        expect(strlen(rr_status_text(status)) > 0, "rr_status_text", "has a text");
+    }
+    expect(strcmp(rr_status_text(6), rr_status_text(RR_OK)) != 0,
+           "rr_status_text", "unknown status");
+}
+
+int main(void)
+{
+    test_common();
+    test_mass_matrix();
+    test_jacobian();
+    test_generalised_mass_matrix();
+    test_stiffness_matrix();
+    test_contact_jacobian();
+    test_reflected_mass();
+    test_reduced_model();
+    test_chain();
+    printf(failures == 0 ? "all passed\n" : "%d failed\n", failures);
+    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
