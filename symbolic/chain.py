@@ -16,6 +16,7 @@ from typing import Literal
 import casadi as ca
 
 from .elastic import LinearModel
+from .errors import InvalidValue
 from .matrices import Matrix
 from .reduction import contact_mode
 
@@ -50,15 +51,19 @@ def chain(
 ) -> Chain:
     """Return the chain of ``order`` masses; the first spring is k_r of MSM.
 
-    A numeric model whose chain closes before (no spring reaches further masses) gives fewer.
+    A model with fewer coordinates gives fewer masses, and so does a numeric one whose chain closes
+    before (no spring reaches further masses).
 
     Args:
         model: M0, K0 and J_c.
-        order: number of masses, at least 1 and at most the number of coordinates.
+        order: number of masses, at least 1; raises InvalidValue.
         end: ``grounded`` keeps the spring from the last mass to ground, ``free`` drops it.
         reorthogonalise: keep every mass's motion orthogonal to all before it, not just to the
             last two. Rounding makes this necessary beyond five masses or so; it costs N·r more.
     """
+    if order < 1:
+        raise InvalidValue("order", f"must be at least 1, but is {order}")
+    order = min(order, model.stiffness.shape[0])
     mode = contact_mode(model)
     links = [_Link(mode.m_c, mode.direction, model.jacobian.T * mode.m_c)]
     springs: list[Matrix] = []

@@ -288,7 +288,7 @@ def test_broken_xml(read, text, suffix):
         ({"mass": "-1"}, r"body 'arm': mass is negative \(-1 kg\)"),
         ({"mass": "nan"}, "body 'arm': mass must be a finite number"),
         ({"mass": "inf"}, "body 'arm': mass must be a finite number"),
-        ({"mass": "0"}, "body 'arm': moves but has no mass and inertia; give it an <inertial>"),
+        ({"mass": "0"}, "body 'arm': moves but has no mass and inertia > 0; give it an <inertial>"),
         ({"inertia": "1 1 3"}, "body 'arm': inertia violates the triangle inequality"),
         ({"inertia": "1 -1 1"}, "body 'arm': moves but has no mass and inertia > 0"),
     ],
