@@ -30,23 +30,12 @@ def analyze(
     from softimpact.symbolic import analyse
 
     from .output import print_json
-    from .situation import Typed, situation
+    from .situation import Typed, TypedDrives, situation
 
-    scene = situation(
-        Typed(
-            model,
-            tip,
-            q,
-            direction,
-            joint_stiffness,
-            rotor_inertia,
-            position_gain,
-            computed_torque_gain,
-            gear_ratio,
-            gravity,
-            motor_angles,
-        )
+    given = TypedDrives(
+        joint_stiffness, rotor_inertia, position_gain, computed_torque_gain, gear_ratio
     )
+    scene = situation(Typed(model, tip, q, direction, given, gravity, motor_angles))
     result = analyse(scene.model, scene.q, scene.direction, order)
     if json:
         robot = scene.model.robot

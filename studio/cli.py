@@ -14,7 +14,9 @@ from typing import Annotated
 import typer
 
 from .analyze_command import analyze
+from .generate_command import generate
 from .robots_command import robots
+from .select_command import select
 from .simulate_command import simulate
 
 USER_ERROR, INTERRUPTED = 2, 130
@@ -25,6 +27,8 @@ app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 app.command()(robots)
 app.command()(analyze)
 app.command()(simulate)
+app.command()(select)
+app.command()(generate)
 
 
 @app.callback(invoke_without_command=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, cast, get_args
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from softimpact.simulate import (
     largest_safe_speed,
     simulate_impact,
 )
-from softimpact.symbolic import Contact, InvalidValue, UnknownName, body_region
+from softimpact.symbolic import Contact, InvalidValue, body_region
 from softimpact.symbolic.rigid import Array
 
 from . import values
@@ -44,11 +44,8 @@ def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
     Raises:
         SoftImpactError: an option is wrong or the simulation failed.
     """
-    if how.fidelity not in get_args(Fidelity):
-        raise UnknownName("impact model", how.fidelity, get_args(Fidelity))
-    if how.peak not in get_args(PeakDefinition):
-        raise UnknownName("peak definition", how.peak, get_args(PeakDefinition))
-    fidelity, definition = cast(Fidelity, how.fidelity), cast(PeakDefinition, how.peak)
+    fidelity: Fidelity = values.one_of("impact model", how.fidelity, Fidelity)
+    definition: PeakDefinition = values.one_of("peak definition", how.peak, PeakDefinition)
     contact = Contact(body_region(how.region), how.clamped)
     scene = situation(where)
     velocity = None if how.joint_velocity is None else _per_speed(scene, how.joint_velocity)

@@ -84,6 +84,12 @@ Gravity = Annotated[
     str | None,
     typer.Option(metavar="LIST", help="Gravity that enters K0 (m/s²); default none."),
 ]
+Fidelity = Annotated[
+    str, typer.Option("--model", help="one_mass, two_mass, chain, linearised or full.")
+]
 Order = Annotated[int, typer.Option(min=1, help="Number of masses of the chain.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")]
+StudyFile = Annotated[
+    str, typer.Argument(metavar="STUDY", help="Study file (.toml).", show_default=False)
+]

@@ -40,7 +40,7 @@ def print_json(result: Mapping[str, Any]) -> None:
 
 
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    """Print a table to stdout; numbers to five digits, what does not apply as a dash."""
+    """Print a table to stdout; numbers to four digits, what does not apply as a dash."""
     table = Table(title=Text(title), title_justify="left")
     for column in columns:
         table.add_column(Text(column), overflow="fold")
@@ -53,4 +53,6 @@ def shown(cell: Cell) -> str:
     """Return a cell as people read it."""
     if cell is None:
         return "–"
-    return cell if isinstance(cell, str) else f"{cell:.5g}"
+    if isinstance(cell, str):
+        return cell
+    return f"{cell:,.0f}" if abs(cell) >= 1e4 else f"{cell:.4g}"

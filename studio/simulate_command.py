@@ -13,9 +13,6 @@ Region = Annotated[str, typer.Option(metavar="NAME", help="Region of the body: h
 Speed = Annotated[
     float, typer.Option(metavar="V", help="Speed of the contact point along the direction (m/s).")
 ]
-Fidelity = Annotated[
-    str, typer.Option("--model", help="one_mass, two_mass, chain, linearised or full.")
-]
 JointVelocity = Annotated[
     str | None,
     typer.Option(
@@ -41,7 +38,7 @@ def simulate(
     region: Region,
     speed: Speed,
     tip: o.Tip = None,
-    fidelity: Fidelity = "linearised",
+    fidelity: o.Fidelity = "linearised",
     clamped: Clamped = True,
     joint_velocity: JointVelocity = None,
     peak: Peak = "first_contact",
@@ -59,21 +56,12 @@ def simulate(
     """Simulate an impact on a body region and hold it against the region's force limit."""
     from .impact import TypedImpact, impact, print_impact
     from .output import print_json
-    from .situation import Typed
+    from .situation import Typed, TypedDrives
 
-    where = Typed(
-        model,
-        tip,
-        q,
-        direction,
-        joint_stiffness,
-        rotor_inertia,
-        position_gain,
-        computed_torque_gain,
-        gear_ratio,
-        gravity,
-        motor_angles,
+    given = TypedDrives(
+        joint_stiffness, rotor_inertia, position_gain, computed_torque_gain, gear_ratio
     )
+    where = Typed(model, tip, q, direction, given, gravity, motor_angles)
     how = TypedImpact(region, speed, fidelity, clamped, joint_velocity, peak, safe_speed, order)
     result = impact(where, how)
     if json:

@@ -28,6 +28,17 @@ from . import values
 
 
 @dataclass(frozen=True)
+class TypedDrives:
+    """The options that make up drives, as typed; see ``options``."""
+
+    joint_stiffness: str | None = None
+    rotor_inertia: str | None = None
+    position_gain: str | None = None
+    computed_torque_gain: float | None = None
+    gear_ratio: str | None = None
+
+
+@dataclass(frozen=True)
 class Typed:
     """The options that make up a situation, as typed; see ``options``."""
 
@@ -35,11 +46,7 @@ class Typed:
     tip: str | None
     q: str
     direction: str
-    joint_stiffness: str | None = None
-    rotor_inertia: str | None = None
-    position_gain: str | None = None
-    computed_torque_gain: float | None = None
-    gear_ratio: str | None = None
+    drives: TypedDrives = TypedDrives()
     gravity: str | None = None
     motor_angles: bool = False
 
@@ -64,11 +71,9 @@ def situation(typed: Typed) -> Situation:
     robot = robot_to_tip(typed.model, typed.tip)
     q = robot.vector("q", values.vector("q", typed.q))
     direction = unit_direction(values.vector("direction", typed.direction, 3))
-    gravity = WEIGHTLESS
-    if typed.gravity is not None:
-        x, y, z = values.vector("gravity", typed.gravity, 3)
-        gravity = (x, y, z)
-    model = impact_model(robot, drives_=_drives(robot, typed), gravity=gravity)
+    model = impact_model(
+        robot, drives_=drives_of(robot, typed.drives), gravity=gravity_of(typed.gravity)
+    )
     return Situation(model, link_angles(model, q) if typed.motor_angles else q, direction)
 
 
@@ -111,7 +116,9 @@ def link_angles(model: ImpactModel, motor_angles: Array) -> Array:
     return q
 
 
-def _drives(robot: Robot, typed: Typed) -> Drives:
+def drives_of(robot: Robot, typed: TypedDrives) -> Drives:
+    """Return the drives that the options describe; raises SoftImpactError."""
+
     def given(field: str, text: str | None) -> PerJoint | None:
         return None if text is None else values.per_joint(field, text)
 
@@ -124,3 +131,11 @@ def _drives(robot: Robot, typed: Typed) -> Drives:
         computed_torque_gain=typed.computed_torque_gain,
         gear_ratio=given("gear_ratio", typed.gear_ratio),
     )
+
+
+def gravity_of(text: str | None) -> tuple[float, float, float]:
+    """Return gravity as typed [m/s²]; none if it was not."""
+    if text is None:
+        return WEIGHTLESS
+    x, y, z = values.vector("gravity", text, 3)
+    return x, y, z

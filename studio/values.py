@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import json
 import math
+from typing import Any, get_args
 
-from softimpact.symbolic import InvalidValue, Robot
+from softimpact.symbolic import InvalidValue, Robot, UnknownName
 from softimpact.symbolic.drives import PerJoint
 
 
@@ -43,6 +44,13 @@ def rotor_inertia(robot: Robot, text: str) -> PerJoint:
     if text.strip().replace("-", "_").isidentifier() and not _is_number(text):
         return robot.rotor_inertia_set(text.strip())
     return per_joint("rotor_inertia", text)
+
+
+def one_of(what: str, name: str, names: Any) -> Any:
+    """Return a name that a ``Literal`` type allows; raises UnknownName, which lists those."""
+    if name not in get_args(names):
+        raise UnknownName(what, name, get_args(names))
+    return name
 
 
 def _parsed(field: str, text: str) -> object:

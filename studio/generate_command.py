@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact generate``: a robot's impact model as a C package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from . import options as o
+
+if TYPE_CHECKING:
+    from softimpact.codegen import Manifest
+
+Real = Annotated[str, typer.Option(metavar="TYPE", help="Number type: float or double.")]
+Name = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Prefix of all C names; default the robot's.")
+]
+
+
+def generate(
+    model: o.Model,
+    out: o.Out,
+    tip: o.Tip = None,
+    real: Real = "double",
+    name: Name = None,
+    joint_stiffness: o.JointStiffness = None,
+    rotor_inertia: o.RotorInertia = None,
+    position_gain: o.PositionGain = None,
+    gear_ratio: o.GearRatio = None,
+    gravity: o.Gravity = None,
+    order: o.Order = 3,
+    json: o.Json = False,
+) -> None:
+    """Write a C99 package; the drives given are the defaults of its parameters."""
+    from softimpact.codegen import generate_package
+    from softimpact.codegen.manifest import Real
+
+    from .output import print_json
+    from .situation import TypedDrives, drives_of, gravity_of, robot_to_tip
+    from .values import one_of
+
+    number: Real = one_of("number type", real, Real)
+    robot = robot_to_tip(model, tip)
+    given = TypedDrives(joint_stiffness, rotor_inertia, position_gain, None, gear_ratio)
+    manifest = generate_package(
+        robot,
+        out,
+        real=number,
+        name=name,
+        drives_=drives_of(robot, given),
+        gravity=gravity_of(gravity),
+        chain_order=order,
+    )
+    if json:
+        print_json({"out": out, **vars(manifest)})
+    else:
+        _print_table(manifest, out)
+
+
+def _print_table(manifest: Manifest, out: Path) -> None:
+    from .output import print_table
+
+    print_table(
+        f"{manifest.model}, {len(manifest.files)} files in {out}",
+        ("function", "flops", "sin, cos", "error, double", "error, float"),
+        [
+            (
+                function.name,
+                str(function.flops),
+                str(function.sines_and_cosines),
+                f"{function.double_error:.1e}",
+                f"{function.float_error:.1e}",
+            )
+            for function in manifest.functions
+        ],
+    )

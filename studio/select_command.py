@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact select``: which configuration of a study is the safest, the springs given."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from . import options as o
+
+By = Annotated[
+    str, typer.Option(metavar="FIGURE", help="peak_force, m_c, giaf or directional_giaf.")
+]
+
+
+def select(
+    study: o.StudyFile,
+    by: By = "peak_force",
+    fidelity: o.Fidelity = "linearised",
+    json: o.Json = False,
+) -> None:
+    """Rank the configurations of a study at its nominal joint stiffness."""
+    from softimpact.optimize import load_study
+    from softimpact.simulate import Fidelity
+
+    from .output import print_json
+    from .selection import Criterion, print_ranking, ranking, report
+    from .values import one_of
+
+    criterion: Criterion = one_of("criterion", by, Criterion)
+    model: Fidelity = one_of("impact model", fidelity, Fidelity)
+    problem = load_study(study)
+    ranked = ranking(problem, criterion, model)
+    if json:
+        print_json(report(problem, criterion, model, ranked))
+    else:
+        print_ranking(problem, criterion, ranked)

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rank the configurations of a study by what an impact in them does, the springs given."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from softimpact.optimize import Candidate, Study, candidates
+from softimpact.simulate import Approach, Fidelity, simulate_impact
+from softimpact.symbolic import InvalidValue, analyse
+from softimpact.symbolic.rigid import Array
+
+from .output import print_table
+
+Criterion = Literal["peak_force", "m_c", "giaf", "directional_giaf"]
+"""What to rank by: least force, least mass, or largest absorption factor."""
+
+
+@dataclass(frozen=True, eq=False)
+class PoseFigures:
+    """A configuration in figures, which are those of ``softimpact.symbolic.Analysis``.
+
+    Attributes:
+        name: of the pose.
+        q: link angles that were examined: those given, less their turn about the base [rad].
+        turned: that turn [rad], zero for most.
+        m_c: [kg].
+        k_r: [N/m].
+        m_a: [kg].
+        giaf: generalised impact absorption factor.
+        directional_giaf: along the impact.
+        peak_force: of the first contact [N].
+    """
+
+    name: str
+    q: Array
+    turned: float
+    m_c: float
+    k_r: float | None
+    m_a: float | None
+    giaf: float | None
+    directional_giaf: float | None
+    peak_force: float
+
+
+def ranking(study: Study, criterion: Criterion, fidelity: Fidelity) -> list[PoseFigures]:
+    """Return the study's configurations, best first, at its nominal joint stiffness.
+
+    Args:
+        study: robot, impact and configurations.
+        criterion: to rank by.
+        fidelity: of the impacts simulated.
+
+    Raises:
+        InvalidValue: the criterion does not apply to the robot.
+    """
+    found = [_figures(study, candidate, fidelity) for candidate in candidates(study)]
+    if any(getattr(pose, criterion) is None for pose in found):
+        raise InvalidValue("by", f"{criterion} does not apply to robot '{study.robot.name}'")
+    more_is_better = criterion in ("giaf", "directional_giaf")
+    return sorted(found, key=lambda pose: float(getattr(pose, criterion)), reverse=more_is_better)
+
+
+def _figures(study: Study, candidate: Candidate, fidelity: Fidelity) -> PoseFigures:
+    q = candidate.q
+    figures = analyse(study.model, q, study.direction)
+    approach = Approach(q, study.direction, study.speed)
+    history = simulate_impact(study.model, approach, study.contact, fidelity)
+    return PoseFigures(
+        name=candidate.pose.name,
+        q=q,
+        turned=candidate.turned,
+        m_c=figures.m_c,
+        k_r=figures.k_r,
+        m_a=figures.m_a,
+        giaf=figures.giaf,
+        directional_giaf=figures.directional_giaf,
+        peak_force=history.peak("first_contact"),
+    )
+
+
+def report(
+    study: Study, criterion: Criterion, fidelity: Fidelity, ranked: Sequence[PoseFigures]
+) -> dict[str, Any]:
+    """Return a ranking with what it rests on."""
+    return {
+        "study": study.source,
+        "robot": study.robot.name,
+        "tip": study.model.tip,
+        "direction": study.direction,
+        "region": study.contact.region.name,
+        "clamped": study.contact.clamped,
+        "speed": study.speed,
+        "joint_stiffness": study.nominal,
+        "model": fidelity,
+        "peak_definition": "first_contact",
+        "by": criterion,
+        "limit": study.contact.region.force_limit,
+        "winner": ranked[0].name,
+        "poses": [{"rank": i + 1, **vars(pose)} for i, pose in enumerate(ranked)],
+    }
+
+
+def print_ranking(study: Study, criterion: Criterion, ranked: Sequence[PoseFigures]) -> None:
+    """Print a ranking as a table."""
+    limit = study.contact.region.force_limit
+    print_table(
+        f"{study.title}: by {criterion}; {study.contact.region.name}, {study.speed:g} m/s, "
+        f"limit {limit:g} N",
+        ("rank", "pose", "m_c kg", "k_r kN/m", "m_a kg", "GIAF", "along n", "peak N"),
+        [
+            (
+                str(i + 1),
+                pose.name,
+                pose.m_c,
+                None if pose.k_r is None else 1e-3 * pose.k_r,
+                pose.m_a,
+                pose.giaf,
+                pose.directional_giaf,
+                pose.peak_force,
+            )
+            for i, pose in enumerate(ranked)
+        ],
+    )
