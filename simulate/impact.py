@@ -45,7 +45,8 @@ def simulate_impact(
         fidelity: ``one_mass`` (m_c), ``two_mass`` (m_c, k_r, m_a), ``chain``, ``linearised``
             (MSM Eq. 5) or ``full`` (nonlinear).
         order: number of the chain's masses.
-        end: of the chain; None keeps its spring to ground where a controller holds the motors.
+        end: of the chain; None keeps its spring to ground where a controller holds the motors. A
+            chain much shorter than the robot is then nearer with a free end.
         duration: how long to simulate from first touch [s]; None: until shortly after separation.
         tolerance: of the integrator, relative and absolute for an approach of 1 m/s.
 

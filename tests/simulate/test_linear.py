@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from oracles import configurations
 
 from softimpact.simulate import Approach, Fidelity, simulate_impact
-from softimpact.simulate.events import SPAN
-from softimpact.simulate.linear import linearised, modal_scene, modes
+from softimpact.simulate.events import SPAN, first_contact
+from softimpact.simulate.linear import LinearSystem, linearised, modal_scene, modes
 from softimpact.simulate.simulator import UNIT_TIME
 from softimpact.symbolic import (
     Contact,
@@ -90,6 +90,27 @@ def test_stiff_springs_make_a_rigid_robot(panda: Robot) -> None:
     assert alone.first_contact == pytest.approx(rigid.first_contact, rel=1e-9)
     with pytest.raises(InvalidValue, match="two_mass needs a spring"):
         simulate_impact(impact_model(panda), approach, HEAD, "two_mass")
+
+
+@pytest.mark.parametrize("fidelity", ["two_mass", "chain", "linearised"])
+def test_soft_springs_leave_the_links_alone(panda: Robot, fidelity: Fidelity) -> None:
+    approach = Approach(POSE, np.array([0.0, 1.0, 0.0]), 1.0)
+    soft = impact_model(panda, drives_=drives(panda, 0.1))
+    alone = simulate_impact(soft, approach, HEAD, "one_mass")
+    assert simulate_impact(soft, approach, HEAD, fidelity).first_contact == pytest.approx(
+        alone.first_contact, rel=1e-3
+    )
+
+
+def test_a_stiff_spring_joins_the_two_masses(panda: Robot) -> None:
+    stiff = impact_model(panda, drives_=drives(panda, 1e9))
+    n = unit_direction([0, 1, 0])
+    reduced = stiff.reduced(POSE, n)
+    mass = np.array([[float(reduced.m_c + reduced.m_a)]])
+    joined = LinearSystem(mass, np.zeros((1, 1)), np.ones(1), np.ones(1))
+    expected = first_contact(modal_scene(joined, 1.0, HEAD, 1e-10)).highest.force
+    two = simulate_impact(stiff, Approach(POSE, n, 1.0), HEAD, "two_mass")
+    assert two.first_contact == pytest.approx(expected, rel=1e-3)
 
 
 @pytest.mark.parametrize("fidelity", LINEAR)
