@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact generate``; what is in a package is tested in ``codegen/``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from command_line import refusal, run, run_json
+
+from softimpact.codegen import generate_package
+from softimpact.symbolic import drives, load_robot
+
+
+def contents(folder: Path) -> dict[str, str]:
+    return {
+        path.relative_to(folder).as_posix(): path.read_text()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def test_writes_what_the_library_writes(tmp_path: Path) -> None:
+    typed, called = tmp_path / "typed", tmp_path / "called"
+    options = ("--real", "float", "--position-gain", "[500, 0, 400, 0]", "--order", 2)
+    result = run_json("generate", "rr", "--out", typed, *options)
+    robot = load_robot("rr")
+    gains = drives(robot, position_gain=[500, 0, 400, 0])
+    manifest = generate_package(robot, called, real="float", drives_=gains, chain_order=2)
+    assert contents(typed) == contents(called)
+    assert result["real"] == manifest.real == "float"
+    assert result["chain_order"] == 2
+    assert set(result["files"]) | {"manifest.json"} == set(contents(typed))
+
+
+def test_table_for_people_and_a_prefix(tmp_path: Path) -> None:
+    outcome = run("generate", "rr", "--out", tmp_path / "c", "--name", "arm")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert "arm_mass_matrix" in outcome.out
+    assert (tmp_path / "c/include/arm.h").is_file()
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--real", "half"], "unknown number type 'half'; known: double, float"),
+        (["--tip", "elbow"], "unknown frame 'elbow'; known: "),
+        (["--order", "99"], "chain_order: must be from 1 to"),
+        (["--gravity", "[0, 0]"], "gravity: has 2 values, but 3 are needed"),
+        (["--rotor-inertia", "[1]"], "rotor_inertia: has 1 values, but 4 are needed"),
+    ],
+)
+def test_bad_input(tmp_path: Path, options: list[str], reason: str) -> None:
+    assert reason in refusal("generate", "rr", "--out", tmp_path / "c", *options)
+    assert not (tmp_path / "c").exists()
+
+
+def test_unknown_robot(tmp_path: Path) -> None:
+    assert "known: " in refusal("generate", "rrr", "--out", tmp_path / "c")
+
+
+def test_a_file_in_the_way_stays(tmp_path: Path) -> None:
+    path = tmp_path / "notes"
+    path.write_text("mine")
+    assert f"{path}: " in refusal("generate", "rr", "--out", path)
+    assert f"{path}" in refusal("generate", "rr", "--out", path / "package")
+    assert path.read_text() == "mine"
+
+
+def test_foreign_files_stay(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    assert "notes.txt" in refusal("generate", "rr", "--out", tmp_path)
+    assert contents(tmp_path) == {"notes.txt": "mine"}
+
+
+def test_failure_leaves_the_older_package(tmp_path: Path) -> None:
+    folder = tmp_path / "c"
+    assert run("generate", "rr", "--out", folder).code == 0
+    before = contents(folder)
+    refusal("generate", "rr", "--out", folder, "--order", "99")
+    assert contents(folder) == before
+    (folder / "README.md").write_text("edited")
+    refusal("generate", "rr", "--out", folder)
+    assert (folder / "README.md").read_text() == "edited"
