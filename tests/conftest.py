@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+import mujoco
 import pytest
 from hypothesis import settings
 
@@ -33,6 +36,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items:
             if marker in item.keywords:
                 item.add_marker(skip)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _no_log_file() -> Iterator[None]:
+    """Keep MuJoCo, which tests ask for a second opinion, from logging to the working directory."""
+    mujoco.set_mju_user_warning(lambda _: None)
+    yield
+    mujoco.set_mju_user_warning(None)
 
 
 @pytest.fixture(scope="session")
