@@ -58,7 +58,8 @@ def unit_direction(direction: ArrayLike) -> Array:
     n = np.asarray(direction, dtype=float)
     if n.shape != (3,) or not np.isfinite(n).all():
         raise InvalidValue("direction", "needs three finite numbers [x, y, z]")
-    length = float(np.linalg.norm(n))
-    if length == 0:
+    largest = float(abs(n).max())
+    if largest == 0:
         raise InvalidValue("direction", "must not be zero")
-    return np.asarray(n / length)
+    scaled = n / largest  # squares of very long and very short vectors leave the range of floats
+    return np.asarray(scaled / np.linalg.norm(scaled))
