@@ -34,5 +34,4 @@ class Contact:
 
     def force(self, depth: Matrix) -> Matrix:
         """Return f_c = k_f δ₊^1.5 [N] for a penetration δ [m] of the skin."""
-        pressed = ca.fmax(depth, 0)
-        return self.hertz_stiffness * pressed * ca.sqrt(pressed)
+        return self.hertz_stiffness * ca.fmax(depth, 0) ** HERTZ_EXPONENT
