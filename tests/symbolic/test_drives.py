@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rotors, springs and gains: defaults, units, and what is refused."""
+
+import numpy as np
+import pytest
+from oracles import assert_near
+
+from softimpact.symbolic import InvalidValue, WrongLength, drives, load_robot
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return load_robot("panda")
+
+
+def test_defaults_are_rigid_joints_with_the_files_rotors(robot):
+    found = drives(robot)
+    assert found.elastic == (False,) * 7
+    assert_near(found.rotors, robot.armature)
+    assert_near(found.gains, np.zeros(7))
+    assert found.computed_torque_gain is None
+
+
+def test_one_number_serves_all_joints(robot):
+    found = drives(robot, joint_stiffness=3e3, rotor_inertia=0.2, position_gain=5.0)
+    assert found.elastic == (True,) * 7
+    assert_near(found.springs, np.full(7, 3e3))
+    assert_near(found.rotors, np.full(7, 0.2))
+    assert_near(found.gains, np.full(7, 5.0))
+
+
+def test_infinite_stiffness_is_a_rigid_joint(robot):
+    k_s = np.array([1e3, np.inf, 1e3, 1e3, np.inf, 1e3, 1e3])
+    found = drives(robot, joint_stiffness=k_s)
+    assert found.elastic == (True, False, True, True, False, True, True)
+    assert np.isfinite(np.array(found.springs)).all()
+
+
+def test_gear_ratio_counts_squared(robot):
+    found = drives(robot, rotor_inertia=1e-5, gear_ratio=-100.0)
+    assert_near(found.rotors, np.full(7, 0.1))
+    ratio = np.arange(1.0, 8.0)
+    assert_near(drives(robot, rotor_inertia=1e-4, gear_ratio=ratio).rotors, 1e-4 * ratio**2)
+
+
+def test_passive_joints_get_no_gain():
+    assert_near(drives(load_robot("rr"), position_gain=5.0).gains, [5, 0, 5, 0])
+
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize(
+    ("options", "field", "message"),
+    [
+        ({"joint_stiffness": 0.0}, "joint_stiffness", "must be greater than 0.*entry 1 is 0"),
+        ({"joint_stiffness": -1.0}, "joint_stiffness", "must be greater than 0"),
+        ({"joint_stiffness": [1, 1, -5, 1, 1, 1, 1]}, "joint_stiffness", "entry 3 is -5"),
+        ({"joint_stiffness": NAN}, "joint_stiffness", "must not be NaN"),
+        ({"joint_stiffness": [1, 1, 1, 1, 1, 1, NAN]}, "joint_stiffness", "must not be NaN"),
+        ({"rotor_inertia": -0.1}, "rotor_inertia", "must be finite and ≥ 0"),
+        ({"rotor_inertia": np.inf}, "rotor_inertia", "must be finite and ≥ 0"),
+        ({"rotor_inertia": NAN}, "rotor_inertia", "must not be NaN"),
+        (
+            {"joint_stiffness": 1e3, "rotor_inertia": [1, 1, 0, 1, 1, 1, 1]},
+            "rotor_inertia",
+            "joint 'joint3' is elastic, so its rotor needs an inertia greater than 0",
+        ),
+        ({"position_gain": -1.0}, "position_gain", "must be finite and ≥ 0"),
+        ({"position_gain": np.inf}, "position_gain", "must be finite and ≥ 0"),
+        ({"computed_torque_gain": -1.0}, "computed_torque_gain", "must be finite and ≥ 0"),
+        ({"computed_torque_gain": NAN}, "computed_torque_gain", "must be finite and ≥ 0"),
+        (
+            {"position_gain": 1.0, "computed_torque_gain": 1.0},
+            "computed_torque_gain",
+            "excludes position_gain; give one of them",
+        ),
+        ({"gear_ratio": 100.0}, "gear_ratio", "needs rotor_inertia"),
+        ({"rotor_inertia": 1e-4, "gear_ratio": 0.0}, "gear_ratio", "must be finite and not 0"),
+        ({"rotor_inertia": 1e-4, "gear_ratio": NAN}, "gear_ratio", "must not be NaN"),
+    ],
+)
+def test_bad_numbers_are_refused(robot, options, field, message):
+    with pytest.raises(InvalidValue, match=f"^{field}: .*{message}") as caught:
+        drives(robot, **options)
+    assert caught.value.field == field
+
+
+@pytest.mark.parametrize(
+    "field", ["joint_stiffness", "rotor_inertia", "position_gain", "gear_ratio"]
+)
+@pytest.mark.parametrize("values", [[1.0, 2.0], [], np.ones((7, 1))])
+def test_vectors_must_fit(robot, field, values):
+    options = {"rotor_inertia": 0.1} if field == "gear_ratio" else {}
+    with pytest.raises(WrongLength, match=f"{field}: has .* 7 are needed.*joint1") as caught:
+        drives(robot, **options | {field: values})
+    assert caught.value.expected == 7

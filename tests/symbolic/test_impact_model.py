@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The impact model puts the parts together."""
+
+import casadi as ca
+import numpy as np
+import pytest
+from linear_models import nullspace, with_nullspace
+from oracles import assert_near, configurations, example_urdf
+from random_robots import unit_vector
+
+from softimpact.symbolic import FrameNotFound, drives, frame_jacobian, impact_model, load_robot
+
+
+@pytest.fixture(scope="module")
+def model():
+    robot = load_robot("panda")
+    return impact_model(
+        robot, drives_=drives(robot, joint_stiffness=5e3, computed_torque_gain=100.0)
+    )
+
+
+def test_size_counts_motors_and_deflections(model):
+    assert model.size == 14
+    k_s = [1e3, np.inf, 1e3, 1e3, 1e3, 1e3, 1e3]
+    assert impact_model(model.robot, drives_=drives(model.robot, k_s)).size == 13
+    assert impact_model(model.robot).size == 7
+
+
+def test_tip_is_the_robots_own_unless_named(model):
+    assert model.tip == "hand_tcp"
+    other = impact_model(model.robot, "link4")
+    q = next(configurations(model.robot, 1))
+    assert_near(other.jacobian(q), np.array(frame_jacobian(model.robot, "link4", q))[:3])
+    with pytest.raises(FrameNotFound, match=r"'elbow'.*link4"):
+        impact_model(model.robot, "elbow")
+
+
+def test_a_robot_without_tip_asks_for_one():
+    robot = load_robot(example_urdf("ur5_robot.urdf"))
+    with pytest.raises(FrameNotFound, match="tool0"):
+        impact_model(robot)
+
+
+def test_reduction_of_the_panda_is_the_papers(model):
+    q, n = next(configurations(model.robot, 1)), unit_vector(1)
+    linear, ours = model.linear(q, ca.DM(n)), model.reduced(q, ca.DM(n))
+    m_c, k_r, m_a = with_nullspace(linear, nullspace(linear, 0))
+    assert float(ours.m_c) == pytest.approx(m_c, rel=1e-10)
+    assert float(ours.k_r) == pytest.approx(k_r, rel=1e-9)
+    assert float(ours.m_a) == pytest.approx(m_a, rel=1e-8)
+    assert float(model.reflected_mass(q, ca.DM(n))) == pytest.approx(m_c, rel=1e-10)
+
+
+def test_with_springs_replaces_only_them(model):
+    q = next(configurations(model.robot, 1))
+    k_s = np.linspace(1e3, 2e3, 7)
+    expected = drives(model.robot, k_s, computed_torque_gain=100.0)
+    other = impact_model(model.robot, drives_=expected)
+    found = model.with_springs(ca.DM(k_s))
+    assert_near(found.generalised_stiffness(q), other.generalised_stiffness(q), 0)
+    assert_near(found.generalised_mass(q).matrix, model.generalised_mass(q).matrix, 0)
+
+
+@pytest.mark.parametrize("kind", [ca.SX, ca.MX])
+def test_symbols_give_the_same_numbers(model, kind):
+    q, n, k_s = next(configurations(model.robot, 1)), unit_vector(3), np.linspace(1e3, 2e3, 7)
+    x, d, k = kind.sym("q", 7), kind.sym("n", 3), kind.sym("k", 7)
+
+    def all_of(q, n, k):
+        m = model.with_springs(k)
+        reduced, masses = m.reduced(q, n), m.chain(q, n, 3)
+        parts = [reduced.m_c, reduced.k_r, reduced.m_a, m.reflected_mass(q, n)]
+        parts += [ca.vertcat(*masses.mass), ca.vertcat(*masses.stiffness)]
+        linear = m.linear(q, n)
+        return [*parts, linear.mass.matrix, linear.stiffness, linear.jacobian, m.jacobian(q)]
+
+    found = ca.Function("f", [x, d, k], all_of(x, d, k))(q, n, k_s)
+    for ours, theirs in zip(found, all_of(ca.DM(q), ca.DM(n), ca.DM(k_s)), strict=True):
+        assert_near(ours, theirs, 1e-11)
