@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Design problems: which joint stiffness and which posture hurt least."""
 
-from .design import Design, Gains, PoseResult, SolverFailure, design
+from .co_design import Design, Gains, PoseResult, SolverFailure, design
 from .poses import Candidate, candidates
 from .solve import Mode, Outcome
 from .study import Pose, Study, load_study

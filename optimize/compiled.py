@@ -20,7 +20,7 @@ FLAGS = ("-O2", "-fPIC", "-shared", "-fno-math-errno")
 
 
 def c_compiler() -> str | None:
-    """Return the C compiler: $CC, cc, gcc or clang, whichever comes first; None if there is none."""
+    """Return the C compiler: $CC, or the first of cc, gcc and clang; None if there is none."""
     named = os.environ.get("CC")
     candidates = [named] if named else ["cc", "gcc", "clang"]
     return next((found for name in candidates if (found := shutil.which(name))), None)

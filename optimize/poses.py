@@ -12,6 +12,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, JointKind, frame_pose
 from softimpact.symbolic.rigid import Array
 
+from .repair import posture_at_pose
 from .study import Pose, Study
 
 TURNED = 0.1
@@ -26,12 +27,14 @@ class Candidate:
         pose: as given.
         turned: angle about the first joint's axis by which it differs from the task [rad]; zero
             unless it is so large that the pose is another one, turned.
-        q: posture with that turn taken back, length n [rad].
+        moved: largest change of a joint, after that turn, that holds the tip exactly [rad].
+        q: posture that serves the task, length n [rad].
         offset: distance of the tip from the task's position at q [m].
     """
 
     pose: Pose
     turned: float
+    moved: float
     q: Array
     offset: float
 
@@ -64,10 +67,12 @@ def _candidate(study: Study, pose: Pose, task: tuple[Array, Array]) -> Candidate
     if study.robot.joints[0].kind is JointKind.HINGE:
         turn = _best_turn(study.model, pose.q, task)
         turned = turn if abs(turn) > TURNED else 0.0
-    q = pose.q.copy()
-    q[0] -= turned
-    position, _ = tip_pose(study.model, q)
-    return Candidate(pose, turned, q, float(np.linalg.norm(position - task[0])))
+    back = pose.q.copy()
+    back[0] -= turned
+    held = posture_at_pose(study, back, *task) if study.exact else None
+    q = back if held is None else held
+    offset = np.linalg.norm(tip_pose(study.model, q)[0] - task[0])
+    return Candidate(pose, turned, float(abs(q - back).max()), q, float(offset))
 
 
 def _best_turn(model: ImpactModel, q: Array, task: tuple[Array, Array]) -> float:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -12,6 +13,7 @@ from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.rigid import Array
 
 from .nlp import deflections, tip_pose_error
+from .solve import quiet
 from .study import Study
 
 
@@ -37,34 +39,33 @@ def _posture_solver(model: ImpactModel) -> ca.Function:
     n = model.robot.n
     q, wanted = ca.SX.sym("q", n), ca.SX.sym("wanted", n)
     position, rotation = ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)
-    problem = {
+    problem: dict[str, Any] = {
         "x": q,
         "p": ca.vertcat(wanted, position, ca.vec(rotation)),
         "f": ca.sumsqr(q - wanted),
         "g": tip_pose_error(model, q, position, rotation),
     }
-    ipopt = {"print_level": 0, "sb": "yes", "tol": 1e-9}
-    options = {"ipopt": ipopt, "print_time": False, "error_on_fail": False}
-    return ca.nlpsol("posture", "ipopt", problem, options)
+    return ca.nlpsol("posture", "ipopt", problem, quiet({"tol": 1e-9}))
 
 
 def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
-    """Return springs stiff enough for the study's deflection bound, as far as its bounds allow.
+    """Return the softest springs, in the given proportions, that meet the deflection bound.
 
-    All joints are stiffened by the same factor; those that reach their upper bound stay there.
+    Joints that reach a bound of their stiffness stay there; if the upper bounds are too soft, the
+    springs come as near as they can.
 
     Args:
         study: whose forces and bounds count.
         q: posture, length n [rad].
-        springs: to start from, length n [N·m/rad].
+        springs: proportions of the stiffness, length n [N·m/rad].
     """
-    stiffened = np.clip(springs, study.lower, study.upper)
-    for _ in range(2 * study.robot.n):
-        share = largest_deflection(study, q, stiffened) / study.max_deflection
-        if share <= 1.0 or np.all(stiffened >= study.upper):
+    scaled = np.clip(springs, study.lower, study.upper)
+    for _ in range(4 * study.robot.n):
+        share = largest_deflection(study, q, scaled) / study.max_deflection
+        if abs(share - 1.0) < 1e-3:
             break
-        stiffened = np.minimum(stiffened * share * 1.001, study.upper)
-    return stiffened
+        scaled = np.clip(scaled * share, study.lower, study.upper)
+    return scaled
 
 
 def largest_deflection(study: Study, q: Array, springs: Array) -> float:

@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
@@ -17,17 +17,21 @@ from softimpact.symbolic.rigid import Array
 Mode = Literal["table", "free"]
 """``table``: the posture is given and k_s is sought; ``free``: both are sought."""
 
-IPOPT = {
+IPOPT: dict[str, Any] = {
     "hessian_approximation": "limited-memory",
     "limited_memory_max_history": 20,
     "max_iter": 300,
-    "tol": 1e-6,
-    "acceptable_tol": 1e-5,
+    "tol": 1e-5,
+    "acceptable_tol": 1e-4,
     "acceptable_iter": 8,
-    "print_level": 0,
-    "sb": "yes",
 }
 """Options of Ipopt: the exact Hessian halves the iterations but costs seven times each."""
+
+
+def quiet(ipopt: dict[str, Any]) -> dict[str, Any]:
+    """Return options of CasADi's nlpsol for an Ipopt that prints nothing and raises nothing."""
+    silent = {**ipopt, "print_level": 0, "sb": "yes"}
+    return {"ipopt": silent, "print_time": False, "error_on_fail": False}
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,15 +60,13 @@ class Start:
     Attributes:
         name: of the pose.
         mode: table or free.
-        q: posture, length n [rad].
-        springs: joint stiffness, length n [N·m/rad].
-        fallbacks: postures and stiffnesses to try if the search fails from the first.
+        points: postures [rad] and stiffnesses [N·m/rad] to start from; the best answer counts.
+        fallbacks: the same, to try in turn if no search from the points succeeds.
     """
 
     name: str
     mode: Mode
-    q: Array
-    springs: Array
+    points: tuple[tuple[Array, Array], ...]
     fallbacks: tuple[tuple[Array, Array], ...] = ()
 
 
@@ -89,7 +91,7 @@ class Outcome:
         status: Ipopt's.
         solved: whether a local optimum was found.
         iterations: of all attempts.
-        attempts: number of starts used, 1 unless the first failed.
+        attempts: number of searches.
         seconds: wall time.
         q: posture, length n [rad].
         springs: joint stiffness, length n [N·m/rad].
@@ -116,10 +118,9 @@ FEASIBLE = 1e-5
 
 @lru_cache(maxsize=4)
 def _solver(oracle: str, library: Path | None) -> tuple[ca.Function, ca.Function]:
-    options = {"ipopt": IPOPT, "print_time": False, "error_on_fail": False}
     functions = ca.Function.deserialize(oracle)
     if library is not None:
-        return ca.nlpsol("design", "ipopt", str(library), options), functions
+        return ca.nlpsol("design", "ipopt", str(library), quiet(IPOPT)), functions
     return nlp_solver(functions), functions
 
 
@@ -127,23 +128,23 @@ def nlp_solver(oracle: ca.Function) -> ca.Function:
     """Return Ipopt on the problem, in CasADi's virtual machine."""
     x, p = (ca.MX.sym(name, oracle.numel_in(name)) for name in ("x", "p"))
     f, g = oracle(x, p)
-    options = {"ipopt": IPOPT, "print_time": False, "error_on_fail": False}
-    return ca.nlpsol("design", "ipopt", {"x": x, "p": p, "f": f, "g": g}, options)
+    problem: dict[str, Any] = {"x": x, "p": p, "f": f, "g": g}
+    return ca.nlpsol("design", "ipopt", problem, quiet(IPOPT))
 
 
 def solve(program: Program, start: Start, bounds: Bounds, parameters: Array) -> Outcome:
-    """Search from a start, and from its fallbacks in turn as long as Ipopt fails.
+    """Search from all points of a start, and from its fallbacks as long as Ipopt fails.
 
     Returns:
-        The first solved point; if none is, the feasible point of least force, else the one of
-        least violation.
+        The solved point of least force; if there is none, the feasible point of least force, else
+        the one of least violation.
     """
     begin = time.perf_counter()
-    found: list[Outcome] = []
-    for q, springs in ((start.q, start.springs), *start.fallbacks):
-        found.append(_attempt(program, start, q, springs, bounds, parameters))
-        if found[-1].solved:
+    found = [_attempt(program, start, *point, bounds, parameters) for point in start.points]
+    for point in start.fallbacks:
+        if any(outcome.solved for outcome in found):
             break
+        found.append(_attempt(program, start, *point, bounds, parameters))
     best = min(found, key=_preference)
     return Outcome(
         **{

@@ -75,6 +75,7 @@ class TaskSection(_Section):
     """Where the tip is held: where one of the poses has it."""
 
     pose_of: str
+    exact: bool = True
 
 
 class PoseSection(_Section):
@@ -138,6 +139,7 @@ class Study:
         forces: on the tip, k×3 [N].
         max_deflection: of the springs under each force [m].
         task_pose: the pose that fixes where the tip is held.
+        exact: whether poses are moved to where they hold the tip exactly there.
         poses: all candidates.
     """
 
@@ -153,6 +155,7 @@ class Study:
     forces: Array
     max_deflection: float
     task_pose: Pose
+    exact: bool
     poses: tuple[Pose, ...]
 
     @property
@@ -224,6 +227,7 @@ def _build(file: StudyFile, source: Path) -> Study:
         forces=np.array(file.accuracy.forces),
         max_deflection=file.accuracy.max_deflection,
         task_pose=next(pose for pose in poses if pose.name == file.task.pose_of),
+        exact=file.task.exact,
         poses=poses,
     )
 

@@ -19,7 +19,7 @@ SHORTEST, LONGEST = 0.02, 0.64
 MARGIN = 1.5
 """Duration simulated, as a multiple of the longest first contact among the candidates."""
 
-LARGEST_PHASE = 1.0
+LARGEST_PHASE = 1.5
 """Largest angular frequency times the step; the leapfrog is stable below 2."""
 
 
@@ -54,13 +54,12 @@ def impact_timing(study: Study, postures: Sequence[Array]) -> Timing:
         if longest is not None or duration >= LONGEST:
             break
         duration *= 2.0
-    wanted = min(LONGEST, MARGIN * (duration if longest is None else longest))
+    wanted = min(LONGEST, MARGIN * (duration if longest is None else float(longest)))
     return Timing(wanted, _steps(wanted, frequency))
 
 
 def _steps(duration: float, frequency: float) -> int:
-    fewest = max(2 * NODES, duration * frequency / LARGEST_PHASE)
-    return NODES * int(np.ceil(fewest / NODES))
+    return NODES * max(1, int(np.ceil(duration * frequency / LARGEST_PHASE / NODES)))
 
 
 def _largest_frequency(study: Study, q: Array) -> float:

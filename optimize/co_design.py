@@ -8,9 +8,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
-from pathlib import Path
 
-import casadi as ca
 import numpy as np
 
 from softimpact.symbolic.rigid import Array
@@ -18,7 +16,7 @@ from softimpact.symbolic.rigid import Array
 from .compiled import c_compiler, compiled_nlp
 from .nlp import DesignNlp, build_nlp, parameters
 from .poses import Candidate, candidates, tip_pose
-from .repair import accurate_springs, largest_deflection, posture_at_pose
+from .repair import accurate_springs, largest_deflection
 from .solve import Bounds, Mode, Outcome, Program, Start, nlp_solver, solve
 from .study import Study
 from .timing import Timing, impact_timing
@@ -163,20 +161,17 @@ def _program(nlp: DesignNlp) -> Program:
 
 
 def _start(study: Study, candidate: Candidate, mode: Mode) -> Start:
-    q = candidate.q
-    if mode == "free":
-        position, rotation = tip_pose(study.model, study.task_pose.q)
-        q = _or_else(posture_at_pose(study, q, position, rotation), study.task_pose.q)
-    springs = accurate_springs(study, q, study.nominal)
-    softer = accurate_springs(study, q, np.sqrt(study.lower * study.upper))
-    fallbacks = [(q, softer), (q, study.upper)]
-    if mode == "free":
-        fallbacks.append((study.task_pose.q, study.upper))
-    return Start(candidate.pose.name, mode, q, springs, tuple(fallbacks))
+    """Begin with equal joints that are just accurate, and with the stiffest joints.
 
-
-def _or_else(found: Array | None, otherwise: Array) -> Array:
-    return otherwise if found is None else found
+    If both fail where the posture is free, the task's own posture is the last resort.
+    """
+    equal = np.full(study.robot.n, float(np.median(study.nominal)))
+    points = tuple(
+        (candidate.q, springs)
+        for springs in (accurate_springs(study, candidate.q, equal), study.upper)
+    )
+    fallbacks = ((study.task_pose.q, study.upper),) if mode == "free" else ()
+    return Start(candidate.pose.name, mode, points, fallbacks)
 
 
 def _run(
