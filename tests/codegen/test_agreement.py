@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Compiled packages do what the symbolic model does, within the bounds they state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from compiled_packages import Generated, Library, parameter, run, tool
+
+from softimpact.codegen import generate_package
+from softimpact.codegen.functions import is_elastic, parameters_of
+from softimpact.codegen.manifest import FunctionRecord
+from softimpact.codegen.samples import Sample, draw_samples
+from softimpact.symbolic import (
+    Drives,
+    ImpactModel,
+    directional_giaf,
+    giaf,
+    giif,
+)
+from softimpact.symbolic.rigid import Array
+
+ROBOTS = ["panda", "rr", "ur5", "baxter", "gantry"]
+OK, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR = 0, 2, 3, 4, 5
+
+
+def oracle(package: Generated, sample: Sample) -> dict[str, list[Array]]:
+    """Return all outputs as the public model computes them on numbers."""
+    robot = package.robot
+    elastic = is_elastic(robot)
+    springs = parameter(package, sample, "joint_stiffness") if elastic else np.zeros(robot.n)
+    gains = parameter(package, sample, "position_gain") * np.array(robot.actuated)
+    drives = Drives(
+        ca.DM(parameter(package, sample, "rotor_inertia")),
+        ca.DM(springs),
+        (elastic,) * robot.n,
+        ca.DM(gains),
+    )
+    model = ImpactModel(robot, package.tip, drives, package.manifest.gravity)
+    q = ca.DM(sample.q)
+    n = ca.DM(sample.n) / ca.norm_2(ca.DM(sample.n))
+    reduced, chain = model.reduced(q, n), model.chain(q, n, package.manifest.chain_order)
+    real, free = model.mobility(q), model.free_mobility(q)
+    values = {
+        "mass_matrix": [model.mass_matrix(q)],
+        "jacobian": [model.jacobian(q)],
+        "generalised_mass_matrix": [model.generalised_mass(q).matrix],
+        "stiffness_matrix": [model.generalised_stiffness(q)],
+        "contact_jacobian": [model.contact_jacobian(q, n)],
+        "reflected_mass": [model.reflected_mass(q, n)],
+        "reduced_model": [reduced.m_c, reduced.k_r, reduced.m_a],
+        "chain": [ca.vertcat(*chain.mass), ca.vertcat(*chain.stiffness)],
+        "osim": [real.inertia, free.inertia],
+        "giaf": [giaf(free, real), giif(free, real)],
+        "directional_giaf": [directional_giaf(free, real, n)],
+    }
+    return {name: [np.array(ca.DM(v)) for v in outputs] for name, outputs in values.items()}
+
+
+def assert_agrees(library: Library, samples: list[Sample]) -> int:
+    """Compare all functions with the model; return how many results were compared."""
+    package, compared = library.package, 0
+    records = {record.name: record for record in package.manifest.functions}
+    functions = package.functions
+    for sample in samples:
+        expected = oracle(package, sample)
+        for function in functions:
+            status, found = library.call(function, sample)
+            if status == SINGULAR:
+                assert all(np.isnan(output).all() for output in found)
+                continue
+            assert status == OK, function.name
+            record = records[f"{package.manifest.name}_{function.name}"]
+            bound = stated_bound(record, library.real)
+            for output, ours, theirs in zip(
+                function.outputs, found, expected[function.name], strict=True
+            ):
+                scale = 1.0 if output.share else abs(theirs).max()
+                error = abs(ours.ravel() - theirs.ravel()).max() / scale
+                assert error <= bound, (function.name, output.name, sample)
+            compared += 1
+    return compared
+
+
+def stated_bound(record: FunctionRecord, real: str) -> float:
+    """Return the bound of the manifest; in double never more than the design's 1e-12."""
+    assert record.double_error == 1e-12
+    return record.double_error if real == "double" else record.float_error
+
+
+@pytest.mark.parametrize("real", ["double", "float"])
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_c_agrees_with_the_model_on_fresh_inputs(
+    package: Callable[[str], Generated], robot: str, real: str
+) -> None:
+    generated = package(robot)
+    library = generated.load(real)
+    samples = draw_samples(generated.robot, parameters_of(generated.robot), 40, seed=99)
+    compared = assert_agrees(library, samples)
+    assert compared > 0.9 * len(samples) * len(generated.manifest.functions)
+
+
+EVERY_BUILD = [(compiler, real) for compiler in ("gcc", "clang") for real in ("double", "float")]
+BUILDS = [("panda", *build) for build in EVERY_BUILD]
+BUILDS += [(robot, *build) for robot in ROBOTS[1:] for build in EVERY_BUILD[::3]]
+
+
+@pytest.mark.parametrize(("robot", "compiler", "real"), BUILDS)
+def test_own_test_compiles_without_warnings_and_passes(
+    package: Callable[[str], Generated], robot: str, compiler: str, real: str, tmp_path: Path
+) -> None:
+    said = package(robot).run_own_test(compiler, real, tmp_path / "test")
+    assert said.endswith("all passed\n")
+    assert said.count("error") == len(package(robot).manifest.functions)
+
+
+def test_own_test_fails_on_a_wrong_result(
+    package: Callable[[str], Generated], tmp_path: Path
+) -> None:
+    generated = package("rr")
+    golden = (generated.folder / "test/golden.c").read_text()
+    row = next(line for line in golden.split("reflected_mass")[1].splitlines() if "    { " in line)
+    wrong = tmp_path / "golden.c"
+    wrong.write_text(golden.replace(row, row.replace("    { ", "    { 1")))
+    sources = [*generated.folder.glob("src/*.c"), generated.folder / "test/run_tests.c", wrong]
+    include = f"-I{generated.folder / 'test'}"
+    binary = tmp_path / "test"
+    run(tool("gcc"), *generated.flags("double"), include, *sources, "-o", binary, "-lm")
+    assert "FAILED rr_reflected_mass: error within its bound" in run(binary, ok=False)
+
+
+def test_gravity_enters_the_stiffness(package: Callable[[str], Generated], tmp_path: Path) -> None:
+    weightless = package("gantry")
+    robot, tip, folder = weightless.robot, weightless.tip, tmp_path / "heavy"
+    manifest = generate_package(robot, folder, tip=tip, gravity=(0.5, 0.0, -9.81), chain_order=2)
+    heavy = Generated(robot, tip, folder, manifest).load("double")
+    samples = draw_samples(robot, parameters_of(robot), 5, seed=3)
+    assert_agrees(heavy, samples)
+    change = stiffness(heavy, samples[0]) - stiffness(weightless.load("double"), samples[0])
+    assert abs(change[1, 1]) > 1e-2  # the arm turns about a tilted axis
+
+
+def stiffness(library: Library, sample: Sample) -> Array:
+    """Return K0 of a compiled package."""
+    (function,) = [f for f in library.package.functions if f.name == "stiffness_matrix"]
+    return library.call(function, sample)[1][0]
+
+
+def test_bad_input_returns_a_status_and_writes_nothing(
+    package: Callable[[str], Generated],
+) -> None:
+    generated = package("panda")
+    library = generated.load("double")
+    good = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=5)[0]
+    nan, inf = float("nan"), float("inf")
+    springs, rotors, gains = good.parameters
+    cases = [
+        (replace(good, q=(nan, *good.q[1:])), NOT_FINITE),
+        (replace(good, q=(*good.q[1:], -inf)), NOT_FINITE),
+        (replace(good, n=(0.0, 0.0, -0.0)), ZERO_DIRECTION),
+        (replace(good, n=(0.0, inf, 1.0)), NOT_FINITE),
+        (replace(good, parameters=((0.0, *springs[1:]), rotors, gains)), OUT_OF_RANGE),
+        (replace(good, parameters=(springs, (*rotors[1:], -1.0), gains)), OUT_OF_RANGE),
+        (replace(good, parameters=(springs, rotors, (*gains[1:], nan))), NOT_FINITE),
+    ]
+    (chain,) = [f for f in generated.functions if f.name == "chain"]
+    assert library.call(chain, good)[0] == OK
+    for sample, expected in cases:
+        status, outputs = library.call(chain, sample)
+        assert status == expected, sample
+        assert all(np.isnan(output).all() for output in outputs)
+
+
+def test_length_of_the_direction_does_not_matter(
+    package: Callable[[str], Generated],
+) -> None:
+    generated = package("panda")
+    library = generated.load("float")
+    good = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=5)[0]
+    (function,) = [f for f in generated.functions if f.name == "reflected_mass"]
+    lengths = [2.0**exponent for exponent in (-120, -10, 0, 10, 120)]
+    scaled = [replace(good, n=tuple(length * x for x in good.n)) for length in lengths]
+    masses = {float(library.call(function, sample)[1][0]) for sample in scaled}
+    assert len(masses) == 1
+
+
+def test_directions_without_motion_are_singular(
+    package: Callable[[str], Generated],
+) -> None:
+    generated = package("rr")  # moves in a plane
+    for real in ("double", "float"):
+        library = generated.load(real)
+        sample = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=1)[0]
+        for function in generated.functions:
+            status, outputs = library.call(function, replace(sample, n=(0.0, 0.0, 1.0)))
+            mass = function.name in ("reflected_mass", "reduced_model", "chain")
+            assert status == (SINGULAR if mass else OK)
+            assert all(np.isnan(output).all() == mass for output in outputs)
+
+
+def test_stretched_arm_has_no_operational_space_inertia(
+    package: Callable[[str], Generated],
+) -> None:
+    generated = package("ur5_wrist")
+    elbow = generated.robot.joint_names.index("elbow_joint")
+    bent = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=1)[0]
+    straight = replace(bent, q=tuple(0.0 if i == elbow else x for i, x in enumerate(bent.q)))
+    functions = [f for f in generated.functions if "giaf" in f.name or f.name == "osim"]
+    assert len(functions) == 3
+    for real in ("double", "float"):
+        library = generated.load(real)
+        for function in functions:
+            assert library.call(function, bent)[0] == OK
+            assert library.call(function, straight)[0] == SINGULAR

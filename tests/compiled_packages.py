@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Generated packages, compiled and called through ctypes."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from softimpact.codegen.functions import CFunction, functions_of, parameters_of
+from softimpact.codegen.manifest import Manifest
+from softimpact.codegen.samples import Sample
+from softimpact.symbolic import Robot
+from softimpact.symbolic.rigid import Array
+
+WARNINGS = [
+    *("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow"),
+    *("-Wmissing-prototypes", "-Wstrict-prototypes", "-Wfloat-equal", "-Wundef", "-Werror"),
+]
+KINDS = {"double": (ctypes.c_double, np.float64), "float": (ctypes.c_float, np.float32)}
+
+
+def tool(name: str) -> str:
+    """Return a program's path; without it skip, or fail where nothing may be skipped."""
+    path = shutil.which(name)
+    if path is None:
+        (pytest.fail if os.environ.get("CI") else pytest.skip)(f"needs {name}")
+    return str(path)
+
+
+def run(*command: str | Path, ok: bool = True) -> str:
+    """Run a program and return what it says."""
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False)
+    if ok:
+        assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+@dataclass(frozen=True, eq=False)
+class Generated:
+    """A package on disk and what it was generated from."""
+
+    robot: Robot
+    tip: str
+    folder: Path
+    manifest: Manifest
+
+    def flags(self, real: str) -> list[str]:
+        """Return what every compiler of the package is told."""
+        use = f"-D{self.manifest.name.upper()}_USE_{real.upper()}=1"
+        return ["-std=c99", "-O1", *WARNINGS, use, f"-I{self.folder / 'include'}"]
+
+    @cached_property
+    def functions(self) -> tuple[CFunction, ...]:
+        """What the package computes."""
+        m = self.manifest
+        return functions_of(self.robot, self.tip, m.gravity, m.chain_order)
+
+    def run_own_test(self, compiler: str, real: str, out: Path) -> str:
+        """Compile the package's own test without a warning, run it and return what it says."""
+        sources = [*self.folder.glob("src/*.c"), *self.folder.glob("test/*.c")]
+        run(tool(compiler), *self.flags(real), *sources, "-o", out, "-lm")
+        return run(out)
+
+    def load(self, real: str) -> Library:
+        """Compile the package to a shared library beside it, once, and open it."""
+        out = self.folder.with_suffix(f".{real}.so")
+        if not out.exists():
+            flags = [*self.flags(real), "-shared", "-fPIC"]
+            run(tool("gcc"), *flags, *self.folder.glob("src/*.c"), "-o", out, "-lm")
+        return Library(self, ctypes.CDLL(str(out)), real)
+
+
+@dataclass(frozen=True, eq=False)
+class Library:
+    """A compiled package."""
+
+    package: Generated
+    library: ctypes.CDLL
+    real: str
+
+    def call(self, function: CFunction, sample: Sample) -> tuple[int, list[Array]]:
+        """Return a function's status and its outputs, which start as NaN."""
+        _, kind = KINDS[self.real]
+        sizes = [int(np.prod(output.shape)) for output in function.outputs]
+        out = np.full(sum(sizes), np.nan, dtype=kind)
+        arguments = [np.array(sample.q, dtype=kind)]
+        if function.direction:
+            arguments.append(np.array(sample.n, dtype=kind))
+        if function.parameters:
+            arguments.append(np.array(sample.parameters, dtype=kind).ravel())
+        arguments.append(out)
+        entry = getattr(self.library, f"{self.package.manifest.name}_{function.name}")
+        status = entry(*(ctypes.c_void_p(argument.ctypes.data) for argument in arguments))
+        parts = np.split(out.astype(float), np.cumsum(sizes)[:-1])
+        shapes = [output.shape for output in function.outputs]
+        return status, [part.reshape(shape) for part, shape in zip(parts, shapes, strict=True)]
+
+
+def parameter(package: Generated, sample: Sample, name: str) -> Array:
+    """Return a sample's values of one field of the parameter struct."""
+    names = [p.name for p in parameters_of(package.robot)]
+    return np.array(sample.parameters[names.index(name)])
