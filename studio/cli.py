@@ -14,6 +14,7 @@ from typing import Annotated
 import typer
 
 from .analyze_command import analyze
+from .design_command import design
 from .generate_command import generate
 from .robots_command import robots
 from .select_command import select
@@ -28,6 +29,7 @@ app.command()(robots)
 app.command()(analyze)
 app.command()(simulate)
 app.command()(select)
+app.command()(design)
 app.command()(generate)
 
 

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact design``: the joint stiffness and the posture that hurt least."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import options as o
+
+if TYPE_CHECKING:
+    from softimpact.optimize import Design, Study
+    from softimpact.optimize.solve import Mode
+
+    from .design_report import DesignReport
+
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder of results; default results/STUDY."),
+]
+ModeName = Annotated[
+    str,
+    typer.Option(
+        "--mode", help="table (springs for each pose), free (springs and posture) or both."
+    ),
+]
+Region = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Body region instead of the study's.")
+]
+Speed = Annotated[
+    float | None, typer.Option(metavar="V", help="Speed (m/s) instead of the study's.")
+]
+
+
+def design(
+    study: o.StudyFile,
+    out: Out = None,
+    mode: ModeName = "both",
+    region: Region = None,
+    speed: Speed = None,
+    json: o.Json = False,
+) -> None:
+    """Find the joint stiffness and the posture of least peak force with Ipopt."""
+    from softimpact.optimize import load_study
+
+    from .design_report import GENERATOR, as_record, design_report
+    from .output import print_json
+    from .results_folder import replaced_folder, require_replaceable
+
+    modes = _modes(mode)
+    problem = load_study(study, _overrides(region, speed))
+    folder = out or Path("results") / problem.source.stem
+    require_replaceable(folder, GENERATOR)
+    report = design_report(_search(problem, modes))
+    record = as_record(report)
+    with replaced_folder(folder, GENERATOR) as fresh:
+        _write(report, record, fresh)
+    if json:
+        print_json({"out": folder, **record})
+    else:
+        _print(report, folder)
+
+
+def _modes(name: str) -> tuple[Mode, ...]:
+    from typing import Literal
+
+    from softimpact.optimize.co_design import MODES
+
+    from .values import one_of
+
+    chosen: Literal["table", "free", "both"] = one_of(
+        "mode", name, Literal["table", "free", "both"]
+    )
+    return MODES if chosen == "both" else (chosen,)
+
+
+def _overrides(region: str | None, speed: float | None) -> dict[str, dict[str, Any]]:
+    given = {"region": region, "speed": speed}
+    return {"impact": {field: value for field, value in given.items() if value is not None}}
+
+
+def _search(study: Study, modes: tuple[Mode, ...]) -> Design:
+    """Run the design with a progress bar on stderr."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
+
+    from softimpact.optimize import Outcome
+    from softimpact.optimize import design as search
+    from softimpact.optimize.compiled import c_compiler
+
+    console = Console(stderr=True)
+    if c_compiler() is None:
+        console.print(
+            "No C compiler found: CasADi's virtual machine does the work, some ten times slower."
+        )
+    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console) as progress:
+        task = progress.add_task("compile", total=len(modes) * len(study.poses))
+
+        def advance(outcome: Outcome) -> None:
+            best = f"{outcome.name} {outcome.mode}: {outcome.force:.1f} N"
+            progress.update(task, advance=1, description=best)
+
+        return search(study, modes, on_outcome=advance)
+
+
+def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:
+    import json
+
+    from softimpact.codegen import generate_package
+
+    from .figures import draw_figures
+    from .output import plain
+    from .results_folder import RESULTS
+
+    text = json.dumps(plain(record), indent=1, allow_nan=False)
+    (folder / RESULTS).write_text(text + "\n", encoding="utf-8")
+    draw_figures(report, folder)
+    model = report.study.model.with_springs(report.design.winner.springs)
+    generate_package(model.robot, folder / "c", drives_=model.drives)
+
+
+def _print(report: DesignReport, folder: Path) -> None:
+    from rich.console import Console
+
+    from .design_tables import print_design
+
+    print_design(report)
+    Console(soft_wrap=True).print(f"\nResults, figures and the C package: {folder}")

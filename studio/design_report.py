@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a design study found, checked by simulation and put in figures a designer asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any, Literal
+
+import casadi as ca
+import mujoco
+import numpy as np
+
+from softimpact.optimize import Design, Gains, Outcome, PoseResult, Study
+from softimpact.simulate import (
+    Approach,
+    Fidelity,
+    ImpactHistory,
+    largest_safe_speed,
+    simulate_impact,
+)
+from softimpact.symbolic import Analysis, analyse
+from softimpact.symbolic.rigid import Array
+
+Limited = Literal["transient", "quasi_static"]
+
+
+@dataclass(frozen=True, eq=False)
+class RankedPose:
+    """A pose with what was found for it.
+
+    Attributes:
+        rank: 1 for the least force.
+        result: of the design.
+        figures: m_c, k_r, m_a, impact factors at the posture that serves the task, nominal k_s.
+    """
+
+    rank: int
+    result: PoseResult
+    figures: Analysis
+
+    @property
+    def best(self) -> Outcome:
+        """The better of the outcomes in both modes."""
+        return best_outcome(self.result)
+
+
+@dataclass(frozen=True, eq=False)
+class Check:
+    """The winner's peak force [N], as the NLP has it and by independent simulation.
+
+    Attributes:
+        nlp: the optimum.
+        linearised: the same model, integrated by SUNDIALS.
+        full: the nonlinear robot, one rung up the ladder.
+    """
+
+    nlp: float
+    linearised: float
+    full: float
+
+
+@dataclass(frozen=True, eq=False)
+class DesignReport:
+    """Results of a study.
+
+    Attributes:
+        design: what the optimiser found.
+        poses: by rank.
+        worst: the pose of the largest force with the nominal stiffness.
+        check: of the winner.
+        winner_history: force over time of the winner, linearised.
+        worst_history: the same of the worst pose with the nominal stiffness.
+        speed_before: at which the task's pose with nominal stiffness meets the limit [m/s].
+        speed_after: at which the winner meets it [m/s].
+    """
+
+    design: Design
+    poses: tuple[RankedPose, ...]
+    worst: PoseResult
+    check: Check
+    winner_history: ImpactHistory
+    worst_history: ImpactHistory
+    speed_before: float
+    speed_after: float
+
+    @property
+    def study(self) -> Study:
+        """The problem."""
+        return self.design.study
+
+    @property
+    def limit(self) -> float:
+        """Force limit of the body region [N]."""
+        return self.study.contact.region.force_limit
+
+
+def best_outcome(result: PoseResult) -> Outcome:
+    """Return the better of a pose's outcomes; solved ones come first."""
+    found = [outcome for outcome in (result.table, result.free) if outcome is not None]
+    return min(found, key=lambda outcome: (not outcome.solved, outcome.force))
+
+
+def design_report(design: Design) -> DesignReport:
+    """Rank the poses, simulate the winner and find the speeds that meet the limit."""
+    study, winner = design.study, design.winner
+    ordered = sorted(design.poses, key=lambda pose: _order(best_outcome(pose)))
+    poses = tuple(
+        RankedPose(i + 1, pose, analyse(study.model, pose.candidate.q, study.direction))
+        for i, pose in enumerate(ordered)
+    )
+    worst = max(design.poses, key=lambda pose: pose.force_before)
+    history = _impact(study, winner.q, winner.springs)
+    full = _impact(study, winner.q, winner.springs, "full")
+    task = next(p for p in design.poses if p.candidate.pose.name == study.task_pose.name)
+    return DesignReport(
+        design=design,
+        poses=poses,
+        worst=worst,
+        check=Check(winner.force, history.first_contact, full.first_contact),
+        winner_history=history,
+        worst_history=_impact(study, worst.candidate.q, study.nominal),
+        speed_before=_safe_speed(study, task.candidate.q, study.nominal),
+        speed_after=_safe_speed(study, winner.q, winner.springs),
+    )
+
+
+def _order(outcome: Outcome) -> tuple[bool, float]:
+    return not outcome.solved, outcome.force
+
+
+def _impact(
+    study: Study, q: Array, springs: Array, fidelity: Fidelity = "linearised"
+) -> ImpactHistory:
+    model = study.model.with_springs(ca.DM(springs))
+    approach = Approach(q, study.direction, study.speed)
+    return simulate_impact(model, approach, study.contact, fidelity)
+
+
+def _safe_speed(study: Study, q: Array, springs: Array) -> float:
+    model = study.model.with_springs(ca.DM(springs))
+    approach = Approach(q, study.direction, study.speed)
+    return largest_safe_speed(model, approach, study.contact, study.contact.region.force_limit)
+
+
+def as_record(report: DesignReport) -> dict[str, Any]:
+    """Return a report as plain data, for ``results.json``."""
+    study, design = report.study, report.design
+    region = study.contact.region
+    return {
+        "generator": GENERATOR,
+        "versions": versions(),
+        "study": _inputs(study),
+        "region": region.name,
+        "limit": report.limit,
+        "limit_kind": limit_kind(study),
+        "solver": {
+            "compiled": design.compiled,
+            "impact_duration": design.timing.duration,
+            "impact_steps": design.timing.steps,
+        },
+        "winner": {**_outcome(design.winner), "meets_limit": design.winner.force <= report.limit},
+        "check": vars(report.check),
+        "gains": None if design.gains is None else vars(design.gains),
+        "safe_speed": {"before": report.speed_before, "after": report.speed_after},
+        "peak_definition": "first_contact",
+        "poses": [_pose(pose) for pose in report.poses],
+    }
+
+
+GENERATOR = "softimpact design"
+"""Marks a folder of results as one that may be replaced."""
+
+
+def versions() -> dict[str, str]:
+    """Return the versions that the numbers depend on."""
+    return {
+        "softimpact": version("softimpact"),
+        "casadi": ca.CasadiMeta.version(),
+        "mujoco": mujoco.__version__,
+        "numpy": np.__version__,
+    }
+
+
+def limit_kind(study: Study) -> Limited:
+    """Return which of ISO/TS 15066's limits counts."""
+    return "quasi_static" if study.contact.region.transient_limit is None else "transient"
+
+
+def _inputs(study: Study) -> dict[str, Any]:
+    return {
+        "title": study.title,
+        "source": study.source,
+        "robot": study.robot.name,
+        "robot_digest": study.robot.digest(),
+        "joints": study.robot.joint_names,
+        "tip": study.model.tip,
+        "rotor_inertia": np.array(study.model.drives.rotors).ravel(),
+        "direction": study.direction,
+        "speed": study.speed,
+        "clamped": study.contact.clamped,
+        "stiffness_lower": study.lower,
+        "stiffness_upper": study.upper,
+        "stiffness_nominal": study.nominal,
+        "forces": study.forces,
+        "max_deflection": study.max_deflection,
+        "task_pose": study.task_pose.name,
+        "exact": study.exact,
+    }
+
+
+def _outcome(outcome: Outcome | None) -> dict[str, Any] | None:
+    return None if outcome is None else vars(outcome)
+
+
+def _pose(pose: RankedPose) -> dict[str, Any]:
+    result, candidate = pose.result, pose.result.candidate
+    figures = pose.figures
+    return {
+        "rank": pose.rank,
+        "name": candidate.pose.name,
+        "recovered": candidate.pose.recovered,
+        "turned": candidate.turned,
+        "moved": candidate.moved,
+        "q_given": candidate.pose.q,
+        "q": candidate.q,
+        "tip_offset": candidate.offset,
+        "m_c": figures.m_c,
+        "k_r": figures.k_r,
+        "m_a": figures.m_a,
+        "chain": figures.chain,
+        "osim": figures.osim,
+        "giaf": figures.giaf,
+        "directional_giaf": figures.directional_giaf,
+        "force_before": result.force_before,
+        "deflection_before": result.deflection_before,
+        "table": _outcome(result.table),
+        "free": _outcome(result.free),
+    }
+
+
+def gains_in_words(gains: Gains, report: DesignReport) -> Sequence[str]:
+    """Return what springs, posture and speed buy, a sentence each."""
+
+    def share(force: float) -> str:
+        return f"{100 * (gains.before - force) / gains.before:.1f} %"
+
+    limit = report.limit
+    verdict = "meets" if gains.both <= limit else f"is {gains.both / limit:.1f} times"
+    return (
+        f"Springs alone, in the task's pose: {gains.before:.1f} → {gains.springs:.1f} N "
+        f"({share(gains.springs)} less).",
+        f"Posture alone, with the nominal stiffness: {gains.before:.1f} → {gains.posture:.1f} N "
+        f"({share(gains.posture)} less).",
+        f"Both: {gains.before:.1f} → {gains.both:.1f} N ({share(gains.both)} less), which "
+        f"{verdict} the limit of {limit:g} N.",
+        f"Speed: the limit is met at {report.speed_after:.3f} m/s "
+        f"({report.speed_before:.3f} m/s before the design).",
+    )

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A design's results as tables and sentences for people."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from softimpact.optimize import Outcome
+
+from .design_report import DesignReport, RankedPose, gains_in_words, limit_kind
+from .output import Cell, print_table
+
+
+def print_design(report: DesignReport) -> None:
+    """Print the ranking, the winner, what bought the gain, and the checks."""
+    study = report.study
+    contact = study.contact
+    held = "clamped" if contact.clamped else "free to give way"
+    print_table(
+        f"{study.title}\n{contact.region.title}, {held}, {study.speed:g} m/s; peak of the first "
+        f"contact. Nominal: k_s = {_stiffness(study.nominal)} kN·m/rad",
+        (
+            "rank",
+            "pose",
+            "m_c\nkg",
+            "k_r\nkN/m",
+            "m_a\nkg",
+            "GIAF",
+            "before\nN",
+            "table\nN",
+            "free\nN",
+            "best k_s\nkN·m/rad",
+            "Ipopt",
+        ),
+        [_row(pose) for pose in report.poses],
+    )
+    console = Console(soft_wrap=True, highlight=False)
+    for line in [*_notes(report), *_winner(report)]:
+        console.print(line)
+
+
+def _row(pose: RankedPose) -> list[Cell]:
+    result, figures = pose.result, pose.figures
+    return [
+        str(pose.rank),
+        result.candidate.pose.name + _marks(pose),
+        figures.m_c,
+        None if figures.k_r is None else 1e-3 * figures.k_r,
+        figures.m_a,
+        figures.giaf,
+        _force(result.force_before),
+        _force(None if result.table is None else result.table.force),
+        _force(None if result.free is None else result.free.force),
+        _stiffness(pose.best.springs),
+        _status(result.table, result.free),
+    ]
+
+
+def _marks(pose: RankedPose) -> str:
+    candidate = pose.result.candidate
+    return ("*" if candidate.pose.recovered else "") + ("~" if candidate.turned else "")
+
+
+def _force(force: float | None) -> str | None:
+    return None if force is None else f"{force:.1f}"
+
+
+def _stiffness(springs: object) -> str:
+    return " ".join(f"{1e-3 * float(k):.3g}" for k in springs)  # type: ignore[attr-defined]
+
+
+def _status(*outcomes: Outcome | None) -> str:
+    found = [outcome for outcome in outcomes if outcome is not None]
+    if all(outcome.solved for outcome in found):
+        return "solved"
+    return ", ".join(f"{o.mode}: {o.status}" for o in found if not o.solved)
+
+
+def _notes(report: DesignReport) -> list[str]:
+    notes = []
+    if any(pose.result.candidate.pose.recovered for pose in report.poses):
+        notes.append("* not in the source, recovered between its neighbours")
+    turned = [
+        f"{pose.result.candidate.pose.name} by {pose.result.candidate.turned:.2f} rad"
+        for pose in report.poses
+        if pose.result.candidate.turned
+    ]
+    if turned:
+        notes.append(f"~ given turned about the base and turned back: {', '.join(turned)}")
+    for mode in ("table", "free"):
+        outcomes = report.design.outcomes(mode)
+        if outcomes:
+            solved = sum(outcome.solved for outcome in outcomes)
+            least = min(outcome.force for outcome in outcomes)
+            near = sum(outcome.force <= 1.005 * least for outcome in outcomes)
+            notes.append(
+                f"{mode}: {solved} of {len(outcomes)} solved, {near} within 0.5 % of the best"
+            )
+    return notes
+
+
+def _winner(report: DesignReport) -> list[str]:
+    design, check = report.design, report.check
+    winner, region = design.winner, report.study.contact.region
+    ratio = winner.force / report.limit
+    kind = limit_kind(report.study).replace("_", "-")
+    return [
+        "",
+        f"Winner: {winner.name}, {winner.mode} mode, {winner.force:.1f} N; "
+        f"{ratio:.2f} times the {kind} limit of {report.limit:g} N "
+        f"(ISO/TS 15066, {region.title.lower()})",
+        f"  q   = [{', '.join(f'{angle:.4f}' for angle in winner.q)}] rad",
+        f"  k_s = [{', '.join(f'{k:.0f}' for k in winner.springs)}] N·m/rad",
+        *(f"  {line}" for line in _gains(report)),
+        f"Check of the winner: linearised by SUNDIALS {check.linearised:.2f} N "
+        f"({100 * (check.linearised / check.nlp - 1):+.3f} % from the optimum), "
+        f"nonlinear {check.full:.2f} N ({100 * (check.full / check.nlp - 1):+.2f} %)",
+    ]
+
+
+def _gains(report: DesignReport) -> list[str]:
+    gains = report.design.gains
+    if gains is None:
+        return [f"The limit is met at {report.speed_after:.3f} m/s."]
+    return list(gains_in_words(gains, report))

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A folder of results that is replaced as a whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from softimpact.symbolic import SoftImpactError
+
+RESULTS = "results.json"
+
+
+class ForeignFolder(SoftImpactError):
+    """The output folder holds files that an earlier run did not write."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        super().__init__(
+            f"{folder}: exists and is no folder of earlier results; choose another --out"
+        )
+
+
+def require_replaceable(folder: Path, generator: str) -> None:
+    """Raise if results could not be written: ForeignFolder, or OSError from the system.
+
+    Called before long work, so that it is not lost for want of a place.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent):
+        pass
+    if not folder.exists():
+        return
+    if not folder.is_dir() or (any(folder.iterdir()) and not _is_ours(folder, generator)):
+        raise ForeignFolder(folder)
+
+
+def _is_ours(folder: Path, generator: str) -> bool:
+    try:
+        record = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(record, dict) and record.get("generator") == generator
+
+
+@contextmanager
+def replaced_folder(folder: Path, generator: str) -> Iterator[Path]:
+    """Give a fresh folder to fill; on success it takes the place of an older one.
+
+    Args:
+        folder: where the results belong.
+        generator: that marks the results of earlier runs.
+    """
+    require_replaceable(folder, generator)
+    fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    try:
+        yield fresh
+        fresh.chmod(0o755)
+        old = fresh.with_name(f"{fresh.name}.old")
+        if folder.exists():
+            folder.rename(old)
+        fresh.rename(folder)
+        shutil.rmtree(old, ignore_errors=True)
+    finally:
+        shutil.rmtree(fresh, ignore_errors=True)
