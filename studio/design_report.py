@@ -160,7 +160,7 @@ def as_record(report: DesignReport) -> dict[str, Any]:
             "impact_duration": design.timing.duration,
             "impact_steps": design.timing.steps,
         },
-        "winner": {**_outcome(design.winner), "meets_limit": design.winner.force <= report.limit},
+        "winner": {**vars(design.winner), "meets_limit": design.winner.force <= report.limit},
         "check": vars(report.check),
         "gains": None if design.gains is None else vars(design.gains),
         "safe_speed": {"before": report.speed_before, "after": report.speed_after},
@@ -210,10 +210,6 @@ def _inputs(study: Study) -> dict[str, Any]:
     }
 
 
-def _outcome(outcome: Outcome | None) -> dict[str, Any] | None:
-    return None if outcome is None else vars(outcome)
-
-
 def _pose(pose: RankedPose) -> dict[str, Any]:
     result, candidate = pose.result, pose.result.candidate
     figures = pose.figures
@@ -235,8 +231,8 @@ def _pose(pose: RankedPose) -> dict[str, Any]:
         "directional_giaf": figures.directional_giaf,
         "force_before": result.force_before,
         "deflection_before": result.deflection_before,
-        "table": _outcome(result.table),
-        "free": _outcome(result.free),
+        "table": result.table,
+        "free": result.free,
     }
 
 
