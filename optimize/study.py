@@ -203,9 +203,10 @@ def _read(source: Path) -> dict[str, Any]:
 
 def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
     first = error.errors()[0]
-    field = ".".join(str(part) for part in first["loc"]) or "study"
+    field = ".".join(str(part) for part in first["loc"])
     more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
-    return InvalidValue(f"{source}: {field}", f"{first['msg']}{more}")
+    where = f"{source}: {field}" if field else str(source)
+    return InvalidValue(where, f"{first['msg'].removeprefix('Value error, ')}{more}")
 
 
 @contextmanager
