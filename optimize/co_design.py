@@ -17,7 +17,7 @@ from .compiled import c_compiler, compiled_nlp
 from .nlp import DesignNlp, build_nlp, parameters
 from .poses import Candidate, candidates, tip_pose
 from .repair import accurate_springs, largest_deflection
-from .solve import Bounds, Mode, Outcome, Program, Start, nlp_solver, solve
+from .solve import Bounds, Mode, Outcome, Program, Start, nlp_solver, preference, solve
 from .study import Study
 from .timing import Timing, impact_timing
 
@@ -93,7 +93,7 @@ class SolverFailure(Exception):
 
     def __init__(self, outcomes: Sequence[Outcome]) -> None:
         self.outcomes = tuple(outcomes)
-        self.best = min(outcomes, key=lambda outcome: (outcome.violation > 1e-5, outcome.violation))
+        self.best = min(outcomes, key=preference)
         statuses = sorted({outcome.status for outcome in outcomes})
         super().__init__(
             f"none of {len(outcomes)} starts was solved (Ipopt: {', '.join(statuses)}); "

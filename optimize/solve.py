@@ -145,7 +145,7 @@ def solve(program: Program, start: Start, bounds: Bounds, parameters: Array) -> 
         if any(outcome.solved for outcome in found):
             break
         found.append(_attempt(program, start, *point, bounds, parameters))
-    best = min(found, key=_preference)
+    best = min(found, key=preference)
     return Outcome(
         **{
             **vars(best),
@@ -156,7 +156,8 @@ def solve(program: Program, start: Start, bounds: Bounds, parameters: Array) -> 
     )
 
 
-def _preference(outcome: Outcome) -> tuple[bool, bool, float]:
+def preference(outcome: Outcome) -> tuple[bool, bool, float]:
+    """Sort key: solved before feasible before the rest; then by force, or by violation."""
     feasible = outcome.violation <= FEASIBLE
     return not outcome.solved, not feasible, outcome.force if feasible else outcome.violation
 
