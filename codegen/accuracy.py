@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .description import CFunction, Output
 from .evaluate import evaluate_exactly, evaluate_rounded
 from .exact import DIGITS
-from .functions import CFunction, Output
 from .samples import Sample, as_columns
 
 MARGIN = 4.0

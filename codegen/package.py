@@ -14,8 +14,9 @@ from softimpact.symbolic import Drives, InvalidValue, Robot
 from softimpact.symbolic.impact_model import WEIGHTLESS
 
 from .accuracy import double_error, float_error, golden_results, is_regular
+from .description import CFunction, Parameter
 from .files import replace_package, require_own, sha256
-from .functions import CFunction, Parameter, functions_of, is_elastic, parameters_of
+from .functions import functions_of, is_elastic, parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .render import Default, Package, render
 from .samples import Sample, draw_samples

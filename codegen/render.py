@@ -12,7 +12,9 @@ import jinja2
 import softimpact
 from softimpact.symbolic import Robot
 
-from .functions import Parameter, is_elastic
+from . import sine
+from .description import Parameter
+from .functions import is_elastic
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
@@ -92,6 +94,7 @@ def render(package: Package) -> dict[str, str]:
         "robot": package.robot,
         "n": package.robot.n,
         "version": softimpact.__version__,
+        "sine": sine,
     }
     files = {
         f"include/{name}.h": "header.h",

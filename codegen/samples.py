@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from softimpact.symbolic import JointKind, Robot
 
-from .functions import Parameter
+from .description import Parameter
 
 STEPS = 1024
 """Joint coordinates are multiples of 1/1024 rad or m."""

@@ -16,18 +16,18 @@ int panda_giaf(const panda_real q[7], const panda_params *p, panda_giaf_t *out)
         return status;
     }
 
-    const panda_real c2 = PANDA_COS(q[1]);
-    const panda_real s2 = PANDA_SIN(q[1]);
-    const panda_real c3 = PANDA_COS(q[2]);
-    const panda_real s3 = PANDA_SIN(q[2]);
-    const panda_real c4 = PANDA_COS(q[3]);
-    const panda_real s4 = PANDA_SIN(q[3]);
-    const panda_real c5 = PANDA_COS(q[4]);
-    const panda_real s5 = PANDA_SIN(q[4]);
-    const panda_real c6 = PANDA_COS(q[5]);
-    const panda_real s6 = PANDA_SIN(q[5]);
-    const panda_real c7 = PANDA_COS(q[6]);
-    const panda_real s7 = PANDA_SIN(q[6]);
+    panda_real s2, c2;
+    panda_sine_cosine(q[1], &s2, &c2);
+    panda_real s3, c3;
+    panda_sine_cosine(q[2], &s3, &c3);
+    panda_real s4, c4;
+    panda_sine_cosine(q[3], &s4, &c4);
+    panda_real s5, c5;
+    panda_sine_cosine(q[4], &s5, &c5);
+    panda_real s6, c6;
+    panda_sine_cosine(q[5], &s6, &c6);
+    panda_real s7, c7;
+    panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = s3*s2;
     const panda_real t2 = PANDA_R(0.384) + PANDA_R(0.088)*s6;
     const panda_real t3 = t2 - PANDA_R(0.2104)*c6;
