@@ -70,7 +70,7 @@ def float_error(function: CFunction, samples: Sequence[Sample]) -> float:
     both = regular & still_regular
     worst = 0.0
     for output, wide, got in zip(function.outputs, reference, narrow, strict=True):
-        worst = max(worst, float(_error(output, got[:, both], wide[:, both]).max()))
+        worst = max(worst, float(_error(output, got[:, both], wide[:, both]).max(initial=0.0)))
     return _rounded_up(MARGIN * max(worst, float(np.finfo(np.float32).eps)))
 
 

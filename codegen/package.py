@@ -61,7 +61,7 @@ def generate_package(
 
     Raises:
         FrameNotFound: the robot has no such tip.
-        InvalidValue: an argument outside its meaning.
+        InvalidValue: an argument outside its meaning, or a tip that cannot move.
         ForeignFiles: the folder holds files that the generator did not write.
         OutputNotWritable: the operating system refuses.
     """
@@ -74,7 +74,7 @@ def generate_package(
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
     measured = draw_samples(robot, parameters, MEASURED_SAMPLES, seed=2)
     functions = functions_of(robot, frame, gravity, chain_order)
-    golden = _regular(functions, golden)
+    golden = _regular(functions, golden, frame)
     tables = {function.name: golden_results(function, golden) for function in functions}
     sources = []
     for function in functions:
@@ -115,9 +115,11 @@ def _check(robot: Robot, real: str, gravity: Sequence[float], chain_order: int) 
         raise InvalidValue("chain_order", f"must be from 1 to {longest}, not {chain_order}")
 
 
-def _regular(functions: Sequence[CFunction], samples: Sequence[Sample]) -> list[Sample]:
+def _regular(functions: Sequence[CFunction], samples: Sequence[Sample], tip: str) -> list[Sample]:
     """Return golden inputs to which all functions have an answer."""
     regular = np.all([is_regular(function, samples) for function in functions], axis=0)
+    if not regular.any():
+        raise InvalidValue("tip", f"frame '{tip}' cannot move at any of the sampled configurations")
     return [samples[i] for i in np.flatnonzero(regular)[:GOLDEN_CASES]]
 
 

@@ -86,6 +86,7 @@ def render(package: Package) -> dict[str, str]:
         keep_trailing_newline=True,
     )
     environment.filters["number"] = _number
+    environment.filters["comment"] = _comment
     name = package.prefix
     context = {
         "package": package,
@@ -121,3 +122,8 @@ def render(package: Package) -> dict[str, str]:
 def _number(value: float) -> str:
     """Return the shortest decimal that reads back as the same double."""
     return repr(float(value) + 0.0)
+
+
+def _comment(text: str) -> str:
+    """Return a name from a model file as it may stand in a C comment."""
+    return " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())

@@ -68,7 +68,10 @@ def _between(source: random.Random, low: int, high: int) -> int:
 
 
 def _coordinate(source: random.Random, lower: float, upper: float) -> float:
-    return _between(source, math.ceil(lower * STEPS), math.floor(upper * STEPS)) / STEPS
+    low, high = math.ceil(lower * STEPS), math.floor(upper * STEPS)
+    if low > high:  # the joint hardly moves
+        return float(np.float32((lower + upper) / 2))
+    return _between(source, low, high) / STEPS
 
 
 def _direction(source: random.Random) -> tuple[float, ...]:
