@@ -53,7 +53,7 @@ def figure_of_forces(report: DesignReport) -> Figure:
     axes.set_ylim(0.0, 1.15 * max(report.limit, *(history.first_contact for history in histories)))
     axes.set_xlabel("time since first touch [ms]", fontsize=TEXT)
     axes.set_ylabel("contact force [N]", fontsize=TEXT)
-    axes.set_title(f"Contact force over the first contact\n{setting(report)}", fontsize=TEXT + 1)
+    axes.set_title(f"Contact force during the first contact\n{setting(report)}", fontsize=TEXT + 1)
     tidy(axes)
     legend_below(figure, lines, columns=1)
     return figure

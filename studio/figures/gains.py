@@ -48,6 +48,7 @@ def _draw_forces(axes: Any, report: DesignReport, gains: Gains) -> Any:
         for force, share in zip(heights[1:], shares[1:], strict=True)
     ]
     _bars(axes, names, heights, [BEFORE, SPRINGS, SKY, BOTH], labels)
+    axes.axhline(report.limit, color="white", linewidth=4.5)  # sets it off from the bars
     label = limit_in_words(report)
     line = axes.axhline(report.limit, color=LIMIT, linewidth=1.8, linestyle="--", label=label)
     axes.set_ylim(0.0, 1.18 * max(*heights, report.limit))

@@ -66,12 +66,12 @@ class Scene:
 def figure_of_postures(report: DesignReport) -> Figure:
     """Draw all candidate postures faintly, the winner's and the worst over them, and the impact."""
     figure = new_figure(13.0, 5.2)
-    grid = figure.add_gridspec(1, 3, width_ratios=(1.25, 1.0, 1.0))
+    grid = figure.add_gridspec(1, 3, width_ratios=(1.4, 1.0, 1.0))
     scene = _scene(report)
     _draw_in_space(figure.add_subplot(grid[0], projection=Axes3D.name), scene)
     for column, view in enumerate(VIEWS):
         _draw_flat(figure.add_subplot(grid[1 + column]), scene, view)
-    title = f"Postures that hold {report.study.model.tip} at the task\n{setting(report)}"
+    title = f"Postures of all poses; contact at {report.study.model.tip}\n{setting(report)}"
     figure.suptitle(title, fontsize=TEXT + 1)
     legend_below(figure, _legend(scene), columns=5)
     return figure
@@ -109,40 +109,38 @@ def _sticks(report: DesignReport) -> tuple[Stick, ...]:
     given = [pose.result.candidate.q for pose in report.poses]
     *others, last, first = stick_points(study.robot, study.model.tip, [*given, worst.q, winner.q])
     faint = {"color": LIGHT, "linewidth": 1.0, "markersize": 2.5, "zorder": 1}
-    strong = {"linewidth": 2.8, "markersize": 6.0, "markeredgecolor": BLACK}
+    # the worst one is wider, so that it shows where both are the same
+    wide = {"linewidth": 5.0, "markersize": 9.0, "color": BEFORE, "zorder": 3}
+    strong = {"linewidth": 2.5, "markersize": 6.0, "color": BOTH, "zorder": 4}
+    name = f"{winner_in_words(report)} ({winner.mode})"
     return (
         *(Stick(points, f"all {len(given)} poses", faint) for points in others),
-        Stick(last, f"worst: {worst.pose.name}", {**strong, "color": BEFORE, "zorder": 3}),
-        Stick(
-            first,
-            f"{winner_in_words(report)} ({winner.mode})",
-            {**strong, "color": BOTH, "zorder": 4},
-        ),
+        Stick(last, f"worst: {worst.pose.name}", {**wide, "markeredgecolor": BLACK}),
+        Stick(first, name, {**strong, "markeredgecolor": BLACK}),
     )
 
 
 def _draw_in_space(axes: Any, scene: Scene) -> None:
     for stick in scene.sticks:
         axes.plot(*stick.points, marker="o", **stick.style)
-    axes.plot(0, 0, 0, "s", color=BLACK, markersize=9, zorder=5)
+    axes.plot(0, 0, 0, "s", color=BLACK, markersize=10, zorder=5)
     along = scene.end - scene.start
     axes.quiver(*scene.start, *along, color=VERMILLION, linewidth=2.5, arrow_length_ratio=0.35)
     axes.set(**{f"{name}lim": limits for name, limits in zip("xyz", scene.limits, strict=True)})
-    axes.set_box_aspect((1, 1, 1), zoom=1.0)
+    axes.set_box_aspect((1, 1, 1), zoom=0.93)
     axes.view_init(elev=22, azim=-60)
     axes.locator_params(nbins=5)
     axes.tick_params(labelsize=SMALL)
     axes.set_xlabel("x [m]", fontsize=TEXT)
     axes.set_ylabel("y [m]", fontsize=TEXT)
     axes.set_zlabel("z [m]", fontsize=TEXT)
-    axes.set_title("in space", fontsize=TEXT, y=0.93)
 
 
 def _draw_flat(axes: Any, scene: Scene, view: tuple[int, int, str]) -> None:
     right, up, name = view
     for stick in scene.sticks:
         axes.plot(stick.points[right], stick.points[up], marker="o", **stick.style)
-    axes.plot(0, 0, "s", color=BLACK, markersize=9, zorder=5)
+    axes.plot(0, 0, "s", color=BLACK, markersize=10, zorder=5)
     axes.annotate(
         "",
         xy=scene.end[[right, up]],
