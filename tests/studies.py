@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
 
@@ -60,3 +61,15 @@ def study_of(
 ) -> Study:
     """Return the 24-pose study with some fields replaced and some poses kept."""
     return load_study(written(folder, changed(overrides, poses)))
+
+
+class InProcess(Executor):
+    """Runs everything at once where it is submitted, so that tests can replace parts."""
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
