@@ -21,6 +21,9 @@ from .source import CSource
 
 TEMPLATES = Path(__file__).parent / "templates"
 
+MEASURED_SAMPLES = 16384
+"""Inputs over which float errors are measured."""
+
 
 @dataclass(frozen=True)
 class Default:
@@ -96,6 +99,7 @@ def render(package: Package) -> dict[str, str]:
         "n": package.robot.n,
         "version": softimpact.__version__,
         "sine": sine,
+        "measured": MEASURED_SAMPLES,
     }
     files = {
         f"include/{name}.h": "header.h",

@@ -292,7 +292,7 @@ static void test_contact_jacobian(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 4e-06);
+    const double bound = BOUND(1e-12, 3e-06);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -341,7 +341,7 @@ static void test_reflected_mass(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 5e-06);
+    const double bound = BOUND(1e-12, 4e-06);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -402,7 +402,7 @@ static void test_reduced_model(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 5e-05);
+    const double bound = BOUND(1e-12, 2e-05);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -495,7 +495,7 @@ static void test_chain(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 0.0006);
+    const double bound = BOUND(1e-12, 0.0005);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -598,7 +598,7 @@ static void test_osim(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 0.0002);
+    const double bound = BOUND(1e-12, 0.0001);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -657,7 +657,7 @@ static void test_giaf(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 6e-06);
+    const double bound = BOUND(1e-12, 4e-06);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -710,7 +710,7 @@ static void test_directional_giaf(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 5e-05);
+    const double bound = BOUND(1e-12, 3e-05);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 

@@ -67,7 +67,7 @@ int rr_mass_matrix(const rr_real q[4], rr_real M[4][4]);
 /*
  * Translational Jacobian J(q) of the contact point: velocity = J dq/dt.
  * J: m/rad; base axes.
- * 26 operations, 8 sines and cosines. Error in float: 2e-06.
+ * 26 operations, 8 sines and cosines. Error in float: 9e-07.
  */
 int rr_jacobian(const rr_real q[4], rr_real J[3][4]);
 
@@ -90,7 +90,7 @@ int rr_stiffness_matrix(const rr_real q[4], const rr_params *p, rr_real K0[4][4]
 /*
  * Row J_c = n'J over the generalised coordinates (MSM Eq. 4).
  * J_c: m/rad.
- * 24 operations, 8 sines and cosines. Error in float: 2e-05.
+ * 24 operations, 8 sines and cosines. Error in float: 6e-06.
  */
 int rr_contact_jacobian(const rr_real q[4], const rr_real n[3], rr_real J_c[4]);
 
@@ -98,7 +98,7 @@ int rr_contact_jacobian(const rr_real q[4], const rr_real n[3], rr_real J_c[4]);
  * Mass m_c that the contact point feels along n (MSM Eq. 36).
  * m_c: kg; mass felt at the contact point.
  * Of p it reads rotor_inertia.
- * 89 operations, 8 sines and cosines. Error in float: 2e-05.
+ * 89 operations, 8 sines and cosines. Error in float: 8e-06.
  */
 int rr_reflected_mass(const rr_real q[4], const rr_real n[3], const rr_params *p, rr_real *m_c);
 
@@ -110,7 +110,7 @@ typedef struct {
 
 /*
  * Two masses and a spring that stand for the robot along n (MSM Eq. 36-38).
- * 232 operations, 8 sines and cosines. Error in float: 3e-05.
+ * 232 operations, 8 sines and cosines. Error in float: 2e-05.
  */
 int rr_reduced_model(
     const rr_real q[4],
@@ -125,7 +125,7 @@ typedef struct {
 
 /*
  * Chain of 3 masses that stands for the robot along n.
- * 250 operations, 8 sines and cosines. Error in float: 0.001.
+ * 250 operations, 8 sines and cosines. Error in float: 0.0003.
  */
 int rr_chain(const rr_real q[4], const rr_real n[3], const rr_params *p, rr_chain_t *out);
 

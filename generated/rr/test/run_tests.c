@@ -123,7 +123,7 @@ static void test_jacobian(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 2e-06);
+    const double bound = BOUND(1e-12, 9e-07);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -276,7 +276,7 @@ static void test_contact_jacobian(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 2e-05);
+    const double bound = BOUND(1e-12, 6e-06);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -325,7 +325,7 @@ static void test_reflected_mass(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 2e-05);
+    const double bound = BOUND(1e-12, 8e-06);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -396,7 +396,7 @@ static void test_reduced_model(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 3e-05);
+    const double bound = BOUND(1e-12, 2e-05);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -473,7 +473,7 @@ static void test_chain(void)
             right += LENGTH(found);
         }
     }
-    const double bound = BOUND(1e-12, 0.001);
+    const double bound = BOUND(1e-12, 0.0003);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
