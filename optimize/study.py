@@ -210,27 +210,27 @@ def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
 
 
 @contextmanager
-def _naming(source: Path, section: str, field: str = "") -> Iterator[None]:
+def _naming(source: Path, section: str, field: str) -> Iterator[None]:
     """Let errors name the file and the section; and the field, unless they name it themselves."""
     try:
         yield
+    except InvalidValue as error:
+        raise InvalidValue(f"{source}: {section}.{error.field}", error.reason) from None
     except SoftImpactError as error:
-        own = isinstance(error, InvalidValue)
-        where = ".".join(part for part in (section, error.field if own else field) if part)
-        raise InvalidValue(f"{source}: {where}", error.reason if own else str(error)) from None
+        raise InvalidValue(f"{source}: {section}.{field}", str(error)) from None
 
 
 def _build(file: StudyFile, source: Path) -> Study:
     robot = _robot(file.robot, source)
-    with _naming(source, "stiffness"):
+    with _naming(source, "stiffness", "lower"):
         lower, upper, nominal = _stiffness(robot, file.stiffness)
     with _naming(source, "robot", "rotor_inertia"):
         model = _model(robot, file.robot, nominal)
-    with _naming(source, "impact"):
+    with _naming(source, "impact", "direction"):
         direction = unit_direction(file.impact.direction)
     with _naming(source, "impact", "region"):
         region = body_region(file.impact.region)
-    with _naming(source, "poses"):
+    with _naming(source, "poses", "q"):
         poses = tuple(_pose(robot, pose) for pose in file.poses)
     for pose in poses:
         with _naming(source, "impact", f"direction at pose '{pose.name}'"):
@@ -265,7 +265,7 @@ def _robot(section: RobotSection, source: Path) -> Robot:
         chain = chain_to(robot, tip)
         if chain.n == 0:
             raise InvalidValue("tip", f"frame '{tip}' is fixed to the base; name one that moves")
-    with _naming(source, "robot"):
+    with _naming(source, "robot", "model"):
         for joint in chain.joints:
             _require_drive(joint)
     return chain
