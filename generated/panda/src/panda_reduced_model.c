@@ -76,10 +76,10 @@ int panda_reduced_model(
     const panda_real t27 = s2*(c3*t23 - s3*t25) - c2*t26;
     const panda_real t28 = PANDA_R(0.0025736053713382)*c7 - PANDA_R(0.0020344399586618)*s7;
     const panda_real t29 = PANDA_R(0.176)*t28;
-    const panda_real t30 = PANDA_R(0.00668415196736096) + t29;
+    const panda_real t30 = PANDA_R(0.00668415196736097) + t29;
     const panda_real t31 = PANDA_R(0.00242094377852124)*s7 + PANDA_R(0.000782782563368494)*c7;
     const panda_real t32 = s7*t31;
-    const panda_real t33 = PANDA_R(0.00954377126949221) + (PANDA_R(0.00242094377852124) - t32);
+    const panda_real t33 = PANDA_R(0.00954377126949222) + (PANDA_R(0.00242094377852124) - t32);
     const panda_real t34 = PANDA_R(0.0012555365982729)*s7 - PANDA_R(0.000965305169919117)*c7;
     const panda_real t35 = PANDA_R(0.0147485703826753) - t34;
     const panda_real t36 = s6*(t33 - t30) + c6*(PANDA_R(2.0)*t35);
@@ -141,7 +141,7 @@ int panda_reduced_model(
     const panda_real t92 = c2*(PANDA_R(2.0)*(PANDA_R(0.00398335888393556) + t91));
     const panda_real t93 = t72 + s2*(s2*(PANDA_R(1.07068659976348) + (t75 - t86) - t72) - t92);
     const panda_real t94 = PANDA_R(0.0373374484894065) + t93;
-    const panda_real t95 = PANDA_R(0.00668415196736096) + PANDA_R(0.088)*t28;
+    const panda_real t95 = PANDA_R(0.00668415196736097) + PANDA_R(0.088)*t28;
     const panda_real t96 = c6*t34 + s6*t95 + PANDA_R(0.384)*t28;
     const panda_real t97 = c6*t42;
     const panda_real t98 = t54 - PANDA_R(0.384)*t97;
@@ -162,7 +162,7 @@ int panda_reduced_model(
     const panda_real t113 = s3*t104 + c3*t109;
     const panda_real t114 = s3*t88 - c3*t90;
     const panda_real t115 = s2*(PANDA_R(0.0102611018210083) + (c3*t85 + t84));
-    const panda_real t116 = t115 + c2*(PANDA_R(0.000768936102946405) - t114);
+    const panda_real t116 = t115 + c2*(PANDA_R(0.000768936102946406) - t114);
     const panda_real t117 = t113 - t112*t116;
     const panda_real t118 = PANDA_R(1.11684236475334) + (t77 + t86);
     const panda_real t119 = t116/t94;
@@ -236,7 +236,7 @@ int panda_reduced_model(
     const panda_real t187 = t17 - (t175*t27 + t177*t123 + t179*t131 + t181*t143 + t184*t161);
     const panda_real t188 = t112*t111 + t121*t117 + t130*t127 + t142*t139 + t160*t157 + t186*t183;
     const panda_real t189 = t112*t27 + t121*t123 + t130*t131 - t142*t143 + t160*t161 - t186*t187;
-    const panda_real t190 = t189/(PANDA_R(0.00668415196736096) - t188);
+    const panda_real t190 = t189/(PANDA_R(0.00668415196736097) - t188);
     const panda_real t191 = t187/t185 - t186*t190;
     const panda_real t192 = t161/t159 - (t184*t191 - t160*t190);
     const panda_real t193 = t181*t191 + t158*t192 + t142*t190 - t143/t141;
@@ -268,12 +268,12 @@ int panda_reduced_model(
     const panda_real t217 = t216 + (t72 + p->rotor_inertia[2])*p->position_gain[2];
     const panda_real t218 = t217 + (t76 + p->rotor_inertia[3])*p->position_gain[3];
     const panda_real t219 = t218 + (t38 + p->rotor_inertia[4])*p->position_gain[4];
-    const panda_real t220 = PANDA_R(0.00668415196736096) + p->rotor_inertia[6];
+    const panda_real t220 = PANDA_R(0.00668415196736097) + p->rotor_inertia[6];
     const panda_real t221 = t219 + (t50 + p->rotor_inertia[5])*p->position_gain[5];
     const panda_real t222 = t221 + t220*p->position_gain[6] + t94*p->joint_stiffness[0];
     const panda_real t223 = t222 + t118*p->joint_stiffness[1] + t72*p->joint_stiffness[2];
     const panda_real t224 = t223 + t76*p->joint_stiffness[3] + t38*p->joint_stiffness[4];
-    const panda_real t225 = PANDA_R(0.00668415196736096)*p->joint_stiffness[6];
+    const panda_real t225 = PANDA_R(0.00668415196736097)*p->joint_stiffness[6];
     const panda_real t226 = t27*(p->position_gain[0]*t27) + t122*(p->position_gain[1]*t122);
     const panda_real t227 = t226 + t26*(p->position_gain[2]*t26) + t24*(p->position_gain[3]*t24);
     const panda_real t228 = p->joint_stiffness[0]*t27;
