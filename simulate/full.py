@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The nonlinear robot over links and motors, held by proportional control."""
+"""The nonlinear robot over links and motors."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from numpy.typing import ArrayLike
 
 from softimpact.symbolic import (
     Contact,
@@ -26,8 +25,17 @@ from softimpact.symbolic.matrices import Factorisation, Matrix
 from softimpact.symbolic.rigid import Array
 
 from .approach import Arrival
+from .controller import Controller
 from .mechanism import BodyKind, Mechanism
-from .simulator import Scene, Simulator, build_simulator
+from .motors import (
+    LawBuilder,
+    Motors,
+    after_reaction,
+    computed_torque,
+    controller_parameters,
+    held,
+)
+from .simulator import Scene, Simulator, Switch, build_simulator
 
 Gravity = tuple[float, float, float]
 
@@ -35,44 +43,47 @@ AT_REST = 1e-6
 """Torque [N·m, N] on a joint without a motor below which it counts as balanced."""
 
 
-def full_scene(model: ImpactModel, arrival: Arrival, contact: Contact, tolerance: float) -> Scene:
+def full_scene(
+    model: ImpactModel,
+    arrival: Arrival,
+    contact: Contact,
+    tolerance: float,
+    controller: Controller | None = None,
+) -> Scene:
     """Return the scene of the nonlinear robot's impact.
 
-    Constant motor torques balance gravity at first touch, where the springs hold the links at q;
-    K_p holds the motors where they are then. The robot does not react to the impact otherwise.
+    Without a controller, constant motor torques balance gravity at first touch, where the springs
+    hold the links at q; K_p holds the motors where they are then.
 
     Args:
         model: the robot.
         arrival: how it arrives.
         contact: with the body.
         tolerance: of the integrator.
+        controller: takes the place of the model's K_p.
 
     Raises:
         InvalidValue: a joint without a motor is not in equilibrium.
     """
     robot, q, n = model.robot, arrival.q, arrival.direction
     elastic = model.drives.elastic
-    simulator = _full_simulator(
-        robot, model.tip, elastic, model.gravity, BodyKind.of(contact), tolerance
-    )
+    law = held if controller is None else computed_torque
+    kind = BodyKind.of(contact)
+    simulator = _full_simulator(robot, model.tip, elastic, model.gravity, law, kind, tolerance)
     start = n @ _column(frame_pose(robot, model.tip, q).position)
-    parameters: list[ArrayLike] = [
-        q,
-        n,
-        start,
-        _balance(model, q),
-        _column(model.drives.rotors),
-        _column(model.drives.springs),
-        _gains(model, q),
-    ]
+    rotors, springs = _column(model.drives.rotors), _column(model.drives.springs)
+    parameters = np.concatenate([q, n, [start], _balance(model, q), rotors, springs])
     velocity = np.concatenate([arrival.link_velocity, arrival.link_velocity[list(elastic)]])
-    return Scene(
-        simulator,
-        np.concatenate([np.ravel(p) for p in parameters]),
-        velocity,
-        arrival.speed,
-        contact,
-    )
+
+    def scene(of_law: Array, switch: Switch | None = None) -> Scene:
+        everything = np.concatenate([parameters, of_law])
+        return Scene(simulator, everything, velocity, arrival.speed, contact, switch)
+
+    if controller is None:
+        return scene(_gains(model, q).ravel())
+    of_law = controller_parameters(robot, arrival, controller)
+    reacting = np.concatenate([parameters, after_reaction(of_law)])
+    return scene(of_law, Switch(controller.reaction_time, reacting))
 
 
 def _column(vector: Matrix) -> Array:
@@ -105,13 +116,16 @@ def _full_simulator(
     tip: str,
     elastic: tuple[bool, ...],
     gravity: Gravity,
+    law: LawBuilder,
     kind: BodyKind,
     tolerance: float,
 ) -> Simulator:
-    return build_simulator(_mechanism(robot, tip, elastic, gravity), kind, tolerance)
+    return build_simulator(_mechanism(robot, tip, elastic, gravity, law), kind, tolerance)
 
 
-def _mechanism(robot: Robot, tip: str, elastic: tuple[bool, ...], gravity: Gravity) -> Mechanism:
+def _mechanism(
+    robot: Robot, tip: str, elastic: tuple[bool, ...], gravity: Gravity, law: LawBuilder
+) -> Mechanism:
     """Equations over the links' and the elastic joints' motors' motion since first touch.
 
     M(q) q̈ + h(q, q̇) = τ − Jᵀ n f_c with τ from the spring (elastic joints, whose rotor follows
@@ -122,13 +136,13 @@ def _mechanism(robot: Robot, tip: str, elastic: tuple[bool, ...], gravity: Gravi
     force = ca.SX.sym("f_c")
     q0, direction, start = ca.SX.sym("q0", n), ca.SX.sym("n", 3), ca.SX.sym("p0")
     balance, rotors, springs = (ca.SX.sym(name, n) for name in ("g0", "B", "k_s"))
-    gains = ca.SX.sym("K_p", n, n)
 
     moved, rate = position[:n], velocity[:n]
     q = q0 + moved
-    motors = ca.SX(moved)
-    motors[E] = position[n:]
-    control = -ca.mtimes(gains, motors)
+    motors, motor_rates = ca.SX(moved), ca.SX(rate)
+    motors[E], motor_rates[E] = position[n:], velocity[n:]
+    driven = law(Motors(robot, gravity, q, rate, motors, motor_rates, rotors), balance)
+    control = driven.torque
     spring = springs * (motors - moved)
 
     torque, carried = ca.SX(control), ca.SX(rotors)
@@ -140,7 +154,9 @@ def _mechanism(robot: Robot, tip: str, elastic: tuple[bool, ...], gravity: Gravi
         position=position,
         velocity=velocity,
         force=force,
-        parameters=ca.vertcat(q0, direction, start, balance, rotors, springs, ca.vec(gains)),
+        parameters=ca.vertcat(q0, direction, start, balance, rotors, springs, driven.parameters),
         acceleration=ca.vertcat(links, (control[E] - spring[E]) / rotors[E]),
         displacement=ca.dot(direction, frame_pose(robot, tip, q).position) - start,
+        memory=driven.memory,
+        memory_rate=driven.memory_rate,
     )

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import casadi as ca
 
@@ -22,6 +22,8 @@ class Mechanism:
         parameters: numbers that vary from one impact to the next, symbols.
         acceleration: of the coordinates, over all the symbols above.
         displacement: x_c [m], how far the contact point has moved along n, over ``position``.
+        memory: what a controller keeps, symbols of the size of positions, zero at first touch.
+        memory_rate: its rate, over all the symbols above.
     """
 
     position: Matrix
@@ -30,6 +32,8 @@ class Mechanism:
     parameters: Matrix
     acceleration: Matrix
     displacement: Matrix
+    memory: Matrix = field(default_factory=lambda: ca.SX(0, 1))
+    memory_rate: Matrix = field(default_factory=lambda: ca.SX(0, 1))
 
     @property
     def size(self) -> int:
