@@ -127,8 +127,8 @@ PENDULUMS = BODY.format("hand", "hinge") + BODY.format("foot", "hinge")
         (f"<worldbody>{BALL}</worldbody>", "ball or free joint"),
         (
             f"<worldbody>{PENDULUMS}</worldbody>"
-            "<equality><connect body1='hand' body2='foot' anchor='0 0 1'/></equality>",
-            "closed chains",
+            "<equality><weld body1='hand' body2='foot'/></equality>",
+            "equality weld",
         ),
     ],
 )
