@@ -3,6 +3,7 @@
 
 from .approach import Approach
 from .controller import Controller, Reference
+from .decoupling import decoupling_stiffness, is_isolated, scaled_springs
 from .history import Fidelity, ImpactHistory, PeakDefinition
 from .impact import simulate_impact
 from .safe_speed import largest_safe_speed
@@ -16,6 +17,9 @@ __all__ = [
     "PeakDefinition",
     "Reference",
     "SimulationFailed",
+    "decoupling_stiffness",
+    "is_isolated",
     "largest_safe_speed",
+    "scaled_springs",
     "simulate_impact",
 ]

@@ -11,6 +11,7 @@ from softimpact.symbolic import Contact, ImpactModel, InvalidValue, UnknownName
 from softimpact.symbolic.chain import ChainEnd
 
 from .approach import Approach, Arrival, arrival_of, check_contact
+from .controlled import controlled, controlled_scene
 from .controller import Controller, check_controller
 from .events import first_contact
 from .full import full_scene
@@ -48,8 +49,8 @@ def simulate_impact(
         order: number of the chain's masses.
         end: of the chain; None keeps its spring to ground where a controller holds the motors. A
             chain much shorter than the robot is then nearer with a free end.
-        controller: of the full model, in place of the model's K_p; None holds the motors by K_p
-            without a reaction.
+        controller: of the motors in place of the model's K_p (full, linearised and grounded
+            chain); None holds them by K_p, without a reaction.
         duration: how long to simulate from first touch [s]; None: until shortly after separation.
         tolerance: of the integrator, relative and absolute for an approach of 1 m/s.
 
@@ -66,14 +67,19 @@ def simulate_impact(
     check_contact(contact)
     if controller is not None:
         check_controller(controller)
-        if fidelity != "full":
-            raise InvalidValue("controller", f"acts in the full model, not in '{fidelity}'")
+        if fidelity in ("one_mass", "two_mass") or end == "free":
+            reason = "needs motors: a chain with its ground spring, or the linearised or full model"
+            raise InvalidValue("controller", reason)
     arrival = arrival_of(model, approach)
     if fidelity == "full":
         scene = full_scene(model, arrival, contact, tolerance, controller)
+    elif controller is not None:
+        masses = order if fidelity == "chain" else None
+        system = controlled(model, arrival, controller, masses)
+        scene = controlled_scene(system, arrival, controller, contact, tolerance)
     else:
-        system = _linear_system(model, arrival, fidelity, order, end)
-        scene = modal_scene(system, arrival.speed, contact, tolerance)
+        linear = _linear_system(model, arrival, fidelity, order, end)
+        scene = modal_scene(linear, arrival.speed, contact, tolerance)
     found = first_contact(scene, duration)
     return ImpactHistory(
         fidelity=fidelity,

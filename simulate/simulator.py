@@ -122,9 +122,9 @@ class Scene:
         parameters = switch.parameters if switch and switched else self.parameters
         p = [*parameters, *body_parameters(self.contact), self.speed, span]
         damped = simulator.kind.damped
-        start = {"x0": state} if damped else {"x0": state[:-1], "z0": state[-1]}
+        initial = {"x0": state} if damped else {"x0": state[:-1], "z0": state[-1]}
         try:
-            end = simulator.integrate(**start, p=p)
+            end = simulator.integrate(**initial, p=p)
         except RuntimeError as error:
             flags = re.findall(r'returned "(\w+)"', str(error))
             raise SimulationFailed(flags[0] if flags else str(error)) from None
