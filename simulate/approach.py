@@ -26,7 +26,7 @@ class Approach:
     """A configuration and a velocity at first touch.
 
     Attributes:
-        q: link angles, length n [rad, m].
+        q: link angles, one a joint [rad, m]; they close the robot's loops.
         direction: n, along which the contact point moves into the body, length 3.
         speed: of the contact point along n [m/s].
         link_velocity: joint velocities per 1 m/s of speed, length n (in a closed chain, of its

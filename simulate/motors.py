@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import Robot, bias_torques, gravity_torques, mass_matrix
-from softimpact.symbolic.impact_model import WEIGHTLESS
 from softimpact.symbolic.matrices import Matrix
 from softimpact.symbolic.rigid import Array
 
@@ -20,25 +18,23 @@ from .controller import Controller
 
 @dataclass(frozen=True, eq=False)
 class Motors:
-    """A robot's motors as a law sees them (SX); vectors have one entry a joint.
+    """A robot's motors as a law sees them (SX); vectors have one entry an independent joint.
 
     Attributes:
-        robot: the rigid robot.
-        gravity: along the base's axes [m/s²].
-        q: link angles.
-        rate: of the links.
+        active: indices of the joints that have a motor.
         moved: motor angles since first touch; links' at rigid joints.
         speed: of the motors.
-        rotors: reflected inertias B.
+        inertia: M_θθ in the upper left block of the generalised mass matrix, n×n.
+        coriolis: torques that Coriolis and centrifugal forces need.
+        potential: torques that gravity and the file's springs need.
     """
 
-    robot: Robot
-    gravity: tuple[float, float, float]
-    q: Matrix
-    rate: Matrix
+    active: list[int]
     moved: Matrix
     speed: Matrix
-    rotors: Matrix
+    inertia: Matrix
+    coriolis: Matrix
+    potential: Matrix
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +60,7 @@ LawBuilder = Callable[[Motors, Matrix], MotorLaw]
 
 def held(motors: Motors, at_touch: Matrix) -> MotorLaw:
     """Constant K_p hold the motors where they were at first touch; parameters are its entries."""
-    gains = ca.SX.sym("K_p", motors.robot.n, motors.robot.n)
+    gains = ca.SX.sym("K_p", *motors.inertia.shape)
     return MotorLaw(-ca.mtimes(gains, motors.moved), ca.vec(gains))
 
 
@@ -73,17 +69,14 @@ def computed_torque(motors: Motors, at_touch: Matrix) -> MotorLaw:
 
     Parameters are those of ``controller_parameters``.
     """
-    robot = motors.robot
-    A = _active(robot)
+    A = motors.active
     k_p, k_d, k_i, follows = (ca.SX.sym(name) for name in ("k_p", "k_d", "k_i", "on"))
     wanted_speed, wanted = ca.SX.sym("dw", len(A)), ca.SX.sym("w", len(A))
     behind, summed = wanted - motors.moved[A], ca.SX.sym("s", len(A))
     acceleration = k_p * behind + k_d * (wanted_speed - motors.speed[A]) + k_i * summed
-    M = mass_matrix(robot, motors.q) + ca.diag(motors.rotors)
-    coriolis = bias_torques(robot, motors.q, motors.rate, WEIGHTLESS)
-    holding = gravity_torques(robot, motors.q, motors.gravity)
+    pid = ca.mtimes(motors.inertia[A, A], acceleration)
     torque = ca.SX(-at_touch)
-    torque[A] += holding[A] + follows * (ca.mtimes(M[A, A], acceleration) + coriolis[A])
+    torque[A] += motors.potential[A] + follows * (pid + motors.coriolis[A])
     return MotorLaw(
         torque=torque,
         parameters=ca.vertcat(k_p, k_d, k_i, follows, wanted_speed),
@@ -92,9 +85,11 @@ def computed_torque(motors: Motors, at_touch: Matrix) -> MotorLaw:
     )
 
 
-def controller_parameters(robot: Robot, arrival: Arrival, controller: Controller) -> Array:
+def controller_parameters(
+    arrival: Arrival, active: Sequence[bool], controller: Controller
+) -> Array:
     """Return the parameters of ``computed_torque`` from first touch on."""
-    wanted_speed = arrival.speed * arrival.link_velocity[_active(robot)]
+    wanted_speed = arrival.speed * arrival.link_velocity[list(active)]
     if controller.reference == "held":
         wanted_speed = np.zeros_like(wanted_speed)
     gains = [controller.proportional, controller.derivative, controller.integral]
@@ -106,7 +101,3 @@ def after_reaction(parameters: Array) -> Array:
     changed = parameters.copy()
     changed[3] = 0.0
     return changed
-
-
-def _active(robot: Robot) -> list[int]:
-    return [i for i, actuated in enumerate(robot.actuated) if actuated]
