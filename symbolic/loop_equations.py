@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from .dynamics import potential_energy
+from .dynamics import potential_energy, stiffness_of_potential
 from .joint_frames import customised
 from .kinematics import motions, poses
 from .matrices import Matrix, on_scalars
@@ -64,6 +64,8 @@ def tangent(chain: ClosedChain, q: Matrix) -> Matrix:
 
 def stiffness_along(chain: ClosedChain, gravity: tuple[float, ...], q: Matrix) -> Matrix:
     """Return Gᵀ ∇²(V + λᵀφ) G over the independent joints."""
+    if not chain.dependent:
+        return stiffness_of_potential(chain.robot, q, gravity)
     return on_scalars(_constrained_hessian, (chain, gravity), q)
 
 
