@@ -57,7 +57,7 @@ def double_error(
         right = exact[first : first + len(found)]
         worst = max(worst, float(_error(output, found, right).max()))
         first += len(found)
-    return max(DOUBLE_ERROR, _rounded_up(MARGIN * worst) if worst else 0.0)
+    return max(DOUBLE_ERROR, rounded_up(MARGIN * worst) if worst else 0.0)
 
 
 def float_error(function: CFunction, samples: Sequence[Sample]) -> float:
@@ -71,7 +71,7 @@ def float_error(function: CFunction, samples: Sequence[Sample]) -> float:
     worst = 0.0
     for output, wide, got in zip(function.outputs, reference, narrow, strict=True):
         worst = max(worst, float(_error(output, got[:, both], wide[:, both]).max()))
-    return _rounded_up(MARGIN * max(worst, float(np.finfo(np.float32).eps)))
+    return rounded_up(MARGIN * max(worst, float(np.finfo(np.float32).eps)))
 
 
 def _error(output: Output, found: NDArray[Any], right: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -80,7 +80,8 @@ def _error(output: Output, found: NDArray[Any], right: NDArray[np.float64]) -> N
     return np.asarray(abs(found.astype(float) - right).max(axis=0) / scale)
 
 
-def _rounded_up(value: float) -> float:
+def rounded_up(value: float) -> float:
+    """Return a positive number rounded up to one digit."""
     exponent = math.floor(math.log10(value))
     return float(f"{math.ceil(value / 10.0**exponent)}e{exponent}")
 

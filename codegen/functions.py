@@ -14,15 +14,20 @@ from softimpact.symbolic import (
     ImpactModel,
     Matrix,
     Robot,
+    closed_chain,
     directional_giaf,
     giaf,
     giif,
+    loop_gaps,
 )
 
 from .graph import Graph, graph_of
 
 IMMOVABLE = 1e3
 """A contact point counts as unable to move where it feels this many times the robot's mass."""
+
+LOOP_OPEN = 1e-3
+"""Gap of a loop, over the size of the robot, from which on a configuration is refused."""
 
 CHAIN_ENDS = 1e-10
 """Square of the share of a mass's pull that must reach further masses for a chain to go on."""
@@ -82,11 +87,12 @@ class Output:
 
 @dataclass(frozen=True, eq=False)
 class Guard:
-    """A number that must lie between two bounds, or else the configuration is singular."""
+    """A number that must lie between two bounds, or else the configuration has another status."""
 
     value: Matrix
     low: float
     high: float | None = None
+    status: str = "SINGULAR"
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +105,7 @@ class CFunction:
         outputs: one is an argument of its own, several share a struct.
         direction: whether it takes the direction of impact n.
         parameters: names of the struct's fields it reads.
-        guards: what tells singular configurations apart.
+        guards: what tells singular and open configurations apart.
     """
 
     name: str
@@ -146,9 +152,15 @@ def parameters_of(robot: Robot) -> tuple[Parameter, ...]:
 def is_elastic(robot: Robot) -> bool:
     """Whether every joint gets a spring behind its motor.
 
-    A robot with passive joints or with springs of its own describes its compliance itself.
+    A robot with passive joints, loops or springs of its own describes its compliance itself.
     """
-    return all(robot.actuated) and not any(joint.stiffness for joint in robot.joints)
+    plain = not robot.loops and not any(joint.stiffness for joint in robot.joints)
+    return plain and all(robot.actuated)
+
+
+def coordinates_of(robot: Robot) -> int:
+    """Number of generalised coordinates."""
+    return len(closed_chain(robot).independent) * (2 if is_elastic(robot) else 1)
 
 
 def functions_of(
@@ -207,7 +219,17 @@ class _Builder:
             return any(vector[i].name() in read for i in range(vector.numel()))
 
         parameters = tuple(key for key, symbol in self.values.items() if reads(symbol))
+        guards = (*self._closed(), *guards)
         return CFunction(name, summary, outputs, symbols, reads(self.n), parameters, guards)
+
+    def _closed(self) -> tuple[Guard, ...]:
+        robot = self.model.robot
+        if not robot.loops:
+            return ()
+        gap = loop_gaps(robot, self.q)
+        lengths = [float(np.linalg.norm(joint.placement.translation)) for joint in robot.joints]
+        widest = float(f"{(LOOP_OPEN * sum(lengths)) ** 2:.2g}")
+        return (Guard(widest - ca.dot(gap, gap), 0.0, status="LOOP_OPEN"),)
 
     def _movable(self, mass: Matrix) -> Guard:
         return Guard(mass, 0.0, self.heaviest)

@@ -10,12 +10,14 @@ from pathlib import Path
 import numpy as np
 
 import softimpact
-from softimpact.symbolic import Drives, InvalidValue, Robot
+from softimpact.symbolic import STANDARD_GRAVITY, Drives, InvalidValue, Robot
 from softimpact.symbolic.impact_model import WEIGHTLESS
 
 from .accuracy import double_error, float_error, golden_results, is_regular
+from .configuration import Configuration, has_configuration
+from .configuration_source import configuration_source
 from .files import replace_package, require_own, sha256
-from .functions import CFunction, Parameter, functions_of, is_elastic, parameters_of
+from .functions import CFunction, Parameter, coordinates_of, functions_of, parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .render import Default, Package, render
 from .samples import Sample, draw_samples
@@ -39,20 +41,21 @@ def generate_package(
     real: Real = "double",
     name: str | None = None,
     drives_: Drives | None = None,
-    gravity: tuple[float, float, float] = WEIGHTLESS,
+    gravity: tuple[float, float, float] | None = None,
     chain_order: int = 3,
 ) -> Manifest:
     """Write a C99 package that computes a robot's impact model.
 
     Args:
-        robot: any robot with a tree of hinges and slides, see ``load_robot``.
+        robot: any robot, see ``load_robot``.
         out: folder of the package; replaced as a whole if it holds an older package.
         tip: frame whose origin is the contact point; default the robot's own.
         real: number type that the package uses unless its build says otherwise.
         name: prefix of all C names; default the robot's name.
         drives_: numbers for the default parameters; without them the rotor inertias are the
             file's armatures, gains are 0, and joint stiffnesses are left for the caller to set.
-        gravity: whose curvature enters K0 [m/s²]; zero leaves it out.
+        gravity: whose curvature enters K0 [m/s²]; zero leaves it out. Default none, but of closed
+            chains, whose passive joints rest where springs and gravity balance, the standard one.
         chain_order: number of masses of the chain.
 
     Returns:
@@ -67,6 +70,8 @@ def generate_package(
     folder = Path(out)
     require_own(folder)
     frame = robot.frame(tip or robot.tip or "").name
+    if gravity is None:
+        gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
     _check(robot, real, gravity, chain_order)
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot)
@@ -79,6 +84,10 @@ def generate_package(
     for function in functions:
         record = _record(prefix, function, golden, tables[function.name], measured)
         sources.append(CSource(prefix, robot.n, parameters, function, record))
+    configuration = None
+    if has_configuration(robot):
+        found = Configuration(robot, gravity)
+        configuration = configuration_source(prefix, found, golden, measured)
     package = Package(
         prefix=prefix,
         robot=robot,
@@ -91,6 +100,7 @@ def generate_package(
         functions=tuple(sources),
         samples=tuple(golden),
         tables=tables,
+        configuration=configuration,
     )
     files = render(package)
     manifest = _manifest(package, {path: sha256(text) for path, text in files.items()})
@@ -109,7 +119,7 @@ def _check(robot: Robot, real: str, gravity: Sequence[float], chain_order: int) 
         raise InvalidValue("real", f"must be 'double' or 'float', not '{real}'")
     if len(gravity) != 3 or not np.isfinite(gravity).all():
         raise InvalidValue("gravity", "needs three finite numbers [x, y, z]")
-    longest = min(LONGEST_CHAIN, robot.n * (2 if is_elastic(robot) else 1))
+    longest = min(LONGEST_CHAIN, coordinates_of(robot))
     if not 1 <= chain_order <= longest:
         raise InvalidValue("chain_order", f"must be from 1 to {longest}, not {chain_order}")
 
@@ -160,6 +170,9 @@ def _defaults(
 
 
 def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
+    records = [source.record for source in package.functions]
+    if package.configuration:
+        records.insert(0, package.configuration.record)
     return Manifest(
         name=package.prefix,
         version=softimpact.__version__,
@@ -171,6 +184,6 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         coordinates=package.coordinates,
         gravity=package.gravity,
         chain_order=package.chain_order,
-        functions=tuple(source.record for source in package.functions),
+        functions=tuple(records),
         files=hashes,
     )

@@ -10,9 +10,10 @@ from pathlib import Path
 import jinja2
 
 import softimpact
-from softimpact.symbolic import Robot
+from softimpact.symbolic import Robot, closed_chain
 
-from .functions import Parameter, is_elastic
+from .configuration_source import ConfigurationSource
+from .functions import Parameter, coordinates_of, is_elastic
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
@@ -44,6 +45,7 @@ class Package:
         functions: all C functions.
         samples: golden inputs.
         tables: golden results of each function by its short name.
+        configuration: where a closed chain's motors decide the rest; None if they do not.
     """
 
     prefix: str
@@ -57,6 +59,7 @@ class Package:
     functions: tuple[CSource, ...]
     samples: tuple[Sample, ...]
     tables: Mapping[str, Sequence[Sequence[float]]]
+    configuration: ConfigurationSource | None = None
 
     @property
     def elastic(self) -> bool:
@@ -66,7 +69,12 @@ class Package:
     @property
     def coordinates(self) -> int:
         """Number of generalised coordinates."""
-        return self.robot.n * (2 if self.elastic else 1)
+        return coordinates_of(self.robot)
+
+    @property
+    def independent(self) -> list[str]:
+        """Names of the joints whose coordinates describe the robot."""
+        return [self.robot.joint_names[i] for i in closed_chain(self.robot).independent]
 
     def has(self, function: str) -> bool:
         """Whether the package has a function of this short name."""
@@ -112,6 +120,9 @@ def render(package: Package) -> dict[str, str]:
     function = environment.get_template("function.c.jinja")
     for source in package.functions:
         rendered[f"src/{source.name}.c"] = function.render(context, f=source)
+    if package.configuration:
+        solver = environment.get_template("configuration.c.jinja")
+        rendered[f"src/{name}_configuration.c"] = solver.render(context, c=package.configuration)
     return dict(sorted(rendered.items()))
 
 

@@ -76,7 +76,7 @@ def situation(typed: Typed) -> Situation:
         robot, drives_=drives_of(robot, typed.drives), gravity=gravity_of(typed.gravity)
     )
     if typed.motor_angles:
-        return Situation(model, link_angles(model, q), direction)
+        return Situation(model, link_angles(model, np.array(q)), direction)
     return Situation(model, robot.vector("q", q), direction)
 
 

@@ -24,7 +24,7 @@ LEAST_STEP = 2.0**-10
 FARTHEST = 1.0
 """Longest move of a coordinate in one step [rad, m]; what moves further may be another branch."""
 
-BALANCED = 1e-10
+BALANCED = 1e-12
 """Unbalanced torque over the largest stiffness [rad] at which an equilibrium counts as found."""
 
 OPEN = 1e-6
