@@ -3,7 +3,7 @@
 
 from .approach import Approach
 from .controller import Controller, Reference
-from .decoupling import decoupling_stiffness, is_isolated, scaled_springs
+from .decoupling import Decoupling, decoupling_stiffness, is_isolated, scaled_springs
 from .history import Fidelity, ImpactHistory, PeakDefinition
 from .impact import simulate_impact
 from .safe_speed import largest_safe_speed
@@ -12,6 +12,7 @@ from .simulator import SimulationFailed
 __all__ = [
     "Approach",
     "Controller",
+    "Decoupling",
     "Fidelity",
     "ImpactHistory",
     "PeakDefinition",

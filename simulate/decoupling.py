@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -19,7 +21,27 @@ from .impact import simulate_impact
 Case = tuple[ImpactModel, Approach]
 
 STEP = 10**0.125
-"""Ratio of the stiffnesses at which the search for a second peak looks."""
+"""Ratio of the stiffnesses at which the search looks."""
+
+CHANGE = 0.05
+"""Relative change of the first peak from one of these to the next in which a jump may hide."""
+
+JUMP = 0.01
+"""Relative change of the first peak, at one stiffness, that counts as a jump."""
+
+
+@dataclass(frozen=True)
+class Decoupling:
+    """Up to which k_s links and motors hit one after the other; None: over the whole range.
+
+    Attributes:
+        isolated: the contact is lost after the first peak.
+        distinct: the first peak, if not isolated, is a maximum of its own; above, it has merged
+            with the next one and the first peak's force has jumped.
+    """
+
+    isolated: float | None
+    distinct: float | None
 
 
 def is_isolated(history: ImpactHistory) -> bool:
@@ -44,12 +66,11 @@ def decoupling_stiffness(
     end: ChainEnd | None = None,
     controller: Controller | None = None,
     accuracy: float = 1e-4,
-) -> float | None:
-    """Return the largest k_s up to which the first peak stays isolated; None if it always does.
+) -> Decoupling:
+    """Return the largest joint stiffness that decouples the links from the motors (MSM §3.2.4).
 
-    Links and motors then hit one after the other, and to make the springs softer does not make
-    the first peak lower (MSM §3.2.4). Searched from the soft end: a stiff robot has a single peak
-    again, but one with the motors in it.
+    To make the springs softer than that does not make the first peak lower. Searched from the
+    soft end, in steps of a third: a stiff robot has a single peak again, with the motors in it.
 
     Args:
         case: robot and approach for a k_s; ``scaled_springs`` makes one from any robot.
@@ -68,28 +89,49 @@ def decoupling_stiffness(
     if not 0 < softest < stiffest < np.inf:
         raise InvalidValue("between", "needs two finite stiffnesses, 0 < softest < stiffest")
 
-    def isolated(stiffness: float) -> bool:
+    @cache
+    def impact(stiffness: float) -> ImpactHistory:
         model, approach = case(stiffness)
-        history = simulate_impact(
+        return simulate_impact(
             model, approach, contact, fidelity, order=order, end=end, controller=controller
         )
-        return is_isolated(history)
 
+    def isolated(stiffness: float) -> bool:
+        return is_isolated(impact(stiffness))
+
+    def first_peak(stiffness: float) -> float:
+        return float(np.log(impact(stiffness).first_peak))
+
+    steps = int(np.ceil(np.log(stiffest / softest) / np.log(STEP)))
+    grid = [float(k) for k in np.geomspace(softest, stiffest, steps + 1)]
     if not isolated(softest):
         raise InvalidValue("between", f"the peaks are one at {softest:g} already; start softer")
-    soft = softest
-    while soft < stiffest:
-        stiff = min(soft * STEP, stiffest)
-        if not isolated(stiff):
-            return _boundary(isolated, soft, stiff, accuracy)
-        soft = stiff
-    return None
+    lost = (
+        _boundary(isolated, *pair, accuracy) for pair in pairwise(grid) if not isolated(pair[1])
+    )
+    jumps = (
+        _jump(first_peak, *pair, accuracy)
+        for pair in pairwise(grid)
+        if abs(first_peak(pair[1]) - first_peak(pair[0])) > CHANGE
+    )
+    return Decoupling(next(lost, None), next((k for k in jumps if k is not None), None))
 
 
 def _boundary(isolated: Callable[[float], bool], soft: float, stiff: float, share: float) -> float:
     while stiff > soft * (1 + share):
         middle = float(np.sqrt(soft * stiff))
         soft, stiff = (middle, stiff) if isolated(middle) else (soft, middle)
+    return soft
+
+
+def _jump(peak: Callable[[float], float], soft: float, stiff: float, share: float) -> float | None:
+    """Follow the steeper half; what is still steep at the end is a jump."""
+    while stiff > soft * (1 + share):
+        middle = float(np.sqrt(soft * stiff))
+        below, above = abs(peak(middle) - peak(soft)), abs(peak(stiff) - peak(middle))
+        soft, stiff = (soft, middle) if below > above else (middle, stiff)
+        if max(below, above) < JUMP:
+            return None
     return soft
 
 

@@ -13,7 +13,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from softimpact.simulate import PeakDefinition, decoupling_stiffness
+from softimpact.simulate import Decoupling, PeakDefinition, decoupling_stiffness
 from softimpact.symbolic import Contact, InvalidValue, body_region, static_stiffness
 from softimpact.symbolic.rigid import Array
 
@@ -33,7 +33,7 @@ SHOWN = {"a": (1, 3, 5, 6, 8, 10), "f": (0, 2, 3, 4, 6, 9)}
 
 SHOWN_DURATION = 0.06
 DECOUPLED = ("full", "two_mass")
-SOFTER = 0.2
+SOFTER = 0.1
 """Share of the softest k_s where the search for decoupling starts."""
 
 Peaks = dict[str, dict[str, dict[str, float]]]
@@ -75,17 +75,19 @@ class Results:
 
     Attributes:
         sweeps: over k_s.
+        nominal: at the stiffness of the sweeps over speed, without peaks.
         speeds: first peaks on the head by speed's index and model.
         traces: force over time on the head by k_s and model.
-        decoupling: by region and model [N·m/rad]; None where the peaks never part or never merge.
+        decoupling: by region and model [N·m/rad]; None where peaks are one on the softest springs.
         motor_rates: of the motors at 1 m/s [rad/s].
         seconds: wall time of one impact by model, in one process after another.
     """
 
     sweeps: dict[str, list[Point]]
+    nominal: dict[str, Point]
     speeds: dict[str, list[dict[str, float]]]
     traces: dict[str, dict[float, dict[str, Trace]]]
-    decoupling: dict[str, dict[str, dict[str, float | None]]]
+    decoupling: dict[str, dict[str, dict[str, Decoupling | None]]]
     motor_rates: dict[str, list[float]]
     seconds: dict[str, float]
 
@@ -93,14 +95,18 @@ class Results:
 def point(name: str, stiffness: float) -> Point:
     """Compute one stiffness of a scenario's sweep."""
     scenario = SCENARIOS[name]
-    model, approach = scenario.at(stiffness)
-    at = (approach.q, approach.direction)
-    reduced = model.reduced(*at)
     peaks: Peaks = {region: {} for region in REGIONS}
     for region in REGIONS:
         for rung in LADDER:
             history = impact_at(scenario, rung, stiffness, region)
             peaks[region][rung] = {d: history.peak(d) for d in get_args(PeakDefinition)}
+    return _parameters(scenario, stiffness, peaks)
+
+
+def _parameters(scenario: Scenario, stiffness: float, peaks: Peaks) -> Point:
+    model, approach = scenario.at(stiffness)
+    at = (approach.q, approach.direction)
+    reduced = model.reduced(*at)
     m_c, k_r, m_a = (float(x) for x in (reduced.m_c, reduced.k_r, reduced.m_a))
     return Point(stiffness, m_c, k_r, m_a, float(static_stiffness(model.linear(*at))), peaks)
 
@@ -123,8 +129,8 @@ def trace(name: str, stiffness: float) -> dict[str, Trace]:
     return found
 
 
-def decoupled(name: str, region: str, rung: str) -> float | None:
-    """Return the largest k_s that keeps the first peak isolated, if there is one."""
+def decoupled(name: str, region: str, rung: str) -> Decoupling | None:
+    """Return the largest k_s that keeps the first peak apart, None if the softest does not."""
     scenario, step = SCENARIOS[name], LADDER[rung]
     arm = scenario.arm
     try:
@@ -136,7 +142,7 @@ def decoupled(name: str, region: str, rung: str) -> float | None:
             controller=None if step.reference is None else arm.controller(step.reference),
             accuracy=1e-3,
         )
-    except InvalidValue:  # the peaks are one from the softest spring on
+    except InvalidValue:
         return None
 
 
@@ -196,13 +202,14 @@ def _collected(scenarios: tuple[str, ...], tasks: list[Task], found: dict[Task, 
     def of(kind: str, name: str) -> list[tuple[tuple[Any, ...], Any]]:
         return [(a[1:], found[k, a]) for k, a in tasks if k == kind and a[0] == name]
 
-    decoupling: dict[str, dict[str, dict[str, float | None]]] = {}
+    decoupling: dict[str, dict[str, dict[str, Decoupling | None]]] = {}
     for name in scenarios:
         decoupling[name] = {region: {} for region in REGIONS}
         for (region, rung), stiffness in of("decoupling", name):
             decoupling[name][region][rung] = stiffness
     return Results(
         sweeps={name: [p for _, p in of("sweep", name)] for name in scenarios},
+        nominal={n: _parameters(SCENARIOS[n], SPEED_STIFFNESS, {}) for n in scenarios},
         speeds={name: [s for _, s in of("speed", name)] for name in scenarios},
         traces={name: {k[0]: t for k, t in of("trace", name)} for name in scenarios},
         decoupling=decoupling,
