@@ -4,7 +4,12 @@
 from .analysis import Analysis, ChainNumbers, analyse
 from .approach import approach_velocity, generalised_velocity, least_velocity, unit_direction
 from .chain import Chain, chain, free_end
-from .closure import close_loops, configuration_at_rest, require_closed_at
+from .closure import (
+    close_loops,
+    closed_near,
+    configuration_at_rest,
+    require_closed_at,
+)
 from .contact import Contact
 from .drives import Drives, drives
 from .dynamics import (
@@ -93,6 +98,7 @@ __all__ = [
     "chain_to",
     "close_loops",
     "closed_chain",
+    "closed_near",
     "configuration_at_rest",
     "constrained_stiffness",
     "contact_mobility",

@@ -10,8 +10,16 @@ from numpy.typing import ArrayLike
 from .dynamics import gravity_torques
 from .errors import InvalidValue, NoEquilibrium, SingularLoop, WrongLength
 from .impact_model import ImpactModel
-from .loop_equations import ClosedChain, gap_jacobian, gaps, stiffness_along, tangent
+from .loop_equations import (
+    ClosedChain,
+    gap_jacobian,
+    gaps,
+    solve_few,
+    stiffness_along,
+    tangent,
+)
 from .loops import CLOSED, closed_chain, nearest_to_closed, require_closed
+from .matrices import Matrix, on_scalars
 from .rigid import Array
 from .robot import Robot
 
@@ -68,6 +76,29 @@ def close_loops(robot: Robot, independent: ArrayLike) -> Array:
         raise SingularLoop(robot.loops[0].name, "passes a dead point on the way there from home")
     if _condition(chain, q) < NEARLY_SINGULAR:
         raise SingularLoop(robot.loops[0].name, "is at a dead point there: joints can move freely")
+    return q
+
+
+def closed_near(robot: Robot, independent: Matrix, near: Matrix, steps: int = 6) -> Matrix:
+    """Return the closed configuration as an expression, for expressions that differentiate it.
+
+    Args:
+        robot: with or without loops.
+        independent: coordinates of the independent joints, length n−r.
+        near: a configuration of length n from which a fixed number of Newton steps start.
+        steps: how many; each doubles the digits once it is near.
+    """
+    chain = closed_chain(robot)
+    return on_scalars(_newton, (chain, steps), independent, near)
+
+
+def _newton(chain: ClosedChain, steps: int, independent: Matrix, near: Matrix) -> Matrix:
+    free, bound = list(chain.independent), list(chain.dependent)
+    q = ca.SX(near)
+    q[free] = independent
+    for _ in range(steps if bound else 0):
+        jacobian = gap_jacobian(chain, q)[:, bound]
+        q[bound] -= solve_few(jacobian, gaps(chain, q))
     return q
 
 
@@ -188,7 +219,8 @@ def _moved(chain: ClosedChain, start: Array, goal: Array) -> Array | None:
     origin, q, done, step = start[ind], start, 0.0, 1.0
     while done < 1.0:
         share = min(1.0, done + step)
-        trial = _closed_near(chain, q, origin + share * (goal - origin))
+        aim = goal if share == 1.0 else origin + share * (goal - origin)
+        trial = _closed_near(chain, q, aim)
         if trial is not None:
             q, done, step = trial, share, 2 * step
         elif step > LEAST_STEP:

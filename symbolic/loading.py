@@ -279,7 +279,7 @@ class _RobotBuilder:
                     continue
                 joint, pose = carriers[index]
                 place = pose @ Placement(np.eye(3), anchor)
-                point = ",".join(f"{x:.9g}" for x in anchor)
+                point = ",".join(f"{round(x, 12) + 0.0:g}" for x in anchor)
                 ends.append(f"{model.body(index).name}@{point}")
                 self.frames[ends[-1]] = Frame(ends[-1], joint, place)
             name = model.equality(i).name or f"loop{i + 1}"

@@ -103,7 +103,7 @@ def _tangent(chain: ClosedChain, q: Matrix) -> Matrix:
     for column, joint in enumerate(free):
         G[joint, column] = 1
     if bound:
-        G[bound, :] = -_solve(jacobian[:, bound], jacobian[:, free])
+        G[bound, :] = -solve_few(jacobian[:, bound], jacobian[:, free])
     return G
 
 
@@ -112,14 +112,14 @@ def _constrained_hessian(chain: ClosedChain, gravity: tuple[float, ...], q: Matr
     symbol, force = ca.SX.sym("q", robot.n), ca.SX.sym("l", len(bound))
     energy, gaps = potential_energy(robot, symbol, gravity), _gaps(chain, symbol)
     pull = ca.substitute(ca.densify(ca.gradient(energy, symbol)), symbol, q)[bound]
-    held = -_solve(_jacobian(chain, q)[:, bound].T, pull)
+    held = -solve_few(_jacobian(chain, q)[:, bound].T, pull)
     hessian, _ = ca.hessian(energy + ca.dot(force, gaps), symbol)
     H = ca.substitute([ca.densify(hessian)], [symbol, force], [ca.SX(q), held])[0]
     G = _tangent(chain, q)
     return ca.mtimes([G.T, H, G])
 
 
-def _solve(matrix: Matrix, right: Matrix) -> Matrix:
+def solve_few(matrix: Matrix, right: Matrix) -> Matrix:
     """Solve a few linear equations without pivots that could vanish (SX)."""
     if matrix.shape[0] <= LONGEST_MINOR:
         return ca.mtimes(ca.inv_minor(matrix), right)

@@ -48,7 +48,7 @@ def closed_chain(robot: Robot) -> ClosedChain:
         LoopCannotClose: no closed configuration was found near home.
         RedundantLoop: a loop's equations follow from the others'.
         UnknownName: ``robot.independent`` names a joint that there is not.
-        InvalidValue: it does not name one joint for each degree of freedom.
+        InvalidValue: it does not name one joint for each degree of freedom, or leaves out a motor.
         SingularLoop: the others do not follow from those it names.
     """
     axes = tuple(_free_axes(robot, loop) for loop in robot.loops)
@@ -232,6 +232,10 @@ def _named(robot: Robot, jacobian: Array) -> tuple[int, ...]:
         raise InvalidValue(
             "independent", f"must name {needed} joints, one for each degree of freedom"
         )
+    motors = [i for i, actuated in enumerate(robot.actuated) if actuated]
+    left_out = [robot.joint_names[i] for i in motors if i not in chosen]
+    if left_out and len(motors) <= needed:
+        raise InvalidValue("independent", f"leaves out '{left_out[0]}', which has a motor")
     dependent = [i for i in range(robot.n) if i not in chosen]
     if _rank(jacobian[:, dependent]) < len(dependent):
         names = ", ".join(robot.joint_names[i] for i in dependent)
