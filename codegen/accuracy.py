@@ -77,7 +77,7 @@ def float_error(function: CFunction, samples: Sequence[Sample]) -> float:
 def _error(output: Output, found: NDArray[Any], right: NDArray[np.float64]) -> NDArray[np.float64]:
     """Error of each sample's entries over the largest of them, or absolute for shares of 1."""
     scale: Any = 1.0 if output.share else abs(right).max(axis=0)
-    return np.asarray(abs(found.astype(float) - right).max(axis=0) / scale)
+    return np.asarray(abs(found.astype(float) - right).max(axis=0) / np.where(scale > 0, scale, 1))
 
 
 def rounded_up(value: float) -> float:

@@ -111,6 +111,12 @@ class Configuration:
         return graph_of([q], [ca.vertcat(*numbers)])
 
     @property
+    def imbalance(self) -> float:
+        """Largest torque of the joints without motors at home, with no force in the loops."""
+        state = [self.home.tolist(), [0.0] * self.forces]
+        return max(map(abs, evaluate_exactly(self.equations, state)[0]))
+
+    @property
     def flops(self) -> int:
         """Operations of one Newton step, elimination included."""
         n = self.unknowns

@@ -9,6 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
+from softimpact.symbolic import NoEquilibrium
+
 from .accuracy import DOUBLE_ERROR, MARGIN, rounded_up
 from .configuration import (
     LAST_STEP,
@@ -101,6 +103,9 @@ def configuration_source(
         configuration: equations of a closed chain.
         golden: samples whose motor angles become the golden cases.
         measured: samples whose motor angles the float error is measured at.
+
+    Raises:
+        NoEquilibrium: nowhere near home do springs and gravity balance stably.
     """
     motors = list(configuration.motors)
     cases = []
@@ -113,6 +118,11 @@ def configuration_source(
     wide, found = rounded_configurations(configuration, columns, np.float64)
     narrow, still_found = rounded_configurations(configuration, columns, np.float32)
     both = found & still_found
+    if not cases or not both.any():
+        raise NoEquilibrium(
+            configuration.imbalance,
+            "none at any motor angles near home; raise the springs' stiffness or change gravity",
+        )
     error = abs(narrow - wide)[:, both].max(axis=0) / abs(wide)[:, both].max(axis=0)
     record = FunctionRecord(
         name=f"{prefix}_configuration",

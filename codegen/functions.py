@@ -75,7 +75,9 @@ class Output:
     def places(self) -> list[tuple[int, ...]]:
         """Return the C indices of the entries that are compared: one of two that are equal."""
         return [
-            place for place in np.ndindex(self.shape) if not self.symmetric or place[0] >= place[1]
+            place
+            for place in np.ndindex(self.shape)
+            if not self.symmetric or place == tuple(sorted(place, reverse=True))
         ]
 
     def entry(self, place: tuple[int, ...]) -> Matrix:
@@ -169,7 +171,7 @@ def functions_of(
     """Return all functions of a robot's package.
 
     Those of the operational space inertia are left out where the contact point cannot move in all
-    three directions at any configuration.
+    three directions at any configuration, and two masses where there is one coordinate.
     """
     builder = _Builder(robot, tip, gravity)
     functions = [
@@ -179,9 +181,10 @@ def functions_of(
         builder.stiffness_matrix(),
         builder.contact_jacobian(),
         builder.reflected_mass(),
-        builder.reduced_model(),
-        builder.chain(chain_order),
     ]
+    if coordinates_of(robot) > 1:
+        functions.append(builder.reduced_model())
+    functions.append(builder.chain(chain_order))
     if builder.moves_in_space():
         functions += [builder.osim(), builder.giaf(), builder.directional_giaf()]
     return tuple(functions)

@@ -64,6 +64,7 @@ def generate_package(
     Raises:
         FrameNotFound: the robot has no such tip.
         InvalidValue: an argument outside its meaning.
+        NoEquilibrium: a closed chain that rests nowhere near home.
         ForeignFiles: the folder holds files that the generator did not write.
         OutputNotWritable: the operating system refuses.
     """
