@@ -12,31 +12,46 @@ from functools import lru_cache
 
 import casadi as ca
 import numpy as np
+from numpy.typing import ArrayLike
 
-from softimpact.symbolic import Contact, ImpactModel, chain, generalised_velocity
+from softimpact.symbolic import (
+    Chain,
+    Contact,
+    ImpactModel,
+    LinearModel,
+    chain,
+    generalised_velocity,
+)
 from softimpact.symbolic.rigid import Array
 
 from .approach import Arrival
 from .controller import Controller
-from .linear import chain_mass, chain_stiffness, check_order
+from .linear import chain_stiffness, check_order
 from .mechanism import BodyKind, Mechanism
 from .simulator import Scene, Simulator, Switch, build_simulator
+
+DEPENDENT = 1e-12
+"""Share of a motion's energy that the motions before it may leave for it to be no new one."""
 
 
 @dataclass(frozen=True, eq=False)
 class ControlledSystem:
-    """z̈ = −K z − C (k_p e + k_d ė + k_i ∫e dt) − φ f_c with e = z − ż(0) t, or e = z when held.
+    """z̈ = −K z − C (k_p z + k_d ż + k_i ∫z dt) − d w − φ f_c around the motors' reference.
+
+    The reference moves the contact point by w, which grows with the speed of arrival or stays 0.
 
     Attributes:
-        stiffness: K = M⁻¹ times the springs' and gravity's stiffness, N×N.
+        stiffness: K = M⁻¹ times what springs and gravity pull beyond the computed torque, N×N.
         motors: C = M⁻¹ times M_θθ on the motors, N×N.
+        drift: d, what gravity pulls beyond the torque as the reference moves, length N.
         push: φ = M⁻¹Jᵀ, length N.
-        jacobian: J, length N; x_c = J z.
+        jacobian: J, length N; x_c = J z + w.
         velocity: ż(0) per 1 m/s of approach, length N.
     """
 
     stiffness: Array
     motors: Array
+    drift: Array
     push: Array
     jacobian: Array
     velocity: Array
@@ -45,7 +60,11 @@ class ControlledSystem:
 def controlled(
     model: ImpactModel, arrival: Arrival, controller: Controller, order: int | None = None
 ) -> ControlledSystem:
-    """Return the linearised robot with its controller, or its chain.
+    """Return the linearised robot with its controller, or a chain of it.
+
+    The chain is that of the springs alone: its end is free, and the controller pushes on its
+    masses as it does on the motors behind them. Where it closes before ``order`` masses, further
+    motions follow that only the controller excites: that of the arrival, then those of K_p.
 
     Args:
         model: the robot; the controller takes the place of its K_p.
@@ -53,29 +72,55 @@ def controlled(
         controller: of its motors.
         order: number of the chain's masses; None keeps all coordinates.
     """
-    springs = _with_gain(model, 0.0)
-    linear = springs.linear(arrival.q, arrival.direction)
-    M, K, C = (
-        np.array(m) for m in (linear.mass.matrix, linear.stiffness, _unit_gain(model, arrival.q))
-    )
-    J, velocity = (
-        np.array(linear.jacobian).ravel(),
-        generalised_velocity(model, arrival.link_velocity),
-    )
+    linear = _with_gain(model, 0.0).linear(arrival.q, arrival.direction)
+    M, K, C = _array(linear.mass.matrix), _array(linear.stiffness), _unit_gain(model, arrival.q)
+    J = _array(linear.jacobian).ravel()
+    velocity = generalised_velocity(model, arrival.link_velocity)
+    K[np.flatnonzero(model.actuated)] = 0  # the computed torque holds potential forces everywhere
+    drift = K @ velocity
     if order is not None:
         check_order(model, order)
-        masses = chain(linear, order, "free", reorthogonalise=True)
-        W = np.array(masses.displacement)
-        M, K = chain_mass(masses), chain_stiffness(masses)
-        S = np.array(linear.mass.solve(ca.DM(W @ M)))
-        C, J, velocity = S.T @ C @ S, J @ S, W.T @ velocity
+        springs = chain(linear, order, "free", reorthogonalise=True)
+        S = _shapes(linear, springs)
+        if springs.order < order:
+            held = _with_gain(model, controller.proportional).linear(arrival.q, arrival.direction)
+            more = _shapes(held, chain(held, order, reorthogonalise=True))
+            S = _extended(S, np.column_stack([velocity, more]), M, order)
+        velocity = np.linalg.solve(S.T @ M @ S, S.T @ M @ velocity)
+        cut = springs.order == order < model.size
+        K = chain_stiffness(springs) if cut else S.T @ K @ S
+        M, C, J, drift = S.T @ M @ S, S.T @ C @ S, J @ S, S.T @ drift
     return ControlledSystem(
         stiffness=np.linalg.solve(M, K),
         motors=np.linalg.solve(M, C),
+        drift=np.linalg.solve(M, drift),
         push=np.linalg.solve(M, J),
         jacobian=J,
         velocity=velocity,
     )
+
+
+def _shapes(linear: LinearModel, masses: Chain) -> Array:
+    """Return how the coordinates move with each mass of a chain, N×r."""
+    W = _array(masses.displacement)
+    return _array(linear.mass.solve(ca.DM(W * [float(m) for m in masses.mass])))
+
+
+def _extended(shapes: Array, more: Array, mass: Array, count: int) -> Array:
+    """Return ``count`` independent motions, those of ``shapes`` first."""
+    found = shapes
+    for motion in more.T:
+        rest = motion
+        for _ in range(2):
+            rest = rest - found @ np.linalg.solve(found.T @ mass @ found, found.T @ mass @ rest)
+        share = (rest @ mass @ rest) / (motion @ mass @ motion)
+        if share > DEPENDENT and found.shape[1] < count:
+            found = np.column_stack([found, rest / np.sqrt(rest @ mass @ rest)])
+    return found
+
+
+def _array(matrix: ArrayLike) -> Array:
+    return np.array(matrix, dtype=float)
 
 
 def _with_gain(model: ImpactModel, gain: float) -> ImpactModel:
@@ -106,9 +151,13 @@ def controlled_scene(
     velocity = 0 * system.velocity if follows else system.velocity
     gains = [controller.proportional, controller.derivative, controller.integral]
     fixed = [
-        system.stiffness.ravel("F"), system.motors.ravel("F"), system.push, system.jacobian,
+        system.stiffness.ravel("F"),
+        system.motors.ravel("F"),
+        system.drift,
+        system.push,
+        system.jacobian,
         [moving],
-    ]  # fmt: skip
+    ]
     before = np.concatenate([*fixed, gains])
     after = np.concatenate([*fixed, np.zeros(3)])
     switch = Switch(controller.reaction_time, after)
@@ -120,15 +169,15 @@ def _controlled_simulator(size: int, kind: BodyKind, tolerance: float) -> Simula
     z, rate, summed = (ca.SX.sym(name, size) for name in ("z", "dz", "s"))
     force, wanted, wanted_speed = (ca.SX.sym(name) for name in ("f_c", "w", "v_w"))
     K, C = ca.SX.sym("K", size, size), ca.SX.sym("C", size, size)
-    push, jacobian = ca.SX.sym("phi", size), ca.SX.sym("J", size)
+    drift, push, jacobian = (ca.SX.sym(name, size) for name in ("d", "phi", "J"))
     gains = ca.SX.sym("k", 3)
     pid = gains[0] * z + gains[1] * rate + gains[2] * summed
     robot = Mechanism(
         position=z,
         velocity=rate,
         force=force,
-        parameters=ca.vertcat(ca.vec(K), ca.vec(C), push, jacobian, wanted_speed, gains),
-        acceleration=-ca.mtimes(K, z) - ca.mtimes(C, pid) - push * force,
+        parameters=ca.vertcat(ca.vec(K), ca.vec(C), drift, push, jacobian, wanted_speed, gains),
+        acceleration=-ca.mtimes(K, z) - ca.mtimes(C, pid) - drift * wanted - push * force,
         displacement=ca.dot(jacobian, z) + wanted,
         memory=ca.vertcat(wanted, summed),
         memory_rate=ca.vertcat(wanted_speed, z),

@@ -105,7 +105,7 @@ def chain_of_masses(
     masses = model.chain(q, direction, order, end, reorthogonalise=True)
     velocity = _array(masses.displacement).T @ generalised_velocity(model, link_velocity)
     first = np.eye(masses.order)[0]
-    return LinearSystem(chain_mass(masses), chain_stiffness(masses), first, velocity)
+    return LinearSystem(_chain_mass(masses), chain_stiffness(masses), first, velocity)
 
 
 def check_order(model: ImpactModel, order: int) -> None:
@@ -118,8 +118,7 @@ def _is_held(model: ImpactModel) -> bool:
     return bool(model.drives.computed_torque_gain) or bool(np.any(_array(model.drives.gains)))
 
 
-def chain_mass(masses: Chain) -> Array:
-    """Return a chain's masses as a matrix, r×r."""
+def _chain_mass(masses: Chain) -> Array:
     return np.diag([float(m) for m in masses.mass])
 
 

@@ -89,7 +89,9 @@ def _figures(results: Results) -> list[Drawing]:
         wanted.append(("fig09_rr_speed.png", caption, partial(_speed_figure, results, r_r)))
     caption = "All models' first-contact peak over joint stiffness, head."
     wanted.append(("ladder_peaks.png", caption, partial(ladder_figure, results)))
-    caption = "Mean error of each model against the full one with its controller."
+    caption = (
+        "Mean error of each model's first contact against full with controller; bars end at 0.01 %."
+    )
     wanted.append(("ladder_errors.png", caption, partial(error_figure, results)))
     return sorted(wanted, key=lambda drawing: drawing[0])
 
@@ -148,7 +150,7 @@ def _peak_figure(sweeps: dict[str, list[Point]]) -> Figure:
         axes.set_title(region)
     handles = [Line2D([], [], color=COLOURS[name], label=f"({name})") for name in sweeps]
     handles += [_key(rung, "0.3") for rung in COMPARED]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(COMPARED) + 1)
     return figure
 
 

@@ -43,12 +43,12 @@ percentage point. *Difference* is in percent of the printed number, for numbers 
 def page(results: Results, comparisons: Sequence[Comparison], captions: Mapping[str, str]) -> str:
     """Return the report as Markdown; figures are expected beside it."""
     counts = Counter(line.verdict for line in comparisons)
-    summary = ", ".join(f"{counts[v]} {v}" for v in get_args(Verdict))
+    summary = ", ".join(f"{v} {counts[v]}" for v in get_args(Verdict))
     parts = [
         "# A reduced mass-spring-mass model of compliant robots, recomputed",
         "Jeanneau, Bégoc, Briot, J. Mechanisms Robotics 16(4), 041012, 2024: our numbers beside "
         "the printed ones.",
-        f"**{len(comparisons)} printed numbers: {summary}.**",
+        f"**Of {len(comparisons)} printed numbers: {summary}.**",
         READINGS,
         VERDICTS,
         *_sections(comparisons),

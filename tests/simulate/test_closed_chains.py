@@ -9,9 +9,8 @@ import pytest
 from mujoco_impacts import node_after
 
 from softimpact.robots import built_in_robots
-from softimpact.simulate import Approach, Controller, simulate_impact
+from softimpact.simulate import Approach, simulate_impact
 from softimpact.simulate.approach import arrival_of
-from softimpact.simulate.full import full_scene
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
@@ -21,10 +20,8 @@ from softimpact.symbolic import (
     gravity_torques,
     impact_model,
     load_robot,
-    loop_gaps,
     loop_tangent,
 )
-from softimpact.symbolic.rigid import Array
 
 GRAVITY = (0.0, 0.0, -9.81)
 MOTORS = np.radians([-130.6, -50.0])
