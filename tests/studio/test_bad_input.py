@@ -154,7 +154,7 @@ def test_model_files_leave_no_log_behind(
 def test_unknown_robot_lists_the_built_in_ones() -> None:
     message = refusal("analyze", "pandora", *PANDA[1:])
     assert "pandora" in message
-    assert "panda, rr" in message
+    assert "panda, rmin, rr" in message
 
 
 def test_unknown_frame_lists_the_known_ones() -> None:
