@@ -86,15 +86,15 @@ def controlled(
             held = _with_gain(model, controller.proportional).linear(arrival.q, arrival.direction)
             more = _shapes(held, chain(held, order, reorthogonalise=True))
             S = _extended(S, np.column_stack([velocity, more]), M, order)
-        velocity = np.linalg.solve(S.T @ M @ S, S.T @ M @ velocity)
+        velocity = _array(np.linalg.solve(S.T @ M @ S, S.T @ M @ velocity))
         cut = springs.order == order < model.size
         K = chain_stiffness(springs) if cut else S.T @ K @ S
         M, C, J, drift = S.T @ M @ S, S.T @ C @ S, J @ S, S.T @ drift
     return ControlledSystem(
-        stiffness=np.linalg.solve(M, K),
-        motors=np.linalg.solve(M, C),
-        drift=np.linalg.solve(M, drift),
-        push=np.linalg.solve(M, J),
+        stiffness=_array(np.linalg.solve(M, K)),
+        motors=_array(np.linalg.solve(M, C)),
+        drift=_array(np.linalg.solve(M, drift)),
+        push=_array(np.linalg.solve(M, J)),
         jacobian=J,
         velocity=velocity,
     )
