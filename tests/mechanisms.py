@@ -108,6 +108,20 @@ def robot_of(folder: Path, text: str) -> Robot:
 
 PARALLELOGRAM = {"crank": "0.4", "length": "0.6", "key": "1 -1 1"}
 
+SIX_BAR = {
+    "key": "1 -0.4 1.7 1.9 0.8",
+    "more": """
+    <body name="lever" pos="1.1 0 0"><joint name="lever" axis="0 0 1"/>
+      <inertial mass="1" pos="0.2 0 0" diaginertia=".01 .01 .01"/>
+      <body name="link" pos="0.4 0 0"><joint name="link" axis="0 0 1" stiffness="3"/>
+        <inertial mass="0.5" pos="0.2 0 0" diaginertia=".004 .004 .005"/>
+        <site name="hook" pos="0.45 0 0"/>
+      </body>
+    </body>""",
+    "equality": '<connect name="hook" site1="eye" site2="hook"/>',
+}
+"""A second loop behind the rocker of the four-bar."""
+
 THIRD_CRANK = PARALLELOGRAM | {
     "key": "1 -1 1 1",
     "more": """

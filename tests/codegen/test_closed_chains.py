@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from compiled_packages import KINDS, Generated, Library
-from mechanisms import FIVE_BAR, SPATIAL, four_bar, robot_of
+from mechanisms import FIVE_BAR, SIX_BAR, SPATIAL, four_bar, robot_of
 
 from softimpact.codegen import generate_package
 from softimpact.codegen.functions import parameters_of
@@ -50,8 +50,8 @@ def generated(robot: Robot, folder: Path, gravity: tuple[float, float, float]) -
 
 def mechanism(name: str, folder: Path) -> Robot:
     """Return a closed chain by name."""
-    if name == "four_bar":
-        return four_bar(folder, tilt="20")
+    if name in ("four_bar", "six_bar"):
+        return four_bar(folder, tilt="20", **(SIX_BAR if name == "six_bar" else {}))
     return robot_of(folder, {"five_bar": FIVE_BAR, "spatial": SPATIAL}[name])
 
 
@@ -73,7 +73,7 @@ def test_rmin_from_its_motors(package: Callable[[str], Generated], real: str) ->
         last = q
 
 
-@pytest.mark.parametrize("name", ["four_bar", "five_bar", "spatial"])
+@pytest.mark.parametrize("name", ["four_bar", "six_bar", "five_bar", "spatial"])
 def test_other_mechanisms(name: str, tmp_path: Path) -> None:
     robot = mechanism(name, tmp_path)
     built = generated(robot, tmp_path / name, (1.0, -2.0, -9.0))

@@ -7,8 +7,18 @@ import casadi as ca
 import mujoco
 import numpy as np
 import pytest
-from mechanisms import FIVE_BAR, FOUR_BAR, PARALLELOGRAM, SPATIAL, THIRD_CRANK, four_bar, robot_of
+from mechanisms import (
+    FIVE_BAR,
+    FOUR_BAR,
+    PARALLELOGRAM,
+    SIX_BAR,
+    SPATIAL,
+    THIRD_CRANK,
+    four_bar,
+    robot_of,
+)
 from oracles import Mujoco, assert_near
+from scipy.linalg import block_diag
 
 from softimpact.robots import built_in_robots
 from softimpact.symbolic import (
@@ -38,7 +48,9 @@ GRAVITY = (0.4, -9.0, -2.0)
 FOUR_BAR_TEXT = FOUR_BAR.format(
     tilt="20", crank="0.2", length="0.5", lift="0", more="", equality="", key="1 -0.4 1.7"
 )
+USUAL = {"tilt": "0", "crank": "0.2", "length": "0.5", "lift": "0"}
 SOURCES = {
+    "six_bar": FOUR_BAR.format(**(USUAL | SIX_BAR)),
     "four_bar": FOUR_BAR_TEXT,
     "five_bar": FIVE_BAR,
     "spatial": SPATIAL,
@@ -67,7 +79,7 @@ def test_jacobian_is_mujocos(mechanism):
     robot, oracle, q = mechanism
     theirs = constraint_rows(oracle.at(q))
     ours = np.array(loop_jacobian(robot, q))
-    axes = np.kron(np.eye(len(robot.loops)), closed_chain(robot).axes[0])
+    axes = block_diag(*closed_chain(robot).axes)
     assert_near(ours, axes @ theirs, 1e-9)
     assert np.linalg.matrix_rank(theirs, 1e-9) == len(ours)  # what was left out always holds
 
@@ -139,11 +151,13 @@ def test_acceleration_is_the_slope_of_the_jacobian(mechanism):
 def test_gaps_are_between_the_frames(mechanism):
     robot, _, _ = mechanism
     q = np.random.default_rng(0).uniform(-1, 1, robot.n)
-    (loop,) = robot.loops
-    ends = [np.array(frame_pose(robot, name, q).position) for name in (loop.first, loop.second)]
-    axes = closed_chain(robot).axes[0]
-    assert_near(loop_gaps(robot, q), axes @ (ends[0] - ends[1]), 1e-9)
-    assert_near(np.linalg.norm(axes @ (ends[0] - ends[1])), np.linalg.norm(ends[0] - ends[1]), 1e-7)
+    found = np.array(loop_gaps(robot, q)).ravel()
+    for loop, axes in zip(robot.loops, closed_chain(robot).axes, strict=True):
+        ends = [np.array(frame_pose(robot, name, q).position) for name in (loop.first, loop.second)]
+        gap, found = found[: len(axes)], found[len(axes) :]
+        assert_near(gap, axes @ (ends[0] - ends[1]), 1e-9)
+        assert_near(np.linalg.norm(gap), np.linalg.norm(ends[0] - ends[1]), 1e-7)
+    assert not found.size
 
 
 def test_symbols_of_every_kind_give_the_same(mechanism):
@@ -163,6 +177,7 @@ def test_symbols_of_every_kind_give_the_same(mechanism):
     ("source", "independent", "rows"),
     [
         ("four_bar", ("crank",), 2),
+        ("six_bar", ("crank",), 4),
         ("five_bar", ("a1", "b1"), 2),
         ("spatial", ("a1", "b1"), 3),
         ("rmin", ("q11", "q21", "q13", "q23"), 2),
