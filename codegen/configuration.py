@@ -175,17 +175,18 @@ def _solve(
     start, target = q[motors].copy(), goal.astype(kind)
     moves = max(1, math.ceil(float(abs(target - start).max(initial=0.0)) / MOVE))
     good = np.full(samples, True)
-    for move in range(1, moves + 1):
-        q[motors] = target if move == moves else start + (target - start) * kind(move / moves)
-        for _ in range(NEWTON_STEPS):
-            residual, flat = evaluate_rounded(configuration.equations, [q, force], kind)
-            size = configuration.unknowns
-            step = _eliminated(flat.reshape(size, size, samples), residual)
-            _subtract(configuration, q, force, step)
-            longest = abs(step[: len(configuration.passive)]).max(axis=0)
-            if not (longest[good] > LAST_STEP[kind]).any():
-                break
-        good &= longest <= LAST_STEP[kind]
+    with np.errstate(all="ignore"):  # searches that fail may run away
+        for move in range(1, moves + 1):
+            q[motors] = target if move == moves else start + (target - start) * kind(move / moves)
+            for _ in range(NEWTON_STEPS):
+                residual, flat = evaluate_rounded(configuration.equations, [q, force], kind)
+                size = configuration.unknowns
+                step = _eliminated(flat.reshape(size, size, samples), residual)
+                _subtract(configuration, q, force, step)
+                longest = abs(step[: len(configuration.passive)]).max(axis=0)
+                if not (longest[good] > LAST_STEP[kind]).any():
+                    break
+            good &= longest <= LAST_STEP[kind]
     (checks,) = evaluate_rounded(configuration.checks, [q], kind)
     return q, force, good & (checks > 0).all(axis=0)
 
