@@ -85,19 +85,20 @@ def accuracy(function: CFunction, samples: Sequence[Sample]) -> Accuracy:
     worst = max(epsilon, float(ordered[-1]))
     scale = float(np.finfo(np.float64).eps) / epsilon
     return Accuracy(
-        double=max(DOUBLE_ERROR, _rounded_up(usual * scale)),
-        single=_rounded_up(MARGIN * usual),
-        single_worst=_rounded_up(worst),
+        double=max(DOUBLE_ERROR, rounded_up(usual * scale)),
+        single=rounded_up(MARGIN * usual),
+        single_worst=rounded_up(worst),
     )
 
 
 def _error(output: Output, found: NDArray[Any], right: NDArray[np.float64]) -> NDArray[np.float64]:
     """Error of each sample's entries over the largest of them, or absolute for shares of 1."""
     scale: Any = 1.0 if output.share else abs(right).max(axis=0)
-    return np.asarray(abs(found.astype(float) - right).max(axis=0) / scale)
+    return np.asarray(abs(found.astype(float) - right).max(axis=0) / np.where(scale > 0, scale, 1))
 
 
-def _rounded_up(value: float) -> float:
+def rounded_up(value: float) -> float:
+    """Return a positive number rounded up to one digit."""
     exponent = math.floor(math.log10(value))
     return float(f"{math.ceil(value / 10.0**exponent)}e{exponent}")
 

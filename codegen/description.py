@@ -56,7 +56,9 @@ class Output:
     def places(self) -> list[tuple[int, ...]]:
         """Return the C indices of the entries that are compared: one of two that are equal."""
         return [
-            place for place in np.ndindex(self.shape) if not self.symmetric or place[0] >= place[1]
+            place
+            for place in np.ndindex(self.shape)
+            if not self.symmetric or place == tuple(sorted(place, reverse=True))
         ]
 
     def entry(self, place: tuple[int, ...]) -> Matrix:
@@ -68,11 +70,12 @@ class Output:
 
 @dataclass(frozen=True, eq=False)
 class Guard:
-    """A number that must lie between two bounds, or else the configuration is singular."""
+    """A number that must lie between two bounds, or else the configuration has another status."""
 
     value: Matrix
     low: float
     high: float | None = None
+    status: str = "SINGULAR"
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +88,7 @@ class CFunction:
         outputs: one is an argument of its own, several share a struct.
         direction: whether it takes the direction of impact n.
         parameters: names of the struct's fields it reads.
-        guards: what tells singular configurations apart.
+        guards: what tells singular and open configurations apart.
     """
 
     name: str

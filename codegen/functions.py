@@ -11,15 +11,20 @@ from softimpact.symbolic import (
     ImpactModel,
     Matrix,
     Robot,
+    closed_chain,
     directional_giaf,
     giaf,
     giif,
+    loop_gaps,
 )
 
 from .description import CFunction, Guard, Output, Parameter
 
 IMMOVABLE = 1e3
 """A contact point counts as unable to move where it feels this many times the robot's mass."""
+
+LOOP_OPEN = 1e-3
+"""Gap of a loop, over the size of the robot, from which on a configuration is refused."""
 
 CHAIN_ENDS = 1e-10
 """Square of the share of a mass's pull that must reach further masses for a chain to go on."""
@@ -44,9 +49,15 @@ def parameters_of(robot: Robot) -> tuple[Parameter, ...]:
 def is_elastic(robot: Robot) -> bool:
     """Whether every joint gets a spring behind its motor.
 
-    A robot with passive joints or with springs of its own describes its compliance itself.
+    A robot with passive joints, loops or springs of its own describes its compliance itself.
     """
-    return all(robot.actuated) and not any(joint.stiffness for joint in robot.joints)
+    plain = not robot.loops and not any(joint.stiffness for joint in robot.joints)
+    return plain and all(robot.actuated)
+
+
+def coordinates_of(robot: Robot) -> int:
+    """Number of generalised coordinates."""
+    return len(closed_chain(robot).independent) * (2 if is_elastic(robot) else 1)
 
 
 def functions_of(
@@ -55,7 +66,7 @@ def functions_of(
     """Return all functions of a robot's package.
 
     Those of the operational space inertia are left out where the contact point cannot move in all
-    three directions at any configuration.
+    three directions at any configuration, and two masses where there is one coordinate.
     """
     builder = _Builder(robot, tip, gravity)
     functions = [
@@ -65,9 +76,10 @@ def functions_of(
         builder.stiffness_matrix(),
         builder.contact_jacobian(),
         builder.reflected_mass(),
-        builder.reduced_model(),
-        builder.chain(chain_order),
     ]
+    if coordinates_of(robot) > 1:
+        functions.append(builder.reduced_model())
+    functions.append(builder.chain(chain_order))
     if builder.moves_in_space():
         functions += [builder.osim(), builder.giaf(), builder.directional_giaf()]
     return tuple(functions)
@@ -105,7 +117,17 @@ class _Builder:
             return any(vector[i].name() in read for i in range(vector.numel()))
 
         parameters = tuple(key for key, symbol in self.values.items() if reads(symbol))
+        guards = (*self._closed(), *guards)
         return CFunction(name, summary, outputs, symbols, reads(self.n), parameters, guards)
+
+    def _closed(self) -> tuple[Guard, ...]:
+        robot = self.model.robot
+        if not robot.loops:
+            return ()
+        gap = loop_gaps(robot, self.q)
+        lengths = [float(np.linalg.norm(joint.placement.translation)) for joint in robot.joints]
+        widest = float(f"{(LOOP_OPEN * sum(lengths)) ** 2:.2g}")
+        return (Guard(widest - ca.dot(gap, gap), 0.0, status="LOOP_OPEN"),)
 
     def _movable(self, mass: Matrix) -> Guard:
         return Guard(mass, 0.0, self.heaviest)

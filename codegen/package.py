@@ -10,13 +10,15 @@ from pathlib import Path
 import numpy as np
 
 import softimpact
-from softimpact.symbolic import Drives, InvalidValue, Robot
+from softimpact.symbolic import STANDARD_GRAVITY, Drives, InvalidValue, Robot
 from softimpact.symbolic.impact_model import WEIGHTLESS
 
 from .accuracy import accuracy, golden_results, is_regular
+from .configuration import Configuration, has_configuration
+from .configuration_source import configuration_source
 from .description import CFunction, Parameter
 from .files import replace_package, require_own, sha256
-from .functions import functions_of, is_elastic, parameters_of
+from .functions import coordinates_of, functions_of, parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .render import MEASURED_SAMPLES, Default, Package, render
 from .samples import Sample, draw_samples
@@ -37,20 +39,21 @@ def generate_package(
     real: Real = "double",
     name: str | None = None,
     drives_: Drives | None = None,
-    gravity: tuple[float, float, float] = WEIGHTLESS,
+    gravity: tuple[float, float, float] | None = None,
     chain_order: int = 3,
 ) -> Manifest:
     """Write a C99 package that computes a robot's impact model.
 
     Args:
-        robot: any robot with a tree of hinges and slides, see ``load_robot``.
+        robot: any robot, see ``load_robot``.
         out: folder of the package; replaced as a whole if it holds an older package.
         tip: frame whose origin is the contact point; default the robot's own.
         real: number type that the package uses unless its build says otherwise.
         name: prefix of all C names; default the robot's name.
         drives_: numbers for the default parameters; without them the rotor inertias are the
             file's armatures, gains are 0, and joint stiffnesses are left for the caller to set.
-        gravity: whose curvature enters K0 [m/s²]; zero leaves it out.
+        gravity: whose curvature enters K0 [m/s²]; zero leaves it out. Default none, but of closed
+            chains, whose passive joints rest where springs and gravity balance, the standard one.
         chain_order: number of masses of the chain.
 
     Returns:
@@ -59,12 +62,15 @@ def generate_package(
     Raises:
         FrameNotFound: the robot has no such tip.
         InvalidValue: an argument outside its meaning, or a tip that cannot move.
+        NoEquilibrium: a closed chain that rests nowhere near home.
         ForeignFiles: the folder holds files that the generator did not write.
         OutputNotWritable: the operating system refuses.
     """
     folder = Path(out)
     require_own(folder)
     frame = robot.frame(tip or robot.tip or "").name
+    if gravity is None:
+        gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
     _check(robot, real, gravity, chain_order)
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot)
@@ -77,6 +83,10 @@ def generate_package(
     for function in functions:
         record = _record(prefix, function, measured)
         sources.append(CSource(prefix, robot.n, parameters, function, record))
+    configuration = None
+    if has_configuration(robot):
+        found = Configuration(robot, gravity)
+        configuration = configuration_source(prefix, found, golden, measured)
     package = Package(
         prefix=prefix,
         robot=robot,
@@ -89,6 +99,7 @@ def generate_package(
         functions=tuple(sources),
         samples=tuple(golden),
         tables=tables,
+        configuration=configuration,
     )
     files = render(package)
     manifest = _manifest(package, {path: sha256(text) for path, text in files.items()})
@@ -107,7 +118,7 @@ def _check(robot: Robot, real: str, gravity: Sequence[float], chain_order: int) 
         raise InvalidValue("real", f"must be 'double' or 'float', not '{real}'")
     if len(gravity) != 3 or not np.isfinite(gravity).all():
         raise InvalidValue("gravity", "needs three finite numbers [x, y, z]")
-    longest = min(LONGEST_CHAIN, robot.n * (2 if is_elastic(robot) else 1))
+    longest = min(LONGEST_CHAIN, coordinates_of(robot))
     if not 1 <= chain_order <= longest:
         raise InvalidValue("chain_order", f"must be from 1 to {longest}, not {chain_order}")
 
@@ -156,6 +167,9 @@ def _defaults(
 
 
 def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
+    records = [source.record for source in package.functions]
+    if package.configuration:
+        records.insert(0, package.configuration.record)
     return Manifest(
         name=package.prefix,
         version=softimpact.__version__,
@@ -167,6 +181,6 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         coordinates=package.coordinates,
         gravity=package.gravity,
         chain_order=package.chain_order,
-        functions=tuple(source.record for source in package.functions),
+        functions=tuple(records),
         files=hashes,
     )

@@ -10,11 +10,12 @@ from pathlib import Path
 import jinja2
 
 import softimpact
-from softimpact.symbolic import Robot
+from softimpact.symbolic import Robot, closed_chain
 
 from . import sine
+from .configuration_source import ConfigurationSource
 from .description import Parameter
-from .functions import is_elastic
+from .functions import coordinates_of, is_elastic
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
@@ -49,6 +50,7 @@ class Package:
         functions: all C functions.
         samples: golden inputs.
         tables: golden results of each function by its short name.
+        configuration: where a closed chain's motors decide the rest; None if they do not.
     """
 
     prefix: str
@@ -62,6 +64,7 @@ class Package:
     functions: tuple[CSource, ...]
     samples: tuple[Sample, ...]
     tables: Mapping[str, Sequence[Sequence[float]]]
+    configuration: ConfigurationSource | None = None
 
     @property
     def elastic(self) -> bool:
@@ -71,7 +74,12 @@ class Package:
     @property
     def coordinates(self) -> int:
         """Number of generalised coordinates."""
-        return self.robot.n * (2 if self.elastic else 1)
+        return coordinates_of(self.robot)
+
+    @property
+    def independent(self) -> list[str]:
+        """Names of the joints whose coordinates describe the robot."""
+        return [self.robot.joint_names[i] for i in closed_chain(self.robot).independent]
 
     def has(self, function: str) -> bool:
         """Whether the package has a function of this short name."""
@@ -120,6 +128,9 @@ def render(package: Package) -> dict[str, str]:
     function = environment.get_template("function.c.jinja")
     for source in package.functions:
         rendered[f"src/{source.name}.c"] = function.render(context, f=source)
+    if package.configuration:
+        solver = environment.get_template("configuration.c.jinja")
+        rendered[f"src/{name}_configuration.c"] = solver.render(context, c=package.configuration)
     return dict(sorted(rendered.items()))
 
 

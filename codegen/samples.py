@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from softimpact.symbolic import JointKind, Robot
 
+from .closed_samples import closed_configurations
 from .description import Parameter
 
 STEPS = 1024
@@ -31,7 +32,7 @@ class Sample:
     """Inputs of every function of a package.
 
     Attributes:
-        q: joint coordinates within their limits.
+        q: joint coordinates within their limits; of closed chains near home, with closed loops.
         n: direction of any length but zero.
         parameters: one vector a field of the parameter struct.
     """
@@ -46,9 +47,16 @@ def draw_samples(
 ) -> list[Sample]:
     """Return random samples; ``random.Random`` promises the same ones everywhere."""
     source = random.Random(seed)
+    closed = iter(closed_configurations(robot, source, count) if robot.loops else ())
+
+    def configuration() -> tuple[float, ...]:
+        if robot.loops:
+            return tuple(next(closed).tolist())
+        return tuple(_coordinate(source, *bounds) for bounds in _ranges(robot))
+
     return [
         Sample(
-            tuple(_coordinate(source, *bounds) for bounds in _ranges(robot)),
+            configuration(),
             _direction(source),
             tuple(tuple(_value(source, p.name) for _ in range(robot.n)) for p in parameters),
         )

@@ -121,15 +121,15 @@ class CSource:
         return f"{output.name}_{joint.join(str(i + 1) for i in place)}"
 
     @property
-    def guards(self) -> list[str]:
-        """Conditions of a regular configuration."""
+    def guards(self) -> list[tuple[str, str]]:
+        """Conditions of a regular configuration, and the status where they do not hold."""
         macro = f"{self.prefix.upper()}_R"
         conditions = []
         for guard, (text,) in zip(self.function.guards, self._guard_texts, strict=True):
             condition = f"{text} > {macro}({guard.low!r})"
             if guard.high is not None:
                 condition += f" && {text} < {macro}({guard.high!r})"
-            conditions.append(condition)
+            conditions.append((condition, guard.status))
         return conditions
 
     @property

@@ -12,6 +12,7 @@ from softimpact.symbolic import (
     ImpactModel,
     InvalidValue,
     approach_velocity,
+    require_closed_at,
     unit_direction,
 )
 from softimpact.symbolic.rigid import Array
@@ -25,11 +26,12 @@ class Approach:
     """A configuration and a velocity at first touch.
 
     Attributes:
-        q: link angles, length n [rad, m].
+        q: link angles, one a joint [rad, m]; they close the robot's loops.
         direction: n, along which the contact point moves into the body, length 3.
         speed: of the contact point along n [m/s].
-        link_velocity: joint velocities per 1 m/s of speed, length n; None takes those of least
-            norm that move the contact point along n alone.
+        link_velocity: joint velocities per 1 m/s of speed, length n (in a closed chain, of its
+            independent joints); None takes those of least norm that move the contact point along n
+            alone.
     """
 
     q: Array
@@ -56,15 +58,17 @@ def arrival_of(model: ImpactModel, approach: Approach) -> Arrival:
             velocity that does not move the contact point by 1 m/s along n.
         WrongLength: q or link_velocity does not fit the robot.
         SingularDirection: the contact point cannot move along n.
+        LoopCannotClose: a loop is open at q.
     """
-    q = _finite(model, "q", approach.q)
+    q = _finite("q", model.robot.vector("q", approach.q))
+    require_closed_at(model.robot, q)
     n = unit_direction(approach.direction)
     if not 0 < approach.speed < np.inf:
         raise InvalidValue("speed", f"must be finite and greater than 0 m/s, not {approach.speed}")
     if approach.link_velocity is None:
         velocity = approach_velocity(model, q, n)
     else:
-        velocity = _finite(model, "link_velocity", approach.link_velocity)
+        velocity = _finite("link_velocity", model.vector("link_velocity", approach.link_velocity))
     reached = float(n @ np.array(model.jacobian(q)) @ velocity)
     if abs(reached - 1) > REACHED:
         raise InvalidValue(
@@ -88,8 +92,7 @@ def check_contact(contact: Contact) -> None:
         raise InvalidValue("region.damping", f"must be finite and ≥ 0, not {region.damping}")
 
 
-def _finite(model: ImpactModel, field: str, values: Array) -> Array:
-    vector = model.robot.vector(field, values)
+def _finite(field: str, vector: Array) -> Array:
     if not np.isfinite(vector).all():
         raise InvalidValue(field, "must hold finite numbers")
     return vector

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,15 +81,26 @@ def first_contact(scene: Scene, duration: float | None = None) -> FirstContact:
 
 
 def _whole_run(scene: Scene, duration: float | None) -> Run:
-    count = math.ceil((duration or LONGEST) / SPAN)
-    span = (duration or LONGEST) / count
+    starts = _starts(scene, duration or LONGEST)
     runs: list[Run] = []
-    for i in range(count):
-        run = scene.run(scene.touch if i == 0 else runs[-1].state[:, -1], span)
-        runs.append(run if i == 0 else _later(run, i * span))
+    for start, end in pairwise(starts):
+        state = runs[-1].state[:, -1] if runs else scene.touch
+        run = scene.run(state, end - start, start)
+        runs.append(_later(run, start) if runs else run)
         if duration is None and _downward(run.depth).size:
             break
     return _joined(runs)
+
+
+def _starts(scene: Scene, duration: float) -> Array:
+    """Return when runs start and the last one ends: at most SPAN apart, and at the switch."""
+    marks = [0.0, duration]
+    if scene.switch is not None and scene.switch.time < duration:
+        marks.insert(1, scene.switch.time)
+    pieces = [
+        np.linspace(a, b, math.ceil((b - a) / SPAN), endpoint=False) for a, b in pairwise(marks)
+    ]
+    return np.append(np.concatenate(pieces), duration)
 
 
 def _joined(runs: list[Run]) -> Run:
@@ -121,7 +133,8 @@ def _refined_end(scene: Scene, run: Run, index: int) -> float:
 
 
 def _bracket(scene: Scene, run: Run, index: int) -> Run:
-    return scene.run(run.state[:, index], float(run.time[index + 1] - run.time[index]))
+    start, end = (float(t) for t in run.time[index : index + 2])
+    return scene.run(run.state[:, index], end - start, start)
 
 
 def _first(found: NDArray[np.intp]) -> int:

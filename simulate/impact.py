@@ -11,6 +11,8 @@ from softimpact.symbolic import Contact, ImpactModel, InvalidValue, UnknownName
 from softimpact.symbolic.chain import ChainEnd
 
 from .approach import Approach, Arrival, arrival_of, check_contact
+from .controlled import controlled, controlled_scene
+from .controller import Controller, check_controller
 from .events import first_contact
 from .full import full_scene
 from .history import Fidelity, ImpactHistory
@@ -22,7 +24,6 @@ from .linear import (
     one_mass,
     two_mass,
 )
-from .simulator import Scene
 
 
 def simulate_impact(
@@ -33,6 +34,7 @@ def simulate_impact(
     *,
     order: int = 3,
     end: ChainEnd | None = None,
+    controller: Controller | None = None,
     duration: float | None = None,
     tolerance: float = 1e-10,
 ) -> ImpactHistory:
@@ -47,6 +49,8 @@ def simulate_impact(
         order: number of the chain's masses.
         end: of the chain; None keeps its spring to ground where a controller holds the motors. A
             chain much shorter than the robot is then nearer with a free end.
+        controller: of the motors in place of the model's K_p (full, linearised and grounded
+            chain); None holds them by K_p, without a reaction.
         duration: how long to simulate from first touch [s]; None: until shortly after separation.
         tolerance: of the integrator, relative and absolute for an approach of 1 m/s.
 
@@ -61,8 +65,21 @@ def simulate_impact(
     if not 1e-14 <= tolerance <= 1e-2:
         raise InvalidValue("tolerance", f"must be from 1e-14 to 1e-2, not {tolerance:g}")
     check_contact(contact)
+    if controller is not None:
+        check_controller(controller)
+        if fidelity in ("one_mass", "two_mass") or end == "free":
+            reason = "needs motors: a chain with its ground spring, or the linearised or full model"
+            raise InvalidValue("controller", reason)
     arrival = arrival_of(model, approach)
-    scene = _scene(model, arrival, contact, fidelity, order, end, tolerance)
+    if fidelity == "full":
+        scene = full_scene(model, arrival, contact, tolerance, controller)
+    elif controller is not None:
+        masses = order if fidelity == "chain" else None
+        system = controlled(model, arrival, controller, masses)
+        scene = controlled_scene(system, arrival, controller, contact, tolerance)
+    else:
+        linear = _linear_system(model, arrival, fidelity, order, end)
+        scene = modal_scene(linear, arrival.speed, contact, tolerance)
     found = first_contact(scene, duration)
     return ImpactHistory(
         fidelity=fidelity,
@@ -76,17 +93,9 @@ def simulate_impact(
     )
 
 
-def _scene(
-    model: ImpactModel,
-    arrival: Arrival,
-    contact: Contact,
-    fidelity: Fidelity,
-    order: int,
-    end: ChainEnd | None,
-    tolerance: float,
-) -> Scene:
-    if fidelity == "full":
-        return full_scene(model, arrival, contact, tolerance)
+def _linear_system(
+    model: ImpactModel, arrival: Arrival, fidelity: Fidelity, order: int, end: ChainEnd | None
+) -> LinearSystem:
     at = (model, arrival.q, arrival.direction)
     velocity = arrival.link_velocity
     build: dict[str, Callable[[], LinearSystem]] = {
@@ -95,4 +104,4 @@ def _scene(
         "chain": partial(chain_of_masses, *at, velocity, order, end),
         "linearised": partial(linearised, *at, velocity),
     }
-    return modal_scene(build[fidelity](), arrival.speed, contact, tolerance)
+    return build[fidelity]()

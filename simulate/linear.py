@@ -100,13 +100,18 @@ def chain_of_masses(
         end: of the chain; None keeps the last mass's spring to ground where a controller holds the
             motors, and drops it where they are free.
     """
-    if not 1 <= order <= model.size:
-        raise InvalidValue("order", f"must be from 1 to {model.size}, the robot's coordinates")
+    check_order(model, order)
     end = end or ("grounded" if _is_held(model) else "free")
     masses = model.chain(q, direction, order, end, reorthogonalise=True)
     velocity = _array(masses.displacement).T @ generalised_velocity(model, link_velocity)
     first = np.eye(masses.order)[0]
-    return LinearSystem(_chain_mass(masses), _chain_stiffness(masses), first, velocity)
+    return LinearSystem(_chain_mass(masses), chain_stiffness(masses), first, velocity)
+
+
+def check_order(model: ImpactModel, order: int) -> None:
+    """Raise InvalidValue if a robot has no chain of so many masses."""
+    if not 1 <= order <= model.size:
+        raise InvalidValue("order", f"must be from 1 to {model.size}, the robot's coordinates")
 
 
 def _is_held(model: ImpactModel) -> bool:
@@ -117,7 +122,8 @@ def _chain_mass(masses: Chain) -> Array:
     return np.diag([float(m) for m in masses.mass])
 
 
-def _chain_stiffness(masses: Chain) -> Array:
+def chain_stiffness(masses: Chain) -> Array:
+    """Return the stiffness matrix of a chain's springs, r×r."""
     K = np.zeros((masses.order, masses.order))
     for i, stiffness in enumerate(masses.stiffness):
         K[i, i] += float(stiffness)

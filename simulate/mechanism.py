@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import casadi as ca
 
@@ -21,7 +21,10 @@ class Mechanism:
         force: contact force f_c [N], a symbol.
         parameters: numbers that vary from one impact to the next, symbols.
         acceleration: of the coordinates, over all the symbols above.
-        displacement: x_c [m], how far the contact point has moved along n, over ``position``.
+        displacement: x_c [m], how far the contact point has moved along n, over ``position`` and
+            ``memory``.
+        memory: what a controller keeps, symbols of the size of positions, zero at first touch.
+        memory_rate: its rate, over all the symbols above.
     """
 
     position: Matrix
@@ -30,6 +33,8 @@ class Mechanism:
     parameters: Matrix
     acceleration: Matrix
     displacement: Matrix
+    memory: Matrix = field(default_factory=lambda: ca.SX(0, 1))
+    memory_rate: Matrix = field(default_factory=lambda: ca.SX(0, 1))
 
     @property
     def size(self) -> int:
@@ -39,7 +44,8 @@ class Mechanism:
     @property
     def speed(self) -> Matrix:
         """ẋ_c [m/s]."""
-        return ca.jtimes(self.displacement, self.position, self.velocity)
+        moving = ca.vertcat(self.position, self.memory)
+        return ca.jtimes(self.displacement, moving, ca.vertcat(self.velocity, self.memory_rate))
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from softimpact.symbolic import Contact, ImpactModel, InvalidValue
 from softimpact.symbolic.chain import ChainEnd
 
 from .approach import Approach, arrival_of
+from .controller import Controller
 from .history import Fidelity, PeakDefinition
 from .impact import simulate_impact
 from .simulator import SimulationFailed
@@ -34,6 +35,7 @@ def largest_safe_speed(
     *,
     order: int = 3,
     end: ChainEnd | None = None,
+    controller: Controller | None = None,
     tolerance: float = 1e-10,
 ) -> float:
     """Return the speed [m/s] at which the peak force is the limit.
@@ -50,6 +52,7 @@ def largest_safe_speed(
         definition: of the peak.
         order: as in ``simulate_impact``.
         end: as in ``simulate_impact``.
+        controller: as in ``simulate_impact``.
         tolerance: as in ``simulate_impact``.
 
     Raises:
@@ -61,7 +64,14 @@ def largest_safe_speed(
     def excess(log_speed: float) -> float:
         at_speed = replace(approach, speed=exp(log_speed))
         history = simulate_impact(
-            model, at_speed, contact, fidelity, order=order, end=end, tolerance=tolerance
+            model,
+            at_speed,
+            contact,
+            fidelity,
+            order=order,
+            end=end,
+            controller=controller,
+            tolerance=tolerance,
         )
         return log(history.peak(definition) / limit)
 

@@ -43,8 +43,9 @@ class Run:
 
     Attributes:
         time: since first touch [s], length K.
-        state: scaled, one column a node: the robot's positions and velocities, the body's (unless
-            it is clamped) and last the node x_0 between skin and spring.
+        state: scaled, one column a node: the robot's positions and velocities, its controller's
+            memory, the body's position and velocity (unless it is clamped) and last the node x_0
+            between skin and spring.
         depth: δ = x_c − x_0 [m], negative when apart.
         closing: dδ/dt [m/s].
         force: f_c [N].
@@ -65,11 +66,21 @@ class Simulator:
         integrate: SUNDIALS; state and parameters → states at the nodes.
         observe: state and parameters → depth, closing and force.
         kind: of the body.
+        memory: length of what the robot's controller keeps.
     """
 
     integrate: Matrix
     observe: Matrix
     kind: BodyKind
+    memory: int
+
+
+@dataclass(frozen=True, eq=False)
+class Switch:
+    """Other parameters of the robot from a time [s] on."""
+
+    time: float
+    parameters: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +93,7 @@ class Scene:
         velocity: rates of the robot's coordinates per 1 m/s of approach.
         speed: of the approach [m/s].
         contact: with the body.
+        switch: what changes later, if anything.
     """
 
     simulator: Simulator
@@ -89,21 +101,30 @@ class Scene:
     velocity: Array
     speed: float
     contact: Contact
+    switch: Switch | None = None
 
     @property
     def touch(self) -> Array:
         """State at first touch."""
-        body = np.zeros(1 if self.contact.clamped else 3)
-        return np.concatenate([np.zeros_like(self.velocity), self.velocity, body])
+        rest = np.zeros(self.simulator.memory + (1 if self.contact.clamped else 3))
+        return np.concatenate([np.zeros_like(self.velocity), self.velocity, rest])
 
-    def run(self, state: Array, span: float) -> Run:
-        """Simulate from a state over a span [s]; raises SimulationFailed."""
-        simulator = self.simulator
-        p = [*self.parameters, *body_parameters(self.contact), self.speed, span]
+    def run(self, state: Array, span: float, start: float = 0.0) -> Run:
+        """Simulate from a state over a span [s]; raises SimulationFailed.
+
+        Args:
+            state: at the start.
+            span: how long; the switch must not be within.
+            start: time since first touch [s].
+        """
+        simulator, switch = self.simulator, self.switch
+        switched = switch is not None and start + span / 2 > switch.time
+        parameters = switch.parameters if switch and switched else self.parameters
+        p = [*parameters, *body_parameters(self.contact), self.speed, span]
         damped = simulator.kind.damped
-        start = {"x0": state} if damped else {"x0": state[:-1], "z0": state[-1]}
+        initial = {"x0": state} if damped else {"x0": state[:-1], "z0": state[-1]}
         try:
-            end = simulator.integrate(**start, p=p)
+            end = simulator.integrate(**initial, p=p)
         except RuntimeError as error:
             flags = re.findall(r'returned "(\w+)"', str(error))
             raise SimulationFailed(flags[0] if flags else str(error)) from None
@@ -126,9 +147,10 @@ def build_simulator(robot: Mechanism, kind: BodyKind, tolerance: float) -> Simul
     body = Body.symbols(kind)
     speed, span = ca.SX.sym("v"), ca.SX.sym("T")
     pressed = press(robot, body, kind)
-    state = ca.vertcat(robot.position, robot.velocity, body.moved, body.node)
-    k = robot.size
-    lengths = [UNIT_TIME] * k + [1.0] * k + ([] if kind.clamped else [UNIT_TIME, 1.0])
+    state = ca.vertcat(robot.position, robot.velocity, robot.memory, body.moved, body.node)
+    k, memory = robot.size, int(robot.memory.numel())
+    lengths = [UNIT_TIME] * k + [1.0] * k + [UNIT_TIME] * memory
+    lengths += [] if kind.clamped else [UNIT_TIME, 1.0]
     scale = speed * ca.DM([*lengths, UNIT_TIME])
     x = ca.SX.sym("x", state.numel())
 
@@ -145,12 +167,12 @@ def build_simulator(robot: Mechanism, kind: BodyKind, tolerance: float) -> Simul
     options = {"reltol": tolerance, "abstol": tolerance, "max_num_steps": 100_000}
     integrate = ca.integrator("impact", solver, dae, 0, np.linspace(0, 1, NODES + 1), options)
     seen = [scaled(e) for e in (pressed.depth, pressed.closing, pressed.force)]
-    return Simulator(integrate, ca.Function("observe", [x, p], seen), kind)
+    return Simulator(integrate, ca.Function("observe", [x, p], seen), kind, memory)
 
 
 def _rate(robot: Mechanism, body: Body, pressed: Press) -> Matrix:
     acceleration = ca.substitute(robot.acceleration, robot.force, pressed.force)
-    rates = [robot.velocity, acceleration]
+    rates = [robot.velocity, acceleration, robot.memory_rate]
     if body.moved.numel():  # spring and damper hand on f_c, since x_0 has no mass
         rates += [body.velocity, pressed.force / body.mass]
     return ca.vertcat(*rates, robot.speed - pressed.closing)

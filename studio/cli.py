@@ -16,6 +16,7 @@ import typer
 from .analyze_command import analyze
 from .design_command import design
 from .generate_command import generate
+from .reproduce_command import reproduce
 from .robots_command import robots
 from .select_command import select
 from .simulate_command import simulate
@@ -31,6 +32,7 @@ app.command()(simulate)
 app.command()(select)
 app.command()(design)
 app.command()(generate)
+app.command()(reproduce)
 
 
 @app.callback(invoke_without_command=True)

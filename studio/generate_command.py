@@ -50,7 +50,7 @@ def generate(
         real=number,
         name=name,
         drives_=drives_of(robot, given),
-        gravity=gravity_of(gravity),
+        gravity=None if gravity is None else gravity_of(gravity),
         chain_order=order,
     )
     if json:

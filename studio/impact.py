@@ -105,7 +105,7 @@ def print_impact(result: Mapping[str, Any]) -> None:
 
 def _per_speed(scene: Situation, text: str) -> Array:
     """Return typed joint velocities scaled to move the contact point by 1 m/s along n."""
-    velocity = scene.model.robot.vector("joint_velocity", values.vector("joint_velocity", text))
+    velocity = scene.model.vector("joint_velocity", values.vector("joint_velocity", text))
     along = float(scene.direction @ np.array(scene.model.jacobian(scene.q)) @ velocity)
     if not along > 0:
         raise InvalidValue(

@@ -20,7 +20,11 @@ Model = Annotated[
 ]
 Tip = Annotated[
     str | None,
-    typer.Option("--tip", metavar="FRAME", help="Contact frame; default the model's own."),
+    typer.Option(
+        "--tip",
+        metavar="FRAME",
+        help="Contact frame, or BODY@x,y,z for any point of a body [m]; default the model's own.",
+    ),
 ]
 Configuration = Annotated[
     str,

@@ -13,6 +13,7 @@ from softimpact.symbolic import (
     InvalidValue,
     Robot,
     chain_to,
+    configuration_at_rest,
     drives,
     impact_model,
     link_angles_at_rest,
@@ -69,12 +70,14 @@ class Situation:
 def situation(typed: Typed) -> Situation:
     """Return the situation that the options describe; raises SoftImpactError."""
     robot = robot_to_tip(typed.model, typed.tip)
-    q = robot.vector("q", values.vector("q", typed.q))
+    q = values.vector("q", typed.q)
     direction = unit_direction(values.vector("direction", typed.direction, 3))
     model = impact_model(
         robot, drives_=drives_of(robot, typed.drives), gravity=gravity_of(typed.gravity)
     )
-    return Situation(model, link_angles(model, q) if typed.motor_angles else q, direction)
+    if typed.motor_angles:
+        return Situation(model, link_angles(model, np.array(q)), direction)
+    return Situation(model, robot.vector("q", q), direction)
 
 
 def robot_to_tip(name: str, tip: str | None) -> Robot:
@@ -100,8 +103,14 @@ def robot_to_tip(name: str, tip: str | None) -> Robot:
 
 
 def link_angles(model: ImpactModel, motor_angles: Array) -> Array:
-    """Return the link angles at which the model's springs and gravity balance."""
+    """Return the link angles at which the model's springs and gravity balance.
+
+    A closed chain has an angle for each motor, any other robot one for each joint.
+    """
+    if model.robot.loops:
+        return configuration_at_rest(model, motor_angles)
     robot, elastic = model.robot, np.array(model.drives.elastic)
+    robot.vector("q", motor_angles)
     rigid = {
         joint.name: float(angle)
         for joint, angle, gives in zip(robot.joints, motor_angles, elastic, strict=True)

@@ -4,6 +4,12 @@
 from .analysis import Analysis, ChainNumbers, analyse
 from .approach import approach_velocity, generalised_velocity, least_velocity, unit_direction
 from .chain import Chain, chain, free_end
+from .closure import (
+    close_loops,
+    closed_near,
+    configuration_at_rest,
+    require_closed_at,
+)
 from .contact import Contact
 from .drives import Drives, drives
 from .dynamics import (
@@ -20,9 +26,13 @@ from .errors import (
     FrameNotFound,
     InvalidInertia,
     InvalidValue,
+    LoopCannotClose,
+    LoopError,
     ModelFileError,
     NoEquilibrium,
+    RedundantLoop,
     SingularDirection,
+    SingularLoop,
     SoftImpactError,
     UnknownName,
     UnsupportedModel,
@@ -32,10 +42,19 @@ from .factors import ContactMobility, contact_mobility, directional_giaf, giaf, 
 from .impact_model import ImpactModel, impact_model
 from .kinematics import contact_point_jacobian, direction_jacobian, frame_jacobian, frame_pose
 from .loading import load_robot
+from .loop_equations import ClosedChain
+from .loops import (
+    closed_chain,
+    constrained_stiffness,
+    loop_acceleration,
+    loop_gaps,
+    loop_jacobian,
+    loop_tangent,
+)
 from .matrices import Matrix, count_flops
 from .reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
 from .regions import REGIONS, BodyRegion, body_region
-from .robot import Frame, Joint, JointKind, Robot, chain_to, lock_joints
+from .robot import Frame, Joint, JointKind, Loop, Robot, chain_to, lock_joints
 
 __all__ = [
     "REGIONS",
@@ -44,6 +63,7 @@ __all__ = [
     "BodyRegion",
     "Chain",
     "ChainNumbers",
+    "ClosedChain",
     "Contact",
     "ContactMobility",
     "Drives",
@@ -55,12 +75,17 @@ __all__ = [
     "Joint",
     "JointKind",
     "LinearModel",
+    "Loop",
+    "LoopCannotClose",
+    "LoopError",
     "Matrix",
     "ModelFileError",
     "NoEquilibrium",
     "ReducedModel",
+    "RedundantLoop",
     "Robot",
     "SingularDirection",
+    "SingularLoop",
     "SoftImpactError",
     "UnknownName",
     "UnsupportedModel",
@@ -71,6 +96,11 @@ __all__ = [
     "body_region",
     "chain",
     "chain_to",
+    "close_loops",
+    "closed_chain",
+    "closed_near",
+    "configuration_at_rest",
+    "constrained_stiffness",
     "contact_mobility",
     "contact_point_jacobian",
     "count_flops",
@@ -89,11 +119,16 @@ __all__ = [
     "link_angles_at_rest",
     "load_robot",
     "lock_joints",
+    "loop_acceleration",
+    "loop_gaps",
+    "loop_jacobian",
+    "loop_tangent",
     "mass_matrix",
     "motor_angles_at_rest",
     "potential_energy",
     "reduce_to_two_masses",
     "reflected_mass",
+    "require_closed_at",
     "static_stiffness",
     "stiffness_of_potential",
     "unit_direction",

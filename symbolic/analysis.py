@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from .approach import unit_direction
 from .chain import chain
+from .closure import require_closed_at
 from .elastic import LinearModel
 from .errors import InvalidValue, SingularDirection
 from .factors import directional_giaf, giaf, giif
@@ -54,8 +55,8 @@ class Analysis:
         osim: Λ = (J (M+B)⁻¹ Jᵀ)⁻¹ with rotors, 3×3 [kg].
         osim_free: Λ_F = (J M⁻¹ Jᵀ)⁻¹ without them, 3×3 [kg].
         reflected_mass_rigid: (nᵀ Λ⁻¹ n)⁻¹, felt if all joints were rigid [kg].
-        mass_matrix: M of the links, n×n [kg m²].
-        jacobian: translational J in the base's axes, 3×n.
+        mass_matrix: M of the links, n×n [kg m²]; of a closed chain over its independent joints.
+        jacobian: translational J in the base's axes, 3×n, over the same joints.
     """
 
     m_c: float
@@ -85,6 +86,7 @@ def analyse(model: ImpactModel, q: ArrayLike, direction: ArrayLike, order: int =
     Raises:
         WrongLength: q does not fit the robot.
         InvalidValue: q or the direction is not finite, or the order is below 1.
+        LoopCannotClose: a loop is open at q.
         SingularDirection: the contact point cannot move along the direction.
     """
     angles = model.robot.vector("q", q)
@@ -92,6 +94,7 @@ def analyse(model: ImpactModel, q: ArrayLike, direction: ArrayLike, order: int =
         raise InvalidValue("q", "needs finite numbers")
     if order < 1:
         raise InvalidValue("order", f"must be at least 1, but is {order}")
+    require_closed_at(model.robot, angles)
     n = unit_direction(direction)
     J = model.jacobian(angles)
     still = IMMOBILE * _reach(model)

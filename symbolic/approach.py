@@ -29,7 +29,8 @@ def least_velocity(jacobian: Matrix, direction: Matrix) -> Matrix:
 def approach_velocity(model: ImpactModel, q: ArrayLike, direction: ArrayLike) -> Array:
     """Return the link velocities of least norm that move the contact point by 1 m/s along n.
 
-    Springs do not move: only joints with a motor do.
+    Springs do not move: only joints with a motor do. Of a closed chain they are the velocities of
+    the independent joints.
 
     Args:
         model: whose contact point moves.
@@ -40,7 +41,7 @@ def approach_velocity(model: ImpactModel, q: ArrayLike, direction: ArrayLike) ->
         SingularDirection: the point cannot move along n alone.
     """
     n = np.asarray(direction, dtype=float)
-    J = np.array(model.jacobian(q)) * np.array(model.robot.actuated, dtype=float)
+    J = np.array(model.jacobian(q)) * np.array(model.actuated, dtype=float)
     velocity = np.asarray(np.linalg.pinv(J, rcond=1e-9) @ n)
     if np.linalg.norm(J @ velocity - n) > REACHED:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")
@@ -49,8 +50,8 @@ def approach_velocity(model: ImpactModel, q: ArrayLike, direction: ArrayLike) ->
 
 def generalised_velocity(model: ImpactModel, link_velocity: ArrayLike) -> Array:
     """Return q̇ over motors and deflections: springs do not move before the impact."""
-    velocity = model.robot.vector("joint_velocity", link_velocity)
-    return np.concatenate([velocity, np.zeros(sum(model.drives.elastic))])
+    velocity = model.vector("joint_velocity", link_velocity)
+    return np.concatenate([velocity, np.zeros(sum(model.elastic))])
 
 
 def unit_direction(direction: ArrayLike) -> Array:

@@ -79,3 +79,27 @@ class NoEquilibrium(SoftImpactError):
         super().__init__(
             f"no static equilibrium under gravity (residual torque {residual:.3g} N·m): {hint}"
         )
+
+
+class LoopError(SoftImpactError):
+    """A loop of a closed chain is not what it must be; ``loop`` is its name."""
+
+    def __init__(self, loop: str, reason: str) -> None:
+        self.loop = loop
+        super().__init__(f"loop '{loop}' {reason}")
+
+
+class LoopCannotClose(LoopError):
+    """The two ends of a loop do not meet."""
+
+    def __init__(self, loop: str, gap: float, hint: str) -> None:
+        self.gap = gap
+        super().__init__(loop, f"does not close: its ends stay {gap:.3g} m apart; {hint}")
+
+
+class RedundantLoop(LoopError):
+    """A loop asks for what other loops, or the joints alone, already see to."""
+
+
+class SingularLoop(LoopError):
+    """The dependent joints of a closed chain do not follow from the independent ones."""

@@ -7,16 +7,20 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .chain import Chain, ChainEnd, chain
 from .drives import Drives, drives
 from .dynamics import mass_matrix, stiffness_of_potential
 from .elastic import LinearModel, MassOperator, elastic_jacobian, elastic_mass, elastic_stiffness
+from .errors import InvalidValue, WrongLength
 from .factors import ContactMobility, contact_mobility
 from .kinematics import contact_point_jacobian, direction_jacobian
-from .matrices import Matrix
+from .loops import closed_chain, constrained_stiffness, loop_tangent
+from .matrices import Matrix, symmetric
 from .reduction import ReducedModel, reduce_to_two_masses, reflected_mass
-from .robot import Robot
+from .rigid import Array
+from .robot import BASE, Robot
 
 WEIGHTLESS = (0.0, 0.0, 0.0)
 """Gravity of a model that leaves gravity out of K0."""
@@ -27,7 +31,9 @@ class ImpactModel:
     """A robot, its contact point and its drives; methods take q and n of any matrix kind.
 
     Link angles q have one entry a joint. Generalised coordinates are the motor angles followed by
-    the deflections of the elastic joints.
+    the deflections of the elastic joints. In a closed chain they are those of the independent
+    joints, over which all matrices are then, while q still has one entry a joint and closes the
+    loops.
 
     Attributes:
         robot: the rigid robot.
@@ -42,33 +48,59 @@ class ImpactModel:
     gravity: tuple[float, float, float] = WEIGHTLESS
 
     @property
+    def independent(self) -> tuple[int, ...]:
+        """Indices of the joints whose coordinates describe the robot: all, without loops."""
+        return closed_chain(self.robot).independent
+
+    @property
+    def elastic(self) -> tuple[bool, ...]:
+        """Whether each independent joint is elastic."""
+        return tuple(self.drives.elastic[i] for i in self.independent)
+
+    @property
+    def actuated(self) -> tuple[bool, ...]:
+        """Whether each independent joint has a motor."""
+        return tuple(self.robot.actuated[i] for i in self.independent)
+
+    @property
     def size(self) -> int:
         """Number of generalised coordinates."""
-        return self.robot.n + sum(self.drives.elastic)
+        return len(self.elastic) + sum(self.elastic)
+
+    def vector(self, name: str, values: ArrayLike) -> Array:
+        """Check that ``values`` has one entry an independent joint; raises WrongLength."""
+        array = np.asarray(values, dtype=float)
+        if array.shape != (len(self.independent),):
+            names = [self.robot.joint_names[i] for i in self.independent]
+            raise WrongLength(name, array.size, len(names), names)
+        return array
 
     def mass_matrix(self, q: Matrix) -> Matrix:
-        """Return the links' mass matrix M, n×n [kg m²]."""
-        return mass_matrix(self.robot, q)
+        """Return the links' mass matrix M (of a closed chain GᵀMG), n×n [kg m²]."""
+        return self._congruent(q, mass_matrix(self.robot, q))
 
     def rotor_mass_matrix(self, q: Matrix) -> Matrix:
         """Return M + B, the mass matrix of the rigid robot with its rotors, n×n."""
-        return self.mass_matrix(q) + ca.diag(self.drives.rotors)
+        return self.mass_matrix(q) + self._congruent(q, ca.diag(self.drives.rotors))
 
     def generalised_mass(self, q: Matrix) -> MassOperator:
         """Return M0 over motors and deflections (MSM Eq. 42)."""
-        return elastic_mass(self.mass_matrix(q), self.drives.rotors, self.drives.elastic)
+        links, rotors = self.mass_matrix(q), self.drives.rotors
+        if self.robot.loops:  # rotors of joints that follow turn with the links
+            free = list(self.independent)
+            follows = ca.sparsify(ca.DM([float(i not in free) for i in range(self.robot.n)]))
+            links = links + self._congruent(q, ca.diag(rotors * follows))
+            rotors = rotors[free]
+        return elastic_mass(links, rotors, self.elastic)
 
     def generalised_stiffness(self, q: Matrix) -> Matrix:
         """Return K0 over motors and deflections (MSM Eq. 45)."""
-        potential = self._potential(q)
-        return elastic_stiffness(
-            self.drives.springs, self.position_gains(q), potential, self.drives.elastic
-        )
+        springs = self.drives.springs[list(self.independent)]
+        return elastic_stiffness(springs, self.position_gains(q), self._potential(q), self.elastic)
 
     def contact_jacobian(self, q: Matrix, direction: Matrix) -> Matrix:
         """Return J_c over motors and deflections, 1×N (MSM Eq. 4)."""
-        row = direction_jacobian(self.robot, self.tip, q, direction)
-        return elastic_jacobian(row, self.drives.elastic)
+        return elastic_jacobian(self._direction_row(q, direction), self.elastic)
 
     def linear(self, q: Matrix, direction: Matrix) -> LinearModel:
         """Return M0, K0 and J_c around rest at q, hit along the unit vector ``direction``."""
@@ -80,9 +112,8 @@ class ImpactModel:
 
     def reflected_mass(self, q: Matrix, direction: Matrix) -> Matrix:
         """Return m_c [kg] (MSM Eq. 36); rotors behind springs do not count."""
-        if all(self.drives.elastic):
-            row = direction_jacobian(self.robot, self.tip, q, direction)
-            return reflected_mass(self.mass_matrix(q), row)
+        if all(self.elastic):
+            return reflected_mass(self.mass_matrix(q), self._direction_row(q, direction))
         return reflected_mass(self.generalised_mass(q).matrix, self.contact_jacobian(q, direction))
 
     def reduced(self, q: Matrix, direction: Matrix) -> ReducedModel:
@@ -103,37 +134,53 @@ class ImpactModel:
 
     def jacobian(self, q: Matrix) -> Matrix:
         """Return the contact point's translational J in the base's axes, 3×n."""
-        return contact_point_jacobian(self.robot, self.tip, q)
+        return self._point_jacobian(q)
 
     def free_mobility(self, q: Matrix, axes_of: int = -1) -> ContactMobility:
         """Return J M⁻¹ Jᵀ = Λ_F⁻¹, the mobility without rotors (GIAF Eq. 24)."""
-        J = contact_point_jacobian(self.robot, self.tip, q, axes_of)
-        return contact_mobility(self.mass_matrix(q), J)
+        return contact_mobility(self.mass_matrix(q), self._point_jacobian(q, axes_of))
 
     def mobility(self, q: Matrix, axes_of: int = -1) -> ContactMobility:
         """Return J (M+B)⁻¹ Jᵀ = Λ⁻¹, the mobility with rotors (GIAF Eq. 23)."""
-        J = contact_point_jacobian(self.robot, self.tip, q, axes_of)
-        return contact_mobility(self.rotor_mass_matrix(q), J)
+        return contact_mobility(self.rotor_mass_matrix(q), self._point_jacobian(q, axes_of))
 
     def with_springs(self, springs: Matrix) -> ImpactModel:
         """Return the model with other joint stiffnesses k_s, length n, numbers or symbols."""
         return replace(self, drives=replace(self.drives, springs=springs))
 
-    def _potential(self, q: Matrix) -> Matrix:
-        has_springs = any(joint.stiffness for joint in self.robot.joints)
-        if not has_springs and not any(self.gravity):
-            return ca.DM(self.robot.n, self.robot.n)
-        return stiffness_of_potential(self.robot, q, self.gravity)
-
     def position_gains(self, q: Matrix) -> Matrix:
         """Return K_p = diag(gains) + k_p M_θθ over the motors, n×n, sparse where it is zero."""
         gains = ca.diag(self.drives.gains)
+        gains = self._congruent(q, ca.sparsify(gains) if isinstance(gains, ca.DM) else gains)
         if self.drives.computed_torque_gain is None:
-            return ca.sparsify(gains) if isinstance(gains, ca.DM) else gains
-        motors = ca.DM(np.diag(np.array(self.robot.actuated, dtype=float)))
-        motors = ca.sparsify(motors)
+            return gains
+        motors = ca.sparsify(ca.DM(np.diag(np.array(self.actuated, dtype=float))))
         block = ca.mtimes([motors, self.rotor_mass_matrix(q), motors])
         return gains + self.drives.computed_torque_gain * block
+
+    def _potential(self, q: Matrix) -> Matrix:
+        has_springs = any(joint.stiffness for joint in self.robot.joints)
+        if not has_springs and not any(self.gravity):
+            return ca.DM(len(self.independent), len(self.independent))
+        if self.robot.loops:
+            return constrained_stiffness(self.robot, q, self.gravity)
+        return stiffness_of_potential(self.robot, q, self.gravity)
+
+    def _point_jacobian(self, q: Matrix, axes_of: int = BASE) -> Matrix:
+        J = contact_point_jacobian(self.robot, self.tip, q, axes_of)
+        return ca.mtimes(J, loop_tangent(self.robot, q)) if self.robot.loops else J
+
+    def _direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+        row = direction_jacobian(self.robot, self.tip, q, direction)
+        return ca.mtimes(row, loop_tangent(self.robot, q)) if self.robot.loops else row
+
+    def _congruent(self, q: Matrix, matrix: Matrix) -> Matrix:
+        """Return GᵀXG of a matrix X over all joints; X itself without loops."""
+        if not self.robot.loops:
+            return matrix
+        G = loop_tangent(self.robot, q)
+        product = ca.mtimes([G.T, matrix, G])
+        return symmetric(lambda i, j: product[i, j], product.shape[0])
 
 
 def impact_model(
@@ -143,14 +190,27 @@ def impact_model(
     drives_: Drives | None = None,
     gravity: tuple[float, float, float] = WEIGHTLESS,
 ) -> ImpactModel:
-    """Return the model of a robot; raises FrameNotFound if it has no such tip.
+    """Return the model of a robot at rest.
 
     Args:
         robot: any robot.
         tip: contact frame; default the robot's own.
         drives_: rotors, springs and gains; default rigid joints with the file's armature.
         gravity: whose curvature enters K0 [m/s²]; zero leaves it out.
+
+    Raises:
+        FrameNotFound: the robot has no such tip.
+        LoopError: a loop cannot close or is redundant.
+        InvalidValue: a joint that follows from others through a loop is to be elastic.
     """
     name = tip if tip is not None else robot.tip
     frame = robot.frame(name if name is not None else "")
-    return ImpactModel(robot, frame.name, drives_ or drives(robot), gravity)
+    known = drives_ or drives(robot)
+    for i in closed_chain(robot).dependent:
+        if known.elastic[i]:
+            raise InvalidValue(
+                "joint_stiffness",
+                f"joint '{robot.joints[i].name}' follows from others through a loop and cannot "
+                "be elastic; give it inf, or name it among the independent joints",
+            )
+    return ImpactModel(robot, frame.name, known, gravity)

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -15,7 +16,7 @@ from softimpact.robots import built_in_robots
 
 from .errors import InvalidInertia, ModelFileError, UnknownName, UnsupportedModel
 from .rigid import Array, Inertia, Placement, product, rotation_from_axis
-from .robot import BASE, Frame, Joint, JointKind, Robot
+from .robot import BASE, Frame, Joint, JointKind, Loop, Robot
 
 KINDS = {
     int(mujoco.mjtJoint.mjJNT_HINGE): JointKind.HINGE,
@@ -36,7 +37,9 @@ def load_robot(model: str | Path, tip: str | None = None) -> Robot:
     kept, nor are couplings between joints (URDF ``mimic``, MJCF ``equality/joint``, tendons): weld
     such joints with ``chain_to`` or ``lock_joints``. Of MJCF's ``custom`` elements the text ``tip``
     names the contact frame and the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor
-    inertias.
+    inertias. MJCF ``equality/connect`` closes a loop: ``home`` is then the first keyframe (or the
+    model's reference configuration), and the custom text ``independent`` may name the joints whose
+    coordinates describe the closed chain, separated by spaces.
 
     Args:
         model: name of a built-in robot, or path of a file.
@@ -45,18 +48,28 @@ def load_robot(model: str | Path, tip: str | None = None) -> Robot:
     Raises:
         ModelFileError: the file is missing, not readable as URDF or MJCF, or holds no joint.
         InvalidInertia: a mass or inertia is missing or impossible.
-        UnsupportedModel: ball or free joints, or closed chains.
+        UnsupportedModel: ball or free joints, or welds between bodies.
         FrameNotFound: the robot has no frame ``tip``.
     """
     path = _model_path(model)
-    compiled = _compile(path)
+    compiled, home = _compile(path)
     _reject_unsupported(compiled, path)
     robot = _RobotBuilder(compiled, path).robot(tip or _custom_texts(compiled).get("tip"))
+    if robot.loops:
+        robot = _with_loop_data(robot, home, _custom_texts(compiled).get("independent", ""))
     if not robot.joints:
         raise ModelFileError(str(path), "has no joints")
     if robot.tip is not None:
         robot.frame(robot.tip)
     return robot
+
+
+def _with_loop_data(robot: Robot, home: list[float], independent: str) -> Robot:
+    names = tuple(independent.split())
+    for name in names:
+        if name not in robot.joint_names:
+            raise UnknownName("joint (custom text 'independent')", name, robot.joint_names)
+    return replace(robot, home=tuple(home), independent=names)
 
 
 def _model_path(model: str | Path) -> Path:
@@ -95,7 +108,8 @@ def _rotor_inertia_sets(model: mujoco.MjModel, path: Path) -> dict[str, tuple[fl
     return sets
 
 
-def _compile(path: Path) -> mujoco.MjModel:
+def _compile(path: Path) -> tuple[mujoco.MjModel, list[float]]:
+    """Return the compiled model and the configuration of its first keyframe or reference."""
     if not path.is_file():
         raise ModelFileError(str(path), "no such file")
     with _warnings() as heard:
@@ -114,12 +128,13 @@ def _warnings() -> Iterator[list[str]]:
         mujoco.set_mju_user_warning(before)
 
 
-def _compile_spec(path: Path, heard: list[str]) -> mujoco.MjModel:
+def _compile_spec(path: Path, heard: list[str]) -> tuple[mujoco.MjModel, list[float]]:
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except ValueError as error:
         raise ModelFileError(str(path), f"not a URDF or MJCF: {_one_line(error)}") from None
     spec.compiler.fusestatic = False
+    keys = [[float(x) for x in key.qpos] for key in spec.keys[:1]]
     hollow = _drop_meshes(spec, keep_shapes=path.suffix != ".urdf")
     for body in spec.bodies[1:]:
         _check_mass(body, str(path))
@@ -137,7 +152,8 @@ def _compile_spec(path: Path, heard: list[str]) -> mujoco.MjModel:
             raise InvalidInertia(
                 str(path), body.name, "takes its inertia from a mesh; give it an <inertial> element"
             )
-    return model
+    home = keys[0] if keys and len(keys[0]) == model.nq else [float(x) for x in model.qpos0]
+    return model, home
 
 
 def _drop_meshes(spec: mujoco.MjSpec, keep_shapes: bool) -> list[mujoco.MjsBody]:
@@ -205,9 +221,8 @@ def _reject_unsupported(model: mujoco.MjModel, path: Path) -> None:
                 f"joint '{name}' is a ball or free joint; "
                 "only hinges and slides on a fixed base are supported",
             )
-    loops = (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD)
-    if any(int(kind) in map(int, loops) for kind in model.eq_type):
-        raise UnsupportedModel(str(path), "closed chains (equality connect or weld)")
+    if any(int(kind) == int(mujoco.mjtEq.mjEQ_WELD) for kind in model.eq_type):
+        raise UnsupportedModel(str(path), "equality weld; close loops with connect")
     if np.any(getattr(model, "jnt_stiffnesspoly", 0.0)):
         raise UnsupportedModel(str(path), "springs whose stiffness depends on the deflection")
     names = [_joint_name(model, i) for i in range(model.njnt)]
@@ -245,7 +260,30 @@ class _RobotBuilder:
         ]
         name = self.model.names.split(b"\0")[0].decode() or self.path.stem
         sets = _rotor_inertia_sets(self.model, self.path)
-        return Robot(name, tuple(joints), self.frames, tip, sets)
+        loops = tuple(self._loops(carriers))
+        return Robot(name, tuple(joints), self.frames, tip, sets, loops)
+
+    def _loops(self, carriers: Mapping[int, tuple[int, Placement]]) -> Iterator[Loop]:
+        """Yield what ``equality/connect`` elements close, between sites or points of bodies."""
+        model, sites = self.model, int(mujoco.mjtObj.mjOBJ_SITE)
+        for i in range(model.neq):
+            if int(model.eq_type[i]) != int(mujoco.mjtEq.mjEQ_CONNECT) or not model.eq_active0[i]:
+                continue
+            ends = []
+            for index, anchor in (
+                (int(model.eq_obj1id[i]), model.eq_data[i, :3]),
+                (int(model.eq_obj2id[i]), model.eq_data[i, 3:6]),
+            ):
+                if int(model.eq_objtype[i]) == sites:
+                    ends.append(model.site(index).name)
+                    continue
+                joint, pose = carriers[index]
+                place = pose @ Placement(np.eye(3), anchor)
+                point = ",".join(f"{round(x, 12) + 0.0:g}" for x in anchor)
+                ends.append(f"{model.body(index).name}@{point}")
+                self.frames[ends[-1]] = Frame(ends[-1], joint, place)
+            name = model.equality(i).name or f"loop{i + 1}"
+            yield Loop(name, ends[0], ends[1])
 
     def _add_body(self, body: int, carrier: int, pose: Placement) -> tuple[int, Placement]:
         """Add a body's joints; return the joint that carries it and its pose in that joint."""

@@ -11,7 +11,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .errors import FrameNotFound, UnknownName, WrongLength
+from .errors import FrameNotFound, InvalidValue, UnknownName, WrongLength
 from .rigid import Array, Inertia, Placement, rotation_about_z
 
 BASE = -1
@@ -74,9 +74,18 @@ class Frame:
     placement: Placement
 
 
+@dataclass(frozen=True)
+class Loop:
+    """Two frames of a closed chain whose origins coincide, by name."""
+
+    name: str
+    first: str
+    second: str
+
+
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """A fixed-base tree of hinge and slide joints, parents before children.
+    """A fixed-base tree of hinge and slide joints, parents before children, and the loops in it.
 
     Attributes:
         name: of the model.
@@ -85,6 +94,11 @@ class Robot:
         tip: frame taken as the contact point where none is named.
         rotor_inertia_sets: reflected rotor inertias by the name of their source, each with one
             entry a joint.
+        loops: that close the tree.
+        home: a configuration at which the loops are closed or nearly so, in the wanted one of
+            several ways to assemble them; None is zero.
+        independent: names of the joints whose coordinates describe a closed chain; empty leaves
+            the choice to ``closed_chain``.
     """
 
     name: str
@@ -92,6 +106,9 @@ class Robot:
     frames: Mapping[str, Frame]
     tip: str | None = None
     rotor_inertia_sets: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    loops: tuple[Loop, ...] = ()
+    home: tuple[float, ...] | None = None
+    independent: tuple[str, ...] = ()
 
     @property
     def n(self) -> int:
@@ -120,10 +137,32 @@ class Robot:
         return tuple(joint.actuated for joint in self.joints)
 
     def frame(self, name: str) -> Frame:
-        """Return a frame by name; raises FrameNotFound, which lists the frames there are."""
-        if name not in self.frames:
-            raise FrameNotFound(name, self.frames)
-        return self.frames[name]
+        """Return a frame by name, or ``FRAME@x,y,z``: moved by [m] along a named frame's axes.
+
+        Raises:
+            FrameNotFound: there is no such frame; lists those that there are.
+            InvalidValue: the point is not three finite numbers.
+        """
+        if name in self.frames:
+            return self.frames[name]
+        carrier, at, point = name.partition("@")
+        if carrier not in self.frames:
+            raise FrameNotFound(carrier if at else name, self.frames)
+        known = self.frames[carrier]
+        moved = Placement(np.eye(3), _point(name, point))
+        return Frame(name, known.joint, known.placement @ moved)
+
+    def with_frame(self, name: str, body: str, point: ArrayLike) -> Robot:
+        """Return the robot with one more frame.
+
+        Args:
+            name: of the new frame.
+            body: name of the body, or of any other frame, that carries it; raises FrameNotFound.
+            point: its origin along that frame's axes [m], length 3.
+        """
+        known = self.frame(body)
+        placement = known.placement @ Placement(np.eye(3), np.asarray(point, dtype=float))
+        return replace(self, frames={**self.frames, name: Frame(name, known.joint, placement)})
 
     def ancestors(self, joint: int) -> list[int]:
         """Indices from ``joint`` down to the base, itself first."""
@@ -132,6 +171,11 @@ class Robot:
             path.append(joint)
             joint = self.joints[joint].parent
         return path
+
+    def moved_by(self, loop: Loop) -> set[int]:
+        """Indices of the joints that move a loop's two frames against each other."""
+        first, second = self.frame(loop.first).joint, self.frame(loop.second).joint
+        return set(self.ancestors(first)) ^ set(self.ancestors(second))
 
     def rotor_inertia_set(self, name: str) -> Array:
         """Return a named set of reflected rotor inertias; raises UnknownName."""
@@ -177,7 +221,22 @@ class Robot:
         for frame in self.frames.values():
             numbers = [*frame.placement.rotation.flat, *frame.placement.translation]
             text.update(f"{frame.name} {frame.joint} {_in_words(numbers)}\n".encode())
+        for loop in self.loops:
+            text.update(f"{loop.name} {loop.first} {loop.second}\n".encode())
+        if self.loops:
+            home = _in_words(self.home or ())
+            text.update(f"{home} {' '.join(self.independent)}\n".encode())
         return text.hexdigest()
+
+
+def _point(name: str, text: str) -> Array:
+    try:
+        point = np.array([float(x) for x in text.split(",")])
+    except ValueError:
+        point = np.zeros(0)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise InvalidValue(f"frame '{name}'", "needs a point as three finite numbers: FRAME@x,y,z")
+    return point
 
 
 def _in_words(numbers: Sequence[float]) -> str:
@@ -217,18 +276,43 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
         name: tuple(value for value, stay in zip(values, stays, strict=True) if stay)
         for name, values in robot.rotor_inertia_sets.items()
     }
-    return replace(robot, joints=tuple(kept), frames=frames, rotor_inertia_sets=sets)
+    independent = tuple(name for name in robot.independent if name not in locked)
+    home = None
+    if robot.home is not None:
+        home = tuple(value for value, stay in zip(robot.home, stays, strict=True) if stay)
+    return replace(
+        robot,
+        joints=tuple(kept),
+        frames=frames,
+        rotor_inertia_sets=sets,
+        home=home,
+        independent=independent,
+    )
 
 
 def chain_to(robot: Robot, frame: str, rest: Sequence[float] | None = None) -> Robot:
     """Return the chain from the base to a frame; joints off it are welded, their masses kept.
+
+    Joints of a loop that the chain is part of stay, and loops among welded joints are dropped.
 
     Args:
         robot: any robot.
         frame: name of a frame; raises FrameNotFound.
         rest: coordinates of all joints at which those off the chain are welded (default zero).
     """
-    path = set(robot.ancestors(robot.frame(frame).joint))
+    path, loops = _with_loops(robot, set(robot.ancestors(robot.frame(frame).joint)))
     values = np.zeros(robot.n) if rest is None else robot.vector("rest", rest)
     locked = {j.name: float(values[i]) for i, j in enumerate(robot.joints) if i not in path}
-    return replace(lock_joints(robot, locked), tip=frame)
+    return replace(lock_joints(robot, locked), tip=frame, loops=loops)
+
+
+def _with_loops(robot: Robot, path: set[int]) -> tuple[set[int], tuple[Loop, ...]]:
+    """Add to a chain all joints of the loops that hold it, and return those loops."""
+    around = {loop: robot.moved_by(loop) for loop in robot.loops}
+    held: set[Loop] = set()
+    while touched := {loop for loop in around if around[loop] & path} - held:
+        held |= touched
+        for loop in touched:
+            ends = (robot.frame(loop.first).joint, robot.frame(loop.second).joint)
+            path = path.union(*map(robot.ancestors, ends))
+    return path, tuple(loop for loop in robot.loops if loop in held)

@@ -33,7 +33,7 @@ ROOT = Path(__file__).parents[2]
 FLOAT_CALLS = {"sinf", "cosf", "sqrtf", "fmaxf", "panda_sine_cosine"}
 
 
-@pytest.mark.parametrize("name", ["panda", "rr"])
+@pytest.mark.parametrize("name", ["panda", "rr", "rmin"])
 def test_committed_packages_are_current(package: Callable[[str], Generated], name: str) -> None:
     committed, fresh = ROOT / "generated" / name, package(name).folder
     names = {p.relative_to(fresh) for p in fresh.rglob("*") if p.is_file()}

@@ -25,7 +25,7 @@ def blocks(page):
 
 def test_there_are_pages_with_code():
     assert ROOT / "docs" / "derivations.md" in PAGES
-    assert len(list(blocks(ROOT / "docs" / "derivations.md"))) == 2
+    assert len(list(blocks(ROOT / "docs" / "derivations.md"))) == 3
 
 
 @pytest.mark.parametrize(

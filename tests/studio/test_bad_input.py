@@ -127,8 +127,8 @@ PENDULUMS = BODY.format("hand", "hinge") + BODY.format("foot", "hinge")
         (f"<worldbody>{BALL}</worldbody>", "ball or free joint"),
         (
             f"<worldbody>{PENDULUMS}</worldbody>"
-            "<equality><connect body1='hand' body2='foot' anchor='0 0 1'/></equality>",
-            "closed chains",
+            "<equality><weld body1='hand' body2='foot'/></equality>",
+            "equality weld",
         ),
     ],
 )
@@ -154,7 +154,7 @@ def test_model_files_leave_no_log_behind(
 def test_unknown_robot_lists_the_built_in_ones() -> None:
     message = refusal("analyze", "pandora", *PANDA[1:])
     assert "pandora" in message
-    assert "panda, rr" in message
+    assert "panda, rmin, rr" in message
 
 
 def test_unknown_frame_lists_the_known_ones() -> None:

@@ -10,9 +10,13 @@ from softimpact.symbolic.errors import (
     FrameNotFound,
     InvalidInertia,
     InvalidValue,
+    LoopCannotClose,
+    LoopError,
     ModelFileError,
     NoEquilibrium,
+    RedundantLoop,
     SingularDirection,
+    SingularLoop,
     SoftImpactError,
     UnknownName,
     UnsupportedModel,
@@ -29,6 +33,10 @@ EXAMPLES = [
     (WrongLength("q", 3, 2, ["j1", "j2"]), {"field": "q", "found": 3, "expected": 2}),
     (SingularDirection([0, 0, 1], "choose another"), {"direction": (0.0, 0.0, 1.0)}),
     (NoEquilibrium(0.5, "raise the stiffness"), {"residual": 0.5}),
+    (LoopError("pin", "is not what it must be"), {"loop": "pin"}),
+    (LoopCannotClose("pin", 0.05, "check its points"), {"loop": "pin", "gap": 0.05}),
+    (RedundantLoop("pin", "is redundant"), {"loop": "pin"}),
+    (SingularLoop("pin", "is at a dead point"), {"loop": "pin"}),
 ]
 
 

@@ -11,6 +11,7 @@ from random_robots import robots, vectors
 
 from softimpact.symbolic import (
     FrameNotFound,
+    InvalidValue,
     UnknownName,
     WrongLength,
     chain_to,
@@ -148,3 +149,36 @@ def test_chain_to_welds_the_others_where_told():
         chain_to(robot, "panda_hand", [0.0])
     with pytest.raises(FrameNotFound):
         chain_to(robot, "hand")
+
+
+def test_any_point_of_a_body_is_a_frame(panda):
+    """``FRAME@x,y,z`` and ``with_frame`` name the same point, in sub-robots too."""
+    q = next(configurations(panda, 1))
+    named = panda.with_frame("bruise", "link5", [0.1, -0.02, 0.3])
+    typed = "link5@0.1,-0.02,0.3"
+    carrier = frame_pose(panda, "link5", q)
+    expected = carrier.position + carrier.rotation @ [0.1, -0.02, 0.3]
+    assert_near(frame_pose(named, "bruise", q).position, expected)
+    assert_near(frame_pose(panda, typed, q).position, expected)
+    chain = chain_to(panda, typed)
+    assert chain.tip == typed
+    assert chain.n == 5
+    J = frame_jacobian(panda, typed, q)
+    assert_near(frame_jacobian(chain, typed, q[:5]), J[:, :5])
+    assert_near(frame_jacobian(panda, "hand@0,0,0", q), frame_jacobian(panda, "hand", q))
+
+
+@pytest.mark.parametrize(
+    ("frame", "error", "reason"),
+    [
+        ("link99@0,0,0", FrameNotFound, "unknown frame 'link99'"),
+        ("link5@0,0", InvalidValue, "three finite numbers"),
+        ("link5@0,0,nan", InvalidValue, "three finite numbers"),
+        ("link5@", InvalidValue, "three finite numbers"),
+    ],
+)
+def test_points_that_cannot_be(panda, frame, error, reason):
+    with pytest.raises(error, match=reason):
+        panda.frame(frame)
+    with pytest.raises(FrameNotFound):
+        panda.with_frame("bruise", "link99", [0, 0, 0])

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What the sources of rmin share; not for their users. */
+#ifndef RMIN_INTERNAL_H
+#define RMIN_INTERNAL_H
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "rmin.h"
+
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+#error "rmin checks for numbers that are not finite: build it without -ffast-math"
+#endif
+
+#if defined(RMIN_USE_FLOAT)
+#define RMIN_R(x) x##f
+#define RMIN_F(function) function##f
+#define RMIN_REAL_MAX FLT_MAX
+#else
+#define RMIN_R(x) x
+#define RMIN_F(function) function
+#define RMIN_REAL_MAX DBL_MAX
+#endif
+
+#define RMIN_SIN(x) RMIN_F(sin)(x)
+#define RMIN_COS(x) RMIN_F(cos)(x)
+#define RMIN_EXP(x) RMIN_F(exp)(x)
+#define RMIN_LOG(x) RMIN_F(log)(x)
+#define RMIN_SQRT(x) RMIN_F(sqrt)(x)
+#define RMIN_FABS(x) RMIN_F(fabs)(x)
+#define RMIN_FMIN(x, y) RMIN_F(fmin)(x, y)
+#define RMIN_FMAX(x, y) RMIN_F(fmax)(x, y)
+#define RMIN_POW(x, y) RMIN_F(pow)(x, y)
+
+/* Sine s and cosine c of a finite x. */
+#if defined(RMIN_USE_FLOAT)
+void rmin_sine_cosine(float x, float *s, float *c);
+#else
+static inline void rmin_sine_cosine(double x, double *s, double *c)
+{
+    *s = sin(x);
+    *c = cos(x);
+}
+#endif
+
+/* 1 if all numbers are finite; a comparison with a NaN is false. */
+static inline int rmin_all_finite(const rmin_real *x, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        if (!(RMIN_FABS(x[i]) <= RMIN_REAL_MAX)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Status of a parameter that must be positive. */
+static inline int rmin_check_positive(const rmin_real x[6])
+{
+    for (int i = 0; i < 6; ++i) {
+        if (!(x[i] > RMIN_R(0.0) && x[i] <= RMIN_REAL_MAX)) {
+            return rmin_all_finite(&x[i], 1) ? RMIN_OUT_OF_RANGE : RMIN_NOT_FINITE;
+        }
+    }
+    return RMIN_OK;
+}
+
+/* Status of a parameter that must not be negative. */
+static inline int rmin_check_not_negative(const rmin_real x[6])
+{
+    for (int i = 0; i < 6; ++i) {
+        if (!(x[i] >= RMIN_R(0.0) && x[i] <= RMIN_REAL_MAX)) {
+            return rmin_all_finite(&x[i], 1) ? RMIN_OUT_OF_RANGE : RMIN_NOT_FINITE;
+        }
+    }
+    return RMIN_OK;
+}
+
+/* Unit vector u along n; scaled first, so that no square over- or underflows. */
+static inline int rmin_unit_vector(const rmin_real n[3], rmin_real u[3])
+{
+    if (!rmin_all_finite(n, 3)) {
+        return RMIN_NOT_FINITE;
+    }
+    const rmin_real xy = RMIN_FMAX(RMIN_FABS(n[0]), RMIN_FABS(n[1]));
+    const rmin_real largest = RMIN_FMAX(xy, RMIN_FABS(n[2]));
+    if (!(largest > RMIN_R(0.0))) {
+        return RMIN_ZERO_DIRECTION;
+    }
+    const rmin_real x = n[0]/largest;
+    const rmin_real y = n[1]/largest;
+    const rmin_real z = n[2]/largest;
+    const rmin_real length = RMIN_SQRT(x*x + y*y + z*z);
+    u[0] = x/length;
+    u[1] = y/length;
+    u[2] = z/length;
+    return RMIN_OK;
+}
+
+#endif

@@ -1,0 +1,591 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Compares rmin with its golden results and feeds it bad inputs; 1 on failure. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "golden.h"
+
+#if defined(RMIN_USE_FLOAT)
+#define BOUND(in_double, in_float) (in_float)
+#else
+#define BOUND(in_double, in_float) (in_double)
+#endif
+
+#define LENGTH(array) (sizeof(array)/sizeof((array)[0]))
+
+static int failures = 0;
+
+static void expect(int holds, const char *function, const char *what)
+{
+    if (!holds) {
+        ++failures;
+        printf("FAILED %s: %s\n", function, what);
+    }
+}
+
+/* Largest difference over the largest right entry, or absolute for shares of 1. */
+static double error_of(const double *found, const double *right, size_t count, int share)
+{
+    double difference = 0.0;
+    double scale = share ? 1.0 : 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        const double d = fabs(found[i] - right[i]);
+        difference = d <= difference ? difference : d;
+        scale = share ? scale : fmax(scale, fabs(right[i]));
+    }
+    return difference > 0.0 ? difference/scale : 0.0;
+}
+
+static int is_same(rmin_real a, rmin_real b)
+{
+    return a >= b && a <= b;
+}
+
+/* 1 if memory still holds the pattern that it was filled with. */
+static int is_untouched(const void *memory, size_t size)
+{
+    const unsigned char *bytes = memory;
+    for (size_t i = 0; i < size; ++i) {
+        if (bytes[i] != 0xA5u) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static void test_mass_matrix(void)
+{
+    const char *const name = "rmin_mass_matrix";
+    rmin_real M[4][4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_inputs); ++k) {
+        const rmin_golden_input *const in = &rmin_golden_inputs[k];
+        const double *right = rmin_golden_mass_matrix[k];
+        expect(rmin_mass_matrix(in->q, M) == RMIN_OK,
+               name, "status of a golden case");
+        {
+            double found[10];
+            size_t at = 0;
+            for (size_t i = 0; i < 4; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)M[i][j];
+                    expect(is_same(M[i][j], M[j][i]),
+                           name, "M is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 2e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rmin_golden_input in = rmin_golden_inputs[0];
+    memset(&M, 0xA5, sizeof M);
+    in.q[0] = (rmin_real)NAN;
+    expect(rmin_mass_matrix(in.q, M) == RMIN_NOT_FINITE,
+           name, "q is not a number");
+    in = rmin_golden_inputs[0];
+    in.q[5] = (rmin_real)INFINITY;
+    expect(rmin_mass_matrix(in.q, M) == RMIN_NOT_FINITE,
+           name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    expect(rmin_mass_matrix(NULL, M) == RMIN_NULL_POINTER,
+           name, "q is NULL");
+    expect(rmin_mass_matrix(in.q, NULL) == RMIN_NULL_POINTER,
+           name, "M is NULL");
+    expect(is_untouched(&M, sizeof M),
+           name, "nothing written for bad inputs");
+}
+
+static void test_jacobian(void)
+{
+    const char *const name = "rmin_jacobian";
+    rmin_real J[3][4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_inputs); ++k) {
+        const rmin_golden_input *const in = &rmin_golden_inputs[k];
+        const double *right = rmin_golden_jacobian[k];
+        expect(rmin_jacobian(in->q, J) == RMIN_OK,
+               name, "status of a golden case");
+        {
+            double found[12];
+            size_t at = 0;
+            for (size_t i = 0; i < 3; ++i) {
+                for (size_t j = 0; j < 4; ++j) {
+                    found[at++] = (double)J[i][j];
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 3e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rmin_golden_input in = rmin_golden_inputs[0];
+    memset(&J, 0xA5, sizeof J);
+    in.q[0] = (rmin_real)NAN;
+    expect(rmin_jacobian(in.q, J) == RMIN_NOT_FINITE,
+           name, "q is not a number");
+    in = rmin_golden_inputs[0];
+    in.q[5] = (rmin_real)INFINITY;
+    expect(rmin_jacobian(in.q, J) == RMIN_NOT_FINITE,
+           name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    expect(rmin_jacobian(NULL, J) == RMIN_NULL_POINTER,
+           name, "q is NULL");
+    expect(rmin_jacobian(in.q, NULL) == RMIN_NULL_POINTER,
+           name, "J is NULL");
+    expect(is_untouched(&J, sizeof J),
+           name, "nothing written for bad inputs");
+}
+
+static void test_generalised_mass_matrix(void)
+{
+    const char *const name = "rmin_generalised_mass_matrix";
+    rmin_real M0[4][4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_inputs); ++k) {
+        const rmin_golden_input *const in = &rmin_golden_inputs[k];
+        const double *right = rmin_golden_generalised_mass_matrix[k];
+        expect(rmin_generalised_mass_matrix(in->q, &in->p, M0) == RMIN_OK,
+               name, "status of a golden case");
+        {
+            double found[10];
+            size_t at = 0;
+            for (size_t i = 0; i < 4; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)M0[i][j];
+                    expect(is_same(M0[i][j], M0[j][i]),
+                           name, "M0 is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 2e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rmin_golden_input in = rmin_golden_inputs[0];
+    memset(&M0, 0xA5, sizeof M0);
+    in.q[0] = (rmin_real)NAN;
+    expect(rmin_generalised_mass_matrix(in.q, &in.p, M0) == RMIN_NOT_FINITE,
+           name, "q is not a number");
+    in = rmin_golden_inputs[0];
+    in.q[5] = (rmin_real)INFINITY;
+    expect(rmin_generalised_mass_matrix(in.q, &in.p, M0) == RMIN_NOT_FINITE,
+           name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    in.p.rotor_inertia[0] = (rmin_real)NAN;
+    expect(rmin_generalised_mass_matrix(in.q, &in.p, M0) == RMIN_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = rmin_golden_inputs[0];
+    in.p.rotor_inertia[5] = -1;
+    expect(rmin_generalised_mass_matrix(in.q, &in.p, M0) == RMIN_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = rmin_golden_inputs[0];
+    expect(rmin_generalised_mass_matrix(NULL, &in.p, M0) == RMIN_NULL_POINTER,
+           name, "q is NULL");
+    expect(rmin_generalised_mass_matrix(in.q, NULL, M0) == RMIN_NULL_POINTER,
+           name, "p is NULL");
+    expect(rmin_generalised_mass_matrix(in.q, &in.p, NULL) == RMIN_NULL_POINTER,
+           name, "M0 is NULL");
+    expect(is_untouched(&M0, sizeof M0),
+           name, "nothing written for bad inputs");
+}
+
+static void test_stiffness_matrix(void)
+{
+    const char *const name = "rmin_stiffness_matrix";
+    rmin_real K0[4][4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_inputs); ++k) {
+        const rmin_golden_input *const in = &rmin_golden_inputs[k];
+        const double *right = rmin_golden_stiffness_matrix[k];
+        expect(rmin_stiffness_matrix(in->q, &in->p, K0) == RMIN_OK,
+               name, "status of a golden case");
+        {
+            double found[10];
+            size_t at = 0;
+            for (size_t i = 0; i < 4; ++i) {
+                for (size_t j = 0; j < i + 1; ++j) {
+                    found[at++] = (double)K0[i][j];
+                    expect(is_same(K0[i][j], K0[j][i]),
+                           name, "K0 is symmetric");
+                }
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 5e-07);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rmin_golden_input in = rmin_golden_inputs[0];
+    memset(&K0, 0xA5, sizeof K0);
+    in.q[0] = (rmin_real)NAN;
+    expect(rmin_stiffness_matrix(in.q, &in.p, K0) == RMIN_NOT_FINITE,
+           name, "q is not a number");
+    in = rmin_golden_inputs[0];
+    in.q[5] = (rmin_real)INFINITY;
+    expect(rmin_stiffness_matrix(in.q, &in.p, K0) == RMIN_NOT_FINITE,
+           name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    in.p.position_gain[0] = (rmin_real)NAN;
+    expect(rmin_stiffness_matrix(in.q, &in.p, K0) == RMIN_NOT_FINITE,
+           name, "position_gain is not a number");
+    in = rmin_golden_inputs[0];
+    in.p.position_gain[5] = -1;
+    expect(rmin_stiffness_matrix(in.q, &in.p, K0) == RMIN_OUT_OF_RANGE,
+           name, "position_gain is negative");
+    in = rmin_golden_inputs[0];
+    expect(rmin_stiffness_matrix(NULL, &in.p, K0) == RMIN_NULL_POINTER,
+           name, "q is NULL");
+    expect(rmin_stiffness_matrix(in.q, NULL, K0) == RMIN_NULL_POINTER,
+           name, "p is NULL");
+    expect(rmin_stiffness_matrix(in.q, &in.p, NULL) == RMIN_NULL_POINTER,
+           name, "K0 is NULL");
+    expect(is_untouched(&K0, sizeof K0),
+           name, "nothing written for bad inputs");
+}
+
+static void test_contact_jacobian(void)
+{
+    const char *const name = "rmin_contact_jacobian";
+    rmin_real J_c[4];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_inputs); ++k) {
+        const rmin_golden_input *const in = &rmin_golden_inputs[k];
+        const double *right = rmin_golden_contact_jacobian[k];
+        expect(rmin_contact_jacobian(in->q, in->n, J_c) == RMIN_OK,
+               name, "status of a golden case");
+        {
+            double found[4];
+            for (size_t i = 0; i < 4; ++i) {
+                found[i] = (double)J_c[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 3e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rmin_golden_input in = rmin_golden_inputs[0];
+    memset(&J_c, 0xA5, sizeof J_c);
+    in.q[0] = (rmin_real)NAN;
+    expect(rmin_contact_jacobian(in.q, in.n, J_c) == RMIN_NOT_FINITE,
+           name, "q is not a number");
+    in = rmin_golden_inputs[0];
+    in.q[5] = (rmin_real)INFINITY;
+    expect(rmin_contact_jacobian(in.q, in.n, J_c) == RMIN_NOT_FINITE,
+           name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    in.n[1] = (rmin_real)NAN;
+    expect(rmin_contact_jacobian(in.q, in.n, J_c) == RMIN_NOT_FINITE,
+           name, "n is not a number");
+    in = rmin_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(rmin_contact_jacobian(in.q, in.n, J_c) == RMIN_ZERO_DIRECTION,
+           name, "n is zero");
+    in = rmin_golden_inputs[0];
+    expect(rmin_contact_jacobian(NULL, in.n, J_c) == RMIN_NULL_POINTER,
+           name, "q is NULL");
+    expect(rmin_contact_jacobian(in.q, NULL, J_c) == RMIN_NULL_POINTER,
+           name, "n is NULL");
+    expect(rmin_contact_jacobian(in.q, in.n, NULL) == RMIN_NULL_POINTER,
+           name, "J_c is NULL");
+    expect(is_untouched(&J_c, sizeof J_c),
+           name, "nothing written for bad inputs");
+}
+
+static void test_reflected_mass(void)
+{
+    const char *const name = "rmin_reflected_mass";
+    rmin_real m_c;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_inputs); ++k) {
+        const rmin_golden_input *const in = &rmin_golden_inputs[k];
+        const double *right = rmin_golden_reflected_mass[k];
+        expect(rmin_reflected_mass(in->q, in->n, &in->p, &m_c) == RMIN_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)m_c;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 4e-06);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rmin_golden_input in = rmin_golden_inputs[0];
+    memset(&m_c, 0xA5, sizeof m_c);
+    in.q[0] = (rmin_real)NAN;
+    expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_NOT_FINITE,
+           name, "q is not a number");
+    in = rmin_golden_inputs[0];
+    in.q[5] = (rmin_real)INFINITY;
+    expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_NOT_FINITE,
+           name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    in.n[1] = (rmin_real)NAN;
+    expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_NOT_FINITE,
+           name, "n is not a number");
+    in = rmin_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_ZERO_DIRECTION,
+           name, "n is zero");
+    in = rmin_golden_inputs[0];
+    in.p.rotor_inertia[0] = (rmin_real)NAN;
+    expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = rmin_golden_inputs[0];
+    in.p.rotor_inertia[5] = -1;
+    expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = rmin_golden_inputs[0];
+    expect(rmin_reflected_mass(NULL, in.n, &in.p, &m_c) == RMIN_NULL_POINTER,
+           name, "q is NULL");
+    expect(rmin_reflected_mass(in.q, NULL, &in.p, &m_c) == RMIN_NULL_POINTER,
+           name, "n is NULL");
+    expect(rmin_reflected_mass(in.q, in.n, NULL, &m_c) == RMIN_NULL_POINTER,
+           name, "p is NULL");
+    expect(rmin_reflected_mass(in.q, in.n, &in.p, NULL) == RMIN_NULL_POINTER,
+           name, "m_c is NULL");
+    expect(is_untouched(&m_c, sizeof m_c),
+           name, "nothing written for bad inputs");
+}
+
+static void test_reduced_model(void)
+{
+    const char *const name = "rmin_reduced_model";
+    rmin_reduced_model_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_inputs); ++k) {
+        const rmin_golden_input *const in = &rmin_golden_inputs[k];
+        const double *right = rmin_golden_reduced_model[k];
+        expect(rmin_reduced_model(in->q, in->n, &in->p, &out) == RMIN_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)out.m_c;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[1];
+            found[0] = (double)out.k_r;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[1];
+            found[0] = (double)out.m_a;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 7e-05);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rmin_golden_input in = rmin_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (rmin_real)NAN;
+    expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "q is not a number");
+    in = rmin_golden_inputs[0];
+    in.q[5] = (rmin_real)INFINITY;
+    expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    in.n[1] = (rmin_real)NAN;
+    expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "n is not a number");
+    in = rmin_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_ZERO_DIRECTION,
+           name, "n is zero");
+    in = rmin_golden_inputs[0];
+    in.p.rotor_inertia[0] = (rmin_real)NAN;
+    expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = rmin_golden_inputs[0];
+    in.p.rotor_inertia[5] = -1;
+    expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = rmin_golden_inputs[0];
+    in.p.position_gain[0] = (rmin_real)NAN;
+    expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "position_gain is not a number");
+    in = rmin_golden_inputs[0];
+    in.p.position_gain[5] = -1;
+    expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_OUT_OF_RANGE,
+           name, "position_gain is negative");
+    in = rmin_golden_inputs[0];
+    expect(rmin_reduced_model(NULL, in.n, &in.p, &out) == RMIN_NULL_POINTER,
+           name, "q is NULL");
+    expect(rmin_reduced_model(in.q, NULL, &in.p, &out) == RMIN_NULL_POINTER,
+           name, "n is NULL");
+    expect(rmin_reduced_model(in.q, in.n, NULL, &out) == RMIN_NULL_POINTER,
+           name, "p is NULL");
+    expect(rmin_reduced_model(in.q, in.n, &in.p, NULL) == RMIN_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
+static void test_chain(void)
+{
+    const char *const name = "rmin_chain";
+    rmin_chain_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_inputs); ++k) {
+        const rmin_golden_input *const in = &rmin_golden_inputs[k];
+        const double *right = rmin_golden_chain[k];
+        expect(rmin_chain(in->q, in->n, &in->p, &out) == RMIN_OK,
+               name, "status of a golden case");
+        {
+            double found[3];
+            for (size_t i = 0; i < 3; ++i) {
+                found[i] = (double)out.mass[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[3];
+            for (size_t i = 0; i < 3; ++i) {
+                found[i] = (double)out.stiffness[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 0.0003);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rmin_golden_input in = rmin_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (rmin_real)NAN;
+    expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "q is not a number");
+    in = rmin_golden_inputs[0];
+    in.q[5] = (rmin_real)INFINITY;
+    expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    in.n[1] = (rmin_real)NAN;
+    expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "n is not a number");
+    in = rmin_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_ZERO_DIRECTION,
+           name, "n is zero");
+    in = rmin_golden_inputs[0];
+    in.p.rotor_inertia[0] = (rmin_real)NAN;
+    expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = rmin_golden_inputs[0];
+    in.p.rotor_inertia[5] = -1;
+    expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = rmin_golden_inputs[0];
+    in.p.position_gain[0] = (rmin_real)NAN;
+    expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
+           name, "position_gain is not a number");
+    in = rmin_golden_inputs[0];
+    in.p.position_gain[5] = -1;
+    expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_OUT_OF_RANGE,
+           name, "position_gain is negative");
+    in = rmin_golden_inputs[0];
+    expect(rmin_chain(NULL, in.n, &in.p, &out) == RMIN_NULL_POINTER,
+           name, "q is NULL");
+    expect(rmin_chain(in.q, NULL, &in.p, &out) == RMIN_NULL_POINTER,
+           name, "n is NULL");
+    expect(rmin_chain(in.q, in.n, NULL, &out) == RMIN_NULL_POINTER,
+           name, "p is NULL");
+    expect(rmin_chain(in.q, in.n, &in.p, NULL) == RMIN_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
+static void test_configuration(void)
+{
+    const char *const name = "rmin_configuration";
+    rmin_real q[6];
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_motors); ++k) {
+        const rmin_real *const motors = rmin_golden_motors[k];
+        expect(rmin_configuration(motors, NULL, q) == RMIN_OK, name, "status of a golden case");
+        for (int again = 0; again < 2; ++again) {
+            double found[6];
+            for (size_t i = 0; i < 6; ++i) {
+                found[i] = (double)q[i];
+            }
+            worst = fmax(worst, error_of(found, rmin_golden_configurations[k], 6, 0));
+            expect(rmin_configuration(motors, q, q) == RMIN_OK, name, "status from its own result");
+        }
+    }
+    const double bound = BOUND(1e-12, 8e-07);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rmin_real motors[2];
+    memcpy(motors, rmin_golden_motors[0], sizeof motors);
+    rmin_real last[6];
+    memcpy(last, q, sizeof q);
+    memset(q, 0xA5, sizeof q);
+    expect(rmin_configuration(NULL, last, q) == RMIN_NULL_POINTER, name, "motors is NULL");
+    expect(rmin_configuration(motors, last, NULL) == RMIN_NULL_POINTER, name, "q is NULL");
+    last[5] = (rmin_real)INFINITY;
+    expect(rmin_configuration(motors, last, q) == RMIN_NOT_FINITE, name, "start is infinite");
+    motors[0] = (rmin_real)NAN;
+    expect(rmin_configuration(motors, NULL, q) == RMIN_NOT_FINITE, name, "a motor is not a number");
+    motors[0] = (rmin_real)1e6;
+    expect(rmin_configuration(motors, NULL, q) == RMIN_NO_EQUILIBRIUM, name, "out of reach");
+    expect(is_untouched(q, sizeof q), name, "nothing written for bad inputs");
+}
+
+static void test_common(void)
+{
+    rmin_params p;
+    expect(rmin_default_params(&p) == RMIN_OK,
+           "rmin_default_params", "status");
+    expect(rmin_default_params(NULL) == RMIN_NULL_POINTER,
+           "rmin_default_params", "NULL");
+    for (int status = -1; status <= 8; ++status) {
+        expect(strlen(rmin_status_text(status)) > 0, "rmin_status_text", "has a text");
+    }
+    expect(strcmp(rmin_status_text(8), rmin_status_text(RMIN_OK)) != 0,
+           "rmin_status_text", "unknown status");
+}
+
+int main(void)
+{
+    test_common();
+    test_configuration();
+    test_mass_matrix();
+    test_jacobian();
+    test_generalised_mass_matrix();
+    test_stiffness_matrix();
+    test_contact_jacobian();
+    test_reflected_mass();
+    test_reduced_model();
+    test_chain();
+    printf(failures == 0 ? "all passed\n" : "%d failed\n", failures);
+    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

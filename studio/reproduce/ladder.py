@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The models of a robot, from one mass to the nonlinear robot with its controller."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from softimpact.simulate import (
+    Fidelity,
+    ImpactHistory,
+    Reference,
+    simulate_impact,
+)
+from softimpact.symbolic import Contact, body_region
+
+from .scenarios import Scenario
+
+REGIONS = ("head", "chest")
+CHAIN_ORDER = 3
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A model of the robot.
+
+    Attributes:
+        title: for people.
+        fidelity: as in ``simulate_impact``.
+        reference: of the controller's motors; None: no controller, K_p holds the motors.
+    """
+
+    title: str
+    fidelity: Fidelity
+    reference: Reference | None = None
+
+
+LADDER = {
+    "one_mass": Rung("one mass m_c", "one_mass"),
+    "two_mass": Rung("two masses (paper)", "two_mass"),
+    "chain": Rung("chain of 3, K_p held", "chain"),
+    "linearised": Rung("linearised, K_p held", "linearised"),
+    "chain_controlled": Rung("chain of 3, controller", "chain", "moving"),
+    "linearised_controlled": Rung("linearised, controller", "linearised", "moving"),
+    "full_uncontrolled": Rung("full, K_p held", "full"),
+    "full_held": Rung("full, controller, reference held", "full", "held"),
+    "full": Rung("full, controller", "full", "moving"),
+}
+"""All models by name; the last is what the others are held against."""
+
+
+def impact_at(
+    scenario: Scenario,
+    rung: str,
+    stiffness: float,
+    region: str,
+    speed: float = 1.0,
+    duration: float | None = None,
+) -> ImpactHistory:
+    """Simulate a scenario with a model of the ladder.
+
+    Args:
+        scenario: of the paper.
+        rung: name in ``LADDER``.
+        stiffness: k_s [N·m/rad].
+        region: of the body.
+        speed: of the contact point [m/s].
+        duration: as in ``simulate_impact``.
+    """
+    step = LADDER[rung]
+    model, approach = scenario.at(stiffness, speed)
+    controller = None if step.reference is None else scenario.arm.controller(step.reference)
+    return simulate_impact(
+        model,
+        approach,
+        Contact(body_region(region)),
+        step.fidelity,
+        order=CHAIN_ORDER,
+        controller=controller,
+        duration=duration,
+    )

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws of simulated impacts: energy, speed, and the limit of rigid joints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from softimpact.simulate import Approach, Controller, simulate_impact
+from softimpact.simulate.approach import arrival_of
+from softimpact.simulate.events import first_contact
+from softimpact.simulate.full import full_scene
+from softimpact.simulate.simulator import UNIT_TIME, Run
+from softimpact.symbolic import (
+    Contact,
+    ImpactModel,
+    Robot,
+    body_region,
+    configuration_at_rest,
+    drives,
+    gravity_torques,
+    impact_model,
+    load_robot,
+    loop_gaps,
+    loop_tangent,
+    mass_matrix,
+    potential_energy,
+)
+from softimpact.symbolic.rigid import Array
+
+HEAD = Contact(body_region("head"))
+POSE = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
+EARTH = (0.0, 0.0, -9.81)
+
+
+def elastic_panda() -> tuple[ImpactModel, Approach]:
+    robot = load_robot("panda")
+    model = impact_model(robot, drives_=drives(robot, 2e3), gravity=EARTH)
+    return model, Approach(POSE, np.array([0.4, 1.0, -0.3]), 2.0)
+
+
+def folded_rr() -> tuple[ImpactModel, Approach]:
+    model = impact_model(load_robot("rr"), "P")
+    return model, Approach(np.array([0.2, 0.0, 0.9, 0.0]), np.array([1.0, 0.5, 0.0]), 2.0)
+
+
+def r_min() -> tuple[ImpactModel, Approach]:
+    model = impact_model(load_robot("rmin"), "O13", gravity=EARTH)
+    q = configuration_at_rest(model, np.radians([-130.6, -50.0]))
+    return model, Approach(q, np.array([-1.0, 0.0, 0.0]), 2.0)
+
+
+def undamped(contact: Contact) -> Contact:
+    return replace(contact, region=replace(contact.region, damping=0.0))
+
+
+def joints_at(model: ImpactModel, run: Run, node: int, speed: float) -> tuple[Array, Array, Array]:
+    """Motion since first touch and rates of all joints, and deflections since."""
+    n, E = model.robot.n, [i for i, e in enumerate(model.drives.elastic) if e]
+    k = n + len(E)
+    state = speed * run.state[:, node]
+    moved, rate = UNIT_TIME * state[:k], state[k : 2 * k]
+    return moved, rate, moved[:n][E] - moved[n:]
+
+
+def energy(model: ImpactModel, approach: Approach, run: Run, node: int) -> float:
+    """Energy of links, rotors, springs and gravity, less the work of constant motor torques."""
+    robot, n = model.robot, model.robot.n
+    moved, rate, deflection = joints_at(model, run, node, approach.speed)
+    elastic = np.array(model.drives.elastic)
+    q, rotors = ca.DM(approach.q + moved[:n]), np.array(model.drives.rotors).ravel()
+    M = np.array(mass_matrix(robot, q)) + np.diag(np.where(elastic, 0, rotors))
+    kinetic = rate[:n] @ M @ rate[:n] + rotors[elastic] @ rate[n:] ** 2
+    G = np.array(loop_tangent(robot, ca.DM(approach.q)))
+    holding = G.T @ np.array(gravity_torques(robot, approach.q, model.gravity)).ravel()
+    springs = np.array(model.drives.springs).ravel()[elastic]
+    stored = float(potential_energy(robot, q, model.gravity))
+    if elastic.any():  # the springs' preload holds what the motors hold
+        stored += springs @ deflection**2 / 2 - holding[elastic] @ deflection
+        return float(kinetic / 2 + stored - holding[elastic] @ moved[n:])
+    return float(kinetic / 2 + stored - holding @ moved[list(model.independent)])
+
+
+@pytest.mark.parametrize("case", [elastic_panda, folded_rr, r_min])
+def test_energy_is_conserved_without_damping(case) -> None:
+    """What the body gives back is what it took: free motors, no damper, c_h = 0."""
+    model, approach = case()
+    scene = full_scene(model, arrival_of(model, approach), undamped(HEAD), 1e-11)
+    found = first_contact(scene)
+    assert found.separation is not None
+    assert found.run.force[-1] == 0
+    before, after = (energy(model, approach, found.run, node) for node in (0, -1))
+    moving = joints_at(model, found.run, 0, approach.speed)[1]
+    scale = (
+        moving[: model.robot.n]
+        @ np.array(mass_matrix(model.robot, approach.q))
+        @ (moving[: model.robot.n])
+    )
+    assert abs(after - before) < 1e-6 * scale
+    damped = first_contact(full_scene(model, arrival_of(model, approach), HEAD, 1e-11))
+    lost = energy(model, approach, damped.run, 0) - energy(model, approach, damped.run, -1)
+    assert lost > 1e-4 * scale
+
+
+def test_loops_stay_closed_through_an_impact() -> None:
+    model, approach = r_min()
+    controller = Controller(1076.0, 51.0, 9.26e3)
+    scene = full_scene(model, arrival_of(model, approach), HEAD, 1e-10, controller)
+    run = first_contact(scene, 0.06).run
+    for node in range(0, len(run.time), 100):
+        moved = joints_at(model, run, node, approach.speed)[0]
+        assert abs(np.array(loop_gaps(model.robot, approach.q + moved))).max() < 1e-8
+    assert abs(moved).max() > 0.05
+
+
+@pytest.mark.parametrize("case", [elastic_panda, folded_rr, r_min])
+def test_forces_grow_with_speed(case) -> None:
+    model, approach = case()
+    peaks = [
+        simulate_impact(model, replace(approach, speed=v), HEAD, "full").first_contact
+        for v in (0.05, 0.2, 0.5, 1.0, 1.6, 2.4)
+    ]
+    assert all(faster > slower for slower, faster in pairwise(peaks))
+
+
+def test_stiff_joints_hit_like_rigid_ones(panda: Robot) -> None:
+    """As k_s → ∞ the peak tends to that of the rigid robot's reflected mass, rotors included."""
+    n = np.array([0.4, 1.0, -0.3])
+    approach = Approach(POSE, n, 1.0)
+    rigid = simulate_impact(impact_model(panda), approach, HEAD, "one_mass").first_contact
+    links = impact_model(panda.with_armature(np.zeros(panda.n)))
+    assert rigid > 1.05 * simulate_impact(links, approach, HEAD, "one_mass").first_contact
+    errors = [
+        abs(
+            simulate_impact(
+                impact_model(panda, drives_=drives(panda, stiffness)), approach, HEAD
+            ).first_contact
+            / rigid
+            - 1
+        )
+        for stiffness in (1e5, 1e7, 1e9)
+    ]
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[2] < 1e-3
+    full = impact_model(panda, drives_=drives(panda, 1e8))
+    slow = replace(approach, speed=1e-2)
+    nearly = simulate_impact(full, slow, HEAD, "full").first_contact
+    alone = simulate_impact(impact_model(panda), slow, HEAD, "one_mass").first_contact
+    assert nearly == pytest.approx(alone, rel=5e-3)

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The controller: against MuJoCo, against its linear form, and when it reacts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+from mujoco_impacts import node_after
+
+from softimpact.robots import built_in_robots
+from softimpact.simulate import Approach, Controller, ImpactHistory, Reference, simulate_impact
+from softimpact.symbolic import (
+    Contact,
+    ImpactModel,
+    InvalidValue,
+    Robot,
+    SoftImpactError,
+    UnknownName,
+    body_region,
+    configuration_at_rest,
+    drives,
+    impact_model,
+    load_robot,
+)
+from softimpact.symbolic.rigid import Array
+
+HEAD = Contact(body_region("head"))
+CHEST = Contact(body_region("chest"))
+RR = Controller(6050.0, 121.0, 1.25e5)
+R_MIN = Controller(1076.0, 51.0, 9.26e3)
+FOLDED = np.array([0.2, 0.0, 1.1, 0.0])
+
+
+def turned_by_both_motors(gain: float | None = None) -> tuple[ImpactModel, Approach]:
+    robot = load_robot("rr")
+    model = impact_model(robot, "P", drives_=drives(robot, computed_torque_gain=gain))
+    rates = np.array([1.0, 0.0, 0.7, 0.0])
+    moved = np.array(model.jacobian(FOLDED)) @ rates
+    speed = float(np.linalg.norm(moved))
+    return model, Approach(FOLDED, moved / speed, 1.0, rates / speed)
+
+
+def elastic_panda(robot: Robot) -> tuple[ImpactModel, Approach]:
+    model = impact_model(robot, drives_=drives(robot, 5e3), gravity=(1.0, -2.0, -9.0))
+    q = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
+    return model, Approach(q, np.array([0.5, 1.0, 0.3]), 1.0)
+
+
+def r_min() -> tuple[ImpactModel, Approach]:
+    robot = load_robot("rmin")
+    model = impact_model(robot, "O13", gravity=(0.0, 0.0, -9.81))
+    q = configuration_at_rest(model, np.radians([-130.6, -50.0]))
+    return model, Approach(q, np.array([-1.0, 0.0, 0.0]), 1.0)
+
+
+def forces_by_mujoco(
+    approach: Approach, controller: Controller, contact: Contact, duration: float
+) -> tuple[Array, Array]:
+    """Step RR with the control law written out again over MuJoCo's own M and bias."""
+    model = mujoco.MjModel.from_xml_path(str(built_in_robots()["rr"]))
+    model.opt.timestep = step = 5e-6
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    model.opt.gravity[:] = 0
+    data = mujoco.MjData(model)
+    A = [0, 2]
+    data.qpos[:], data.qvel[:] = approach.q, approach.speed * approach.link_velocity
+    mujoco.mj_forward(model, data)
+    point = model.site("P")
+    start, body = data.site_xpos[point.id].copy(), int(np.ravel(point.bodyid)[0])
+    rates = data.qvel[A].copy() * (controller.reference == "moving")
+    n, x_0, summed, M = approach.direction, 0.0, np.zeros(2), np.zeros((4, 4))
+    times, forces = [], []
+    for i in range(round(duration / step)):
+        x_c = float(n @ (data.site_xpos[point.id] - start))
+        x_0 = node_after(step, x_0, x_c, contact)
+        force = contact.hertz_stiffness * max(x_c - x_0, 0.0) ** 1.5
+        times.append(i * step)
+        forces.append(force)
+        behind = approach.q[A] + rates * i * step - data.qpos[A]
+        mujoco.mj_fullM(model, data, M)
+        wanted = controller.proportional * behind + controller.integral * summed
+        wanted = wanted + controller.derivative * (rates - data.qvel[A])
+        data.qfrc_applied[:] = 0
+        if i * step < controller.reaction_time:
+            data.qfrc_applied[A] = M[np.ix_(A, A)] @ wanted + data.qfrc_bias[A]
+        summed += step * behind
+        mujoco.mj_applyFT(
+            model, data, -force * n, np.zeros(3), data.site_xpos[point.id], body, data.qfrc_applied
+        )
+        mujoco.mj_step(model, data)
+    return np.array(times), np.array(forces)
+
+
+@pytest.mark.parametrize("reference", ["moving", "held"])
+def test_controlled_rr_agrees_with_mujoco_before_and_after_the_reaction(
+    reference: Reference,
+) -> None:
+    model, approach = turned_by_both_motors()
+    controller = replace(RR, reference=reference, reaction_time=0.006)
+    ours = simulate_impact(model, approach, HEAD, "full", controller=controller, duration=0.016)
+    times, theirs = forces_by_mujoco(approach, controller, HEAD, 0.016)
+    difference = np.interp(times, ours.time, ours.force) - theirs
+    assert abs(difference).max() < 3e-3 * ours.first_contact
+
+
+def test_the_reaction_is_an_event() -> None:
+    model, approach = turned_by_both_motors()
+    when = 0.00437
+
+    def force(reaction_time: float) -> ImpactHistory:
+        controller = replace(RR, reaction_time=reaction_time)
+        return simulate_impact(model, approach, HEAD, "full", controller=controller, duration=0.02)
+
+    reacting, not_reacting = force(when), force(np.inf)
+    assert when in reacting.time
+    assert when not in not_reacting.time
+    before = reacting.time <= when
+    same = np.interp(reacting.time, not_reacting.time, not_reacting.force)
+    assert abs(reacting.force - same)[before].max() < 2e-3 * reacting.first_contact
+    assert abs(reacting.force - same)[~before].max() > 0.02 * reacting.first_contact
+
+
+@pytest.mark.parametrize("reference", ["moving", "held"])
+@pytest.mark.parametrize("arm", ["rr", "panda", "rmin"])
+def test_slow_controlled_impacts_are_linear(panda: Robot, arm: str, reference: Reference) -> None:
+    cases = {"rr": turned_by_both_motors, "rmin": r_min, "panda": lambda: elastic_panda(panda)}
+    model, approach = cases[arm]()
+    controller = replace(R_MIN if arm == "rmin" else RR, reference=reference, reaction_time=0.004)
+    errors = []
+    for speed in (1e-2, 1e-3):
+        slow = replace(approach, speed=speed)
+        full, linear = (
+            simulate_impact(model, slow, HEAD, fidelity, controller=controller).first_contact
+            for fidelity in ("full", "linearised")
+        )
+        errors.append(abs(full / linear - 1))
+    assert errors[1] < 1e-4
+    assert errors[1] < 0.3 * errors[0]  # in proportion to speed
+
+
+def test_proportional_control_of_a_standing_reference_is_k_p() -> None:
+    """The gain that enters K0 (MSM's footnote 4) is this controller's."""
+    model, approach = turned_by_both_motors(6050.0)
+    slow = replace(approach, speed=1e-3)
+    only_p = Controller(6050.0, 0.0, 0.0, "held", np.inf)
+    controlled = simulate_impact(model, slow, CHEST, "full", controller=only_p)
+    held = simulate_impact(model, slow, CHEST, "full")
+    assert controlled.first_contact == pytest.approx(held.first_contact, rel=1e-4)
+    linear = simulate_impact(model, slow, CHEST, "linearised", controller=only_p)
+    modal = simulate_impact(model, slow, CHEST, "linearised")
+    assert linear.first_contact == pytest.approx(modal.first_contact, rel=1e-7)
+
+
+@pytest.mark.parametrize("reference", ["moving", "held"])
+def test_a_controlled_chain_of_full_order_is_the_linear_robot(
+    panda: Robot, reference: Reference
+) -> None:
+    controller = replace(RR, reference=reference)
+    model, approach = elastic_panda(panda)
+    whole = simulate_impact(model, approach, CHEST, "linearised", controller=controller)
+    chain = simulate_impact(
+        model, approach, CHEST, "chain", order=model.size, controller=controller
+    )
+    assert chain.first_contact == pytest.approx(whole.first_contact, rel=1e-6)
+
+
+def test_without_gains_only_potential_forces_are_held() -> None:
+    """A controller of zero gains differs from a reaction at once by Coriolis forces alone."""
+    model, approach = turned_by_both_motors()
+    slow = replace(approach, speed=1e-3)
+    nothing = Controller(0.0, 0.0, 0.0, "moving", np.inf)
+    idle = simulate_impact(model, slow, CHEST, "full", controller=nothing)
+    free = simulate_impact(model, slow, CHEST, "full")
+    assert idle.first_contact == pytest.approx(free.first_contact, rel=1e-4)
+
+
+BAD = [
+    (replace(RR, proportional=-1.0), "controller.proportional"),
+    (replace(RR, derivative=np.inf), "controller.derivative"),
+    (replace(RR, integral=np.nan), "controller.integral"),
+    (replace(RR, reaction_time=0.0), "controller.reaction_time"),
+    (replace(RR, reaction_time=np.nan), "controller.reaction_time"),
+]
+
+
+@pytest.mark.parametrize(("controller", "field"), BAD)
+def test_impossible_controllers_are_refused(controller: Controller, field: str) -> None:
+    model, approach = turned_by_both_motors()
+    with pytest.raises(InvalidValue) as refused:
+        simulate_impact(model, approach, CHEST, "full", controller=controller)
+    assert refused.value.field == field
+
+
+def test_unknown_references_are_refused() -> None:
+    model, approach = turned_by_both_motors()
+    wrong: str = "waiting"
+    with pytest.raises(UnknownName, match="moving, held"):
+        simulate_impact(model, approach, CHEST, "full", controller=replace(RR, reference=wrong))
+
+
+@pytest.mark.parametrize("options", [{"fidelity": "two_mass"}, {"fidelity": "one_mass"},
+                                     {"fidelity": "chain", "end": "free"}])  # fmt: skip
+def test_models_without_motors_take_no_controller(options: dict[str, str]) -> None:
+    model, approach = turned_by_both_motors()
+    with pytest.raises(SoftImpactError, match="controller"):
+        simulate_impact(model, approach, CHEST, **options, controller=RR)  # type: ignore[arg-type]

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact reproduce``: verdicts, the page, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from command_line import refusal
+
+from softimpact.studio.reproduce.compare import Comparison, compared, grid_points
+from softimpact.studio.reproduce.compute import Results, compute
+from softimpact.studio.reproduce.figures import draw
+from softimpact.studio.reproduce.page import page
+from softimpact.studio.reproduce.scenarios import RR, SCENARIOS
+
+PNG = b"\x89PNG\r\n"
+
+
+@pytest.fixture(scope="module")
+def results() -> Results:
+    """Scenario (a) alone, on the paper's grid alone."""
+    return compute(("a",), between=0)
+
+
+@pytest.fixture(scope="module")
+def comparisons(results: Results) -> list[Comparison]:
+    return compared(results)
+
+
+def of(comparisons: list[Comparison], what: str) -> Comparison:
+    found = [line for line in comparisons if what in line.what]
+    assert len(found) == 1
+    return found[0]
+
+
+@pytest.mark.slow
+def test_verdicts_follow_from_the_numbers(comparisons: list[Comparison]) -> None:
+    assert of(comparisons, "m_a").verdict == "agrees"
+    assert of(comparisons, "m_a").difference == pytest.approx(0.2, abs=0.05)
+    swapped = of(comparisons, "peak force, chest")
+    assert (swapped.printed, swapped.verdict) == (152, "misprint")
+    assert swapped.ours == pytest.approx(125.3, abs=0.1)
+    assert of(comparisons, "peak force, head").verdict == "agrees"
+    chest = of(comparisons, "two masses (paper), mean error of the first peak, chest")
+    assert chest.verdict == "not determined by the text"
+    assert chest.difference == pytest.approx(chest.ours - chest.printed)
+    decoupling = of(comparisons, "isolated")
+    assert decoupling.verdict == "agrees"
+    assert 4056 < decoupling.ours < 6164
+
+
+@pytest.mark.slow
+def test_the_page_shows_every_number_and_figure(
+    results: Results, comparisons: list[Comparison], tmp_path: Path
+) -> None:
+    captions = draw(results, tmp_path)
+    text = page(results, comparisons, captions)
+    assert text.count("| agrees") + text.count("| misprint") + text.count("| not deter") == len(
+        comparisons
+    )
+    shown = re.findall(r"\]\((\S+\.png)\)", text)
+    assert sorted(shown) == sorted(path.name for path in tmp_path.iterdir())
+    assert {name[:5] for name in shown} == {"fig05", "fig06", "fig07", "fig08", "fig09", "ladde"}
+    assert all((tmp_path / name).read_bytes().startswith(PNG) for name in shown)
+
+
+@pytest.mark.slow
+def test_the_whole_paper(tmp_path: Path) -> None:
+    out = tmp_path / "msm"
+    start = "from softimpact.studio.cli import main; raise SystemExit(main())"
+    command = [sys.executable, "-c", start]
+    done = subprocess.run(
+        [*command, "reproduce", "--out", str(out), "--json"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    record = json.loads(done.stdout)
+    assert record["verdicts"]["misprint"] == 1
+    assert record["verdicts"]["agrees"] >= 86
+    assert sum(record["verdicts"].values()) == len(record["comparisons"]) == 101
+    figures = {path.stem[:5] for path in out.glob("fig*.png")}
+    assert figures == {f"fig{number:02}" for number in (5, 6, 7, 8, 9, 12, 13, 14, 15)}
+    kept = json.loads((out / "results.json").read_text())
+    assert kept["comparisons"] == record["comparisons"]
+    assert sorted(kept["sweeps"]) == list("abcdef")
+    assert (out / "report.md").read_text().count("![") == 11
+
+
+def test_unknown_scenarios_are_refused(tmp_path: Path) -> None:
+    out = tmp_path / "msm"
+    message = refusal("reproduce", "--out", out, "--scenarios", "ag")
+    assert "'g'" in message
+    assert "a, b, c, d, e, f" in message
+    assert not out.exists()
+
+
+def test_foreign_folders_are_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("keep")
+    assert "choose another --out" in refusal("reproduce", "--out", tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_a_folder_to_write_into_is_needed() -> None:
+    assert "--out" in refusal("reproduce")
+
+
+def test_finer_sweeps_hold_the_papers_grid() -> None:
+    fine, coarse = RR.stiffnesses(2), RR.stiffnesses()
+    assert len(fine) == 34
+    assert grid_points(list(fine)) == pytest.approx(list(coarse))  # type: ignore[arg-type]
+    assert coarse[5] == pytest.approx(4056, abs=0.5)
+    assert SCENARIOS["f"].arm.stiffnesses()[3] == pytest.approx(351, abs=0.5)
