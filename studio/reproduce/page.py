@@ -34,6 +34,14 @@ What the text leaves open, and how it is read here:
 - R-Min's distance O11-O21 is 0.263 m, inferred from the two printed m_c.
 """
 
+LADDER_NOTE = """\
+Once the linear model feels the controller, only the change of geometry while the robot moves is
+left between it and the full one. Held by K_p alone (MSM Eq. 5) the motors neither
+follow a reference that moves on nor are they damped by k_d: that is where the linearised model
+parts from the full one, the more the longer the contact lasts (chest) and the nearer it is to the
+motors (elbow). Two masses that both arrive with the contact point's speed make up for part of it.
+"""
+
 VERDICTS = """\
 *agrees*: to the last printed digit (which may be cut off) or within 0.5 %; mean errors within one
 percentage point. *Difference* is in percent of the printed number, for numbers in % in points.
@@ -116,7 +124,7 @@ def _stiffnesses(found: Decoupling | None) -> tuple[str, str]:
 
 def _ladder(results: Results) -> list[str]:
     text = "Mean absolute error [%] over the grid of k_s against `{}`, {}."
-    parts = ["## The ladder"]
+    parts = ["## The ladder", LADDER_NOTE]
     against = {"full": [r for r in LADDER if r != "full"], "linearised": ["chain", "two_mass"]}
     for reference, rungs in against.items():
         for definition in get_args(PeakDefinition):
