@@ -23,7 +23,8 @@ What the text leaves open, and how it is read here:
 - The contact normal is the direction in which the contact point moves.
 - The PID is multiplied by the same M_θθ; Coriolis and potential forces are compensated. After first
   touch the motors' reference moves on with the speed of arrival. 20 ms later the torques only hold
-  potential forces. With a reference that is held instead, the errors are others (last table).
+  potential forces. A reference that is held instead changes the full model itself by more than
+  most models differ from it (see the ladder).
 - The "peak of the first impact" is the first local maximum of the force (`first_peak`). Where two
   peaks merge it jumps, so an error there says where each model has them merge. The largest force
   until separation is `first_contact`.
@@ -86,7 +87,7 @@ def _sections(comparisons: Sequence[Comparison]) -> list[str]:
                 line.unit,
                 line.printed,
                 line.ours,
-                f"{line.difference:+.2f}" if line.difference else "0",
+                f"{line.difference:+.2f}" if abs(line.difference) >= 0.005 else "0",
                 f"{line.verdict}: {line.note}" if line.note else line.verdict,
             )
             for line in lines
