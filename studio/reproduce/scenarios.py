@@ -80,15 +80,11 @@ class Scenario:
 
     def at(self, stiffness: float, speed: float = 1.0) -> tuple[ImpactModel, Approach]:
         """Return the robot with all joint springs of a stiffness [N·m/rad], and its approach."""
-        arm = self.arm
-        robot = _with_springs(arm.robot, stiffness)
-        gains = drives(robot, computed_torque_gain=arm.proportional)
-        model = impact_model(robot, self.tip, drives_=gains, gravity=arm.gravity)
-        q = configuration_at_rest(model, self.motor_angles)
-        n, rates = self._motion(model, q)
-        return model, Approach(q, n, speed, rates)
+        model, approach = _at_rest(self, stiffness)
+        return model, replace(approach, speed=speed)
 
-    def _motion(self, model: ImpactModel, q: Array) -> tuple[Array, Array]:
+    def motion(self, model: ImpactModel, q: Array) -> tuple[Array, Array]:
+        """Return the direction in which the contact point moves, and q̇ per 1 m/s."""
         if self.direction is not None:
             n = np.array(self.direction)
             return n, approach_velocity(model, q, n)
@@ -97,6 +93,17 @@ class Scenario:
         moved = np.array(model.jacobian(q)) @ rates
         speed = np.linalg.norm(moved)
         return moved / speed, rates / speed
+
+
+@lru_cache(maxsize=64)
+def _at_rest(scenario: Scenario, stiffness: float) -> tuple[ImpactModel, Approach]:
+    arm = scenario.arm
+    robot = _with_springs(arm.robot, stiffness)
+    gains = drives(robot, computed_torque_gain=arm.proportional)
+    model = impact_model(robot, scenario.tip, drives_=gains, gravity=arm.gravity)
+    q = configuration_at_rest(model, scenario.motor_angles)
+    n, rates = scenario.motion(model, q)
+    return model, Approach(q, n, 1.0, rates)
 
 
 @lru_cache(maxsize=64)

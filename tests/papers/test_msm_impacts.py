@@ -6,12 +6,16 @@ on, the first local maximum of the force, and twelve k_s on a logarithmic scale.
 all four open; with these readings its own numbers are within a point or two.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from softimpact.simulate import simulate_impact
 from softimpact.studio.reproduce import printed
 from softimpact.studio.reproduce.ladder import impact_at
 from softimpact.studio.reproduce.scenarios import SCENARIOS
+from softimpact.symbolic import Contact, body_region
 
 RECOMPUTED = {
     # two masses, one mass, chain of 3 with the controller: mean error of the first peak [%]
@@ -54,6 +58,32 @@ def test_mean_errors_over_joint_stiffness(region: str, name: str) -> None:
     assert found == pytest.approx(RECOMPUTED[region, name], abs=0.02)
     assert found[0] == pytest.approx(printed.TWO_MASS_ERROR[region][name], abs=POINTS)
     assert found[1] == pytest.approx(printed.ONE_MASS_ERROR[region][name], abs=POINTS)
+
+
+@pytest.mark.parametrize("region", ["head", "chest"])
+@pytest.mark.parametrize("name", list("abcd"))
+def test_a_chain_of_three_is_the_linearised_rr_without_a_controller(name: str, region: str) -> None:
+    """Two springs make three masses."""
+    for stiffness in (5e2, 5e3, 5e4):
+        held, approach = SCENARIOS[name].at(stiffness)
+        model = replace(held, drives=replace(held.drives, computed_torque_gain=None))
+        chain, linear = (
+            simulate_impact(model, approach, Contact(body_region(region)), fidelity, order=3)
+            for fidelity in ("chain", "linearised")
+        )
+        assert chain.first_contact == pytest.approx(linear.first_contact, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", list("abcd"))
+def test_a_chain_of_three_is_within_a_percent_with_k_p(name: str) -> None:
+    """On average over k_s, on the head; where two peaks touch, single stiffnesses are worse."""
+    errors = [
+        impact_at(SCENARIOS[name], "chain", float(k), "head").first_contact
+        / impact_at(SCENARIOS[name], "linearised", float(k), "head").first_contact
+        - 1
+        for k in SCENARIOS[name].arm.stiffnesses()
+    ]
+    assert np.mean(np.abs(errors)) < 0.01
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,14 @@ import pytest
 from mujoco_impacts import node_after
 
 from softimpact.robots import built_in_robots
-from softimpact.simulate import Approach, Controller, ImpactHistory, Reference, simulate_impact
+from softimpact.simulate import (
+    Approach,
+    Controller,
+    ImpactHistory,
+    Reference,
+    largest_safe_speed,
+    simulate_impact,
+)
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
@@ -175,6 +182,18 @@ def test_without_gains_only_potential_forces_are_held() -> None:
     idle = simulate_impact(model, slow, CHEST, "full", controller=nothing)
     free = simulate_impact(model, slow, CHEST, "full")
     assert idle.first_contact == pytest.approx(free.first_contact, rel=1e-4)
+
+
+def test_the_safe_speed_of_the_controlled_robot_gives_the_limit() -> None:
+    model, approach = turned_by_both_motors()
+    limit = body_region("chest").force_limit
+    speed = largest_safe_speed(model, approach, CHEST, limit, "full", controller=RR)
+    found = simulate_impact(model, replace(approach, speed=speed), CHEST, "full", controller=RR)
+    assert found.first_contact == pytest.approx(limit, rel=1e-6)
+    held = largest_safe_speed(
+        model, approach, CHEST, limit, "full", controller=replace(RR, reference="held")
+    )
+    assert held > 1.05 * speed
 
 
 BAD = [
