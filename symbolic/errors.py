@@ -79,3 +79,14 @@ class NoEquilibrium(SoftImpactError):
         super().__init__(
             f"no static equilibrium under gravity (residual torque {residual:.3g} N·m): {hint}"
         )
+
+
+class MasslessBase(SoftImpactError):
+    """A base that is to float has no mass."""
+
+    def __init__(self, robot: str) -> None:
+        self.robot = robot
+        super().__init__(
+            f"robot '{robot}': its base has no mass, so it cannot float; "
+            "give the root link an <inertial> element"
+        )

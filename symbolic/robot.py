@@ -85,6 +85,7 @@ class Robot:
         tip: frame taken as the contact point where none is named.
         rotor_inertia_sets: reflected rotor inertias by the name of their source, each with one
             entry a joint.
+        base_inertia: of what is fixed to the base, in its frame; felt by floating robots only.
     """
 
     name: str
@@ -92,6 +93,7 @@ class Robot:
     frames: Mapping[str, Frame]
     tip: str | None = None
     rotor_inertia_sets: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    base_inertia: Inertia = field(default_factory=Inertia.zero)
 
     @property
     def n(self) -> int:
@@ -196,6 +198,7 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
             raise UnknownName("joint", name, robot.joint_names)
     carrier: dict[int, tuple[int, Placement]] = {BASE: (BASE, Placement.identity())}
     kept: list[Joint] = []
+    base = robot.base_inertia
     for index, joint in enumerate(robot.joints):
         parent, where = carrier[joint.parent]
         if joint.name not in locked:
@@ -205,9 +208,11 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
             continue
         pose = where @ joint.pose(locked[joint.name])
         carrier[index] = (parent, pose)
-        if parent != BASE:
-            body = kept[parent]
-            kept[parent] = replace(body, inertia=body.inertia + joint.inertia.seen_from(pose))
+        moved = joint.inertia.seen_from(pose)
+        if parent == BASE:
+            base = base + moved
+        else:
+            kept[parent] = replace(kept[parent], inertia=kept[parent].inertia + moved)
     frames = {
         name: Frame(name, carrier[frame.joint][0], carrier[frame.joint][1] @ frame.placement)
         for name, frame in robot.frames.items()
@@ -217,7 +222,9 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
         name: tuple(value for value, stay in zip(values, stays, strict=True) if stay)
         for name, values in robot.rotor_inertia_sets.items()
     }
-    return replace(robot, joints=tuple(kept), frames=frames, rotor_inertia_sets=sets)
+    return replace(
+        robot, joints=tuple(kept), frames=frames, rotor_inertia_sets=sets, base_inertia=base
+    )
 
 
 def chain_to(robot: Robot, frame: str, rest: Sequence[float] | None = None) -> Robot:
