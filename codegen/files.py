@@ -71,7 +71,7 @@ def _written_files(folder: Path) -> dict[str, str]:
     """Hashes of the files that the generator wrote; empty if this is no package."""
     path = folder / MANIFEST
     try:
-        text = path.read_text()
+        text = path.read_text(encoding="utf-8")
         manifest = json.loads(text)
     except (OSError, ValueError):
         return {}
@@ -96,6 +96,7 @@ def _restore_interrupted(folder: Path) -> None:
     previous = _previous(folder)
     if not previous.exists():
         return
+    require_own(previous)
     if folder.exists():
         shutil.rmtree(previous)
     else:

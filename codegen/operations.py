@@ -12,7 +12,7 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from . import exact
+from . import exact, sine
 from .errors import UnsupportedOperation
 
 
@@ -106,8 +106,8 @@ OPERATIONS: dict[int, Operation] = {
         1, "{R}R(1.0)/{0}", _PRODUCT, (_SIGN,), lambda a: 1 / a, lambda a: 1 / a, parity="odd"
     ),
     ca.OP_SQRT: _call("SQRT", lambda a: a.sqrt(), np.sqrt),
-    ca.OP_SIN: _call("SIN", exact.sine, exact.correctly_rounded(np.sin), "odd"),
-    ca.OP_COS: _call("COS", exact.cosine, exact.correctly_rounded(np.cos), "even"),
+    ca.OP_SIN: _call("SIN", exact.sine, sine.sine, "odd"),
+    ca.OP_COS: _call("COS", exact.cosine, sine.cosine, "even"),
     ca.OP_EXP: _call("EXP", lambda a: a.exp(), exact.correctly_rounded(np.exp)),
     ca.OP_LOG: _call("LOG", lambda a: a.ln(), exact.correctly_rounded(np.log)),
     ca.OP_FABS: _call("FABS", abs, np.abs, "even"),

@@ -13,19 +13,17 @@ import softimpact
 from softimpact.symbolic import Drives, InvalidValue, Robot
 from softimpact.symbolic.impact_model import WEIGHTLESS
 
-from .accuracy import double_error, float_error, golden_results, is_regular
+from .accuracy import accuracy, golden_results, is_regular
+from .description import CFunction, Parameter
 from .files import replace_package, require_own, sha256
-from .functions import CFunction, Parameter, functions_of, is_elastic, parameters_of
+from .functions import functions_of, is_elastic, parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
-from .render import Default, Package, render
+from .render import MEASURED_SAMPLES, Default, Package, render
 from .samples import Sample, draw_samples
 from .source import CSource
 
 GOLDEN_CASES = 12
 """Inputs in a package's own test."""
-
-MEASURED_SAMPLES = 4096
-"""Inputs over which float errors are measured."""
 
 LONGEST_CHAIN = 8
 """Most masses of a generated chain; longer ones lose their last masses to rounding."""
@@ -60,7 +58,7 @@ def generate_package(
 
     Raises:
         FrameNotFound: the robot has no such tip.
-        InvalidValue: an argument outside its meaning.
+        InvalidValue: an argument outside its meaning, or a tip that cannot move.
         ForeignFiles: the folder holds files that the generator did not write.
         OutputNotWritable: the operating system refuses.
     """
@@ -73,11 +71,11 @@ def generate_package(
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
     measured = draw_samples(robot, parameters, MEASURED_SAMPLES, seed=2)
     functions = functions_of(robot, frame, gravity, chain_order)
-    golden = _regular(functions, golden)
+    golden = _regular(functions, golden, frame)
     tables = {function.name: golden_results(function, golden) for function in functions}
     sources = []
     for function in functions:
-        record = _record(prefix, function, golden, tables[function.name], measured)
+        record = _record(prefix, function, measured)
         sources.append(CSource(prefix, robot.n, parameters, function, record))
     package = Package(
         prefix=prefix,
@@ -114,25 +112,23 @@ def _check(robot: Robot, real: str, gravity: Sequence[float], chain_order: int) 
         raise InvalidValue("chain_order", f"must be from 1 to {longest}, not {chain_order}")
 
 
-def _regular(functions: Sequence[CFunction], samples: Sequence[Sample]) -> list[Sample]:
+def _regular(functions: Sequence[CFunction], samples: Sequence[Sample], tip: str) -> list[Sample]:
     """Return golden inputs to which all functions have an answer."""
     regular = np.all([is_regular(function, samples) for function in functions], axis=0)
+    if not regular.any():
+        raise InvalidValue("tip", f"frame '{tip}' cannot move at any of the sampled configurations")
     return [samples[i] for i in np.flatnonzero(regular)[:GOLDEN_CASES]]
 
 
-def _record(
-    prefix: str,
-    function: CFunction,
-    golden: Sequence[Sample],
-    table: Sequence[Sequence[float]],
-    measured: Sequence[Sample],
-) -> FunctionRecord:
+def _record(prefix: str, function: CFunction, measured: Sequence[Sample]) -> FunctionRecord:
+    found = accuracy(function, measured)
     return FunctionRecord(
         name=f"{prefix}_{function.name}",
         flops=function.flops,
         sines_and_cosines=function.sines_and_cosines,
-        double_error=double_error(function, golden, table),
-        float_error=float_error(function, measured),
+        double_error=found.double,
+        float_error=found.single,
+        float_error_worst=found.single_worst,
     )
 
 

@@ -74,7 +74,7 @@ class _Text:
 class _Printer:
     def __init__(self, graph: Graph, inputs: Sequence[Sequence[str]], prefix: str) -> None:
         self.graph, self.inputs = graph, inputs
-        self.real, self.macro = f"{prefix}_real", f"{prefix.upper()}_"
+        self.prefix, self.real, self.macro = prefix, f"{prefix}_real", f"{prefix.upper()}_"
         self.uses = graph.uses()
         self.names: dict[int, str] = {}
         self.texts: dict[int, _Text] = {}
@@ -84,17 +84,18 @@ class _Printer:
 
     def name_sines(self, angles: int | None) -> None:
         """Name sines and cosines of a joint's angle, shifted or not, and put them first."""
-        found: list[tuple[int, int, int]] = []
+        found: list[tuple[int, int, int, int]] = []
         for index, node in enumerate(self.graph.nodes):
             if node.operation in (ca.OP_SIN, ca.OP_COS):
-                joint = self._joint(node.operands[0], angles)
+                (angle,) = node.operands
+                joint = self._joint(angle, angles)
                 if joint is not None:
-                    found.append((joint, -node.operation, index))
-        for joint, kind, index in sorted(found):
-            name = f"{'c' if -kind == ca.OP_COS else 's'}{joint + 1}"
-            if name not in self.names.values():
-                self.names[index] = name
-                self.first.append(index)
+                    found.append((joint, angle, node.operation, index))
+        for joint, angle, kind, index in sorted(found):
+            others = {other[1] for other in found if other[0] == joint and other[1] < angle}
+            suffix = f"_{len(others) + 1}" if others else ""
+            self.names[index] = f"{'c' if kind == ca.OP_COS else 's'}{joint + 1}{suffix}"
+            self.first.append(index)
 
     def _joint(self, index: int, angles: int | None) -> int | None:
         """Return the joint whose angle a node is, up to a constant."""
@@ -118,14 +119,29 @@ class _Printer:
 
     def statements(self) -> Statements:
         """Print every node once."""
-        for index in self.first:
-            self._print_with_operands(index)
+        for index, after in zip(self.first, [*self.first[1:], *self.first[-1:]], strict=True):
+            self._print_pair(index, after)
         for index in range(len(self.graph.nodes)):
             self._print(index)
         results = tuple(
             tuple(self.texts[index].text for index in result) for result in self.graph.results
         )
         return Statements(tuple(self.lines), results)
+
+    def _print_pair(self, index: int, after: int) -> None:
+        """Print a sine or cosine; the two of one angle are computed at once."""
+        nodes = self.graph.nodes
+        (angle,) = nodes[index].operands
+        self._print_with_operands(angle)
+        pair = (nodes[index].operation, nodes[after].operation) == (ca.OP_SIN, ca.OP_COS)
+        if not pair or nodes[after].operands != (angle,):
+            self._print(index)
+            return
+        sine, cosine = self.names[index], self.names[after]
+        call = f"{self.prefix}_sine_cosine({self.texts[angle].text}, &{sine}, &{cosine});"
+        self.lines += [f"{INDENT}{self.real} {sine}, {cosine};", f"{INDENT}{call}"]
+        self.texts[index] = _Text(sine, Binding.ATOM)
+        self.texts[after] = _Text(cosine, Binding.ATOM)
 
     def _print_with_operands(self, index: int) -> None:
         for operand in self.graph.nodes[index].operands:

@@ -12,12 +12,17 @@ import jinja2
 import softimpact
 from softimpact.symbolic import Robot
 
-from .functions import Parameter, is_elastic
+from . import sine
+from .description import Parameter
+from .functions import is_elastic
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
 
 TEMPLATES = Path(__file__).parent / "templates"
+
+MEASURED_SAMPLES = 16384
+"""Inputs over which float errors are measured."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +89,7 @@ def render(package: Package) -> dict[str, str]:
         keep_trailing_newline=True,
     )
     environment.filters["number"] = _number
+    environment.filters["comment"] = _comment
     name = package.prefix
     context = {
         "package": package,
@@ -92,6 +98,8 @@ def render(package: Package) -> dict[str, str]:
         "robot": package.robot,
         "n": package.robot.n,
         "version": softimpact.__version__,
+        "sine": sine,
+        "measured": MEASURED_SAMPLES,
     }
     files = {
         f"include/{name}.h": "header.h",
@@ -118,3 +126,8 @@ def render(package: Package) -> dict[str, str]:
 def _number(value: float) -> str:
     """Return the shortest decimal that reads back as the same double."""
     return repr(float(value) + 0.0)
+
+
+def _comment(text: str) -> str:
+    """Return a name from a model file as it may stand in a C comment."""
+    return " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from softimpact.symbolic import JointKind, Robot
 
-from .functions import Parameter
+from .description import Parameter
 
 STEPS = 1024
 """Joint coordinates are multiples of 1/1024 rad or m."""
@@ -68,7 +68,10 @@ def _between(source: random.Random, low: int, high: int) -> int:
 
 
 def _coordinate(source: random.Random, lower: float, upper: float) -> float:
-    return _between(source, math.ceil(lower * STEPS), math.floor(upper * STEPS)) / STEPS
+    low, high = math.ceil(lower * STEPS), math.floor(upper * STEPS)
+    if low > high:  # the joint hardly moves
+        return float(np.float32((lower + upper) / 2))
+    return _between(source, low, high) / STEPS
 
 
 def _direction(source: random.Random) -> tuple[float, ...]:

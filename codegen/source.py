@@ -9,7 +9,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from .functions import CFunction, Output, Parameter
+from .description import CFunction, Output, Parameter
 from .graph import Graph, Node
 from .manifest import FunctionRecord
 from .printer import Statements, print_graph

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +18,7 @@ from .compiled import c_compiler, compiled_nlp
 from .nlp import DesignNlp, build_nlp, parameters
 from .poses import Candidate, candidates, tip_pose
 from .repair import accurate_springs, largest_deflection
-from .solve import Bounds, Mode, Outcome, Program, Start, nlp_solver, solve
+from .solve import Bounds, Mode, Outcome, Program, Start, nlp_solver, preference, solve
 from .study import Study
 from .timing import Timing, impact_timing
 
@@ -93,7 +94,7 @@ class SolverFailure(Exception):
 
     def __init__(self, outcomes: Sequence[Outcome]) -> None:
         self.outcomes = tuple(outcomes)
-        self.best = min(outcomes, key=lambda outcome: (outcome.violation > 1e-5, outcome.violation))
+        self.best = min(outcomes, key=preference)
         statuses = sorted({outcome.status for outcome in outcomes})
         super().__init__(
             f"none of {len(outcomes)} starts was solved (Ipopt: {', '.join(statuses)}); "
@@ -127,9 +128,15 @@ def design(
     position, rotation = tip_pose(study.model, study.task_pose.q)
     numbers = parameters(study, position, rotation, timing.step, unit)
     program = _program(nlp)
-    starts = [_start(study, pose, mode) for mode in modes for pose in poses]
     bounds = Bounds(*study.robot.limits, study.lower, study.upper, unit)
-    outcomes = _run(program, starts, bounds, numbers, executor, on_outcome)
+    outcomes: dict[tuple[str, Mode], Outcome] = {}
+    with _workers(len(poses)) if executor is None else nullcontext(executor) as pool:
+        for mode in (mode for mode in MODES if mode in modes):
+            starts = [_start(study, p, mode, outcomes.get((p.pose.name, "table"))) for p in poses]
+            for outcome in _run(program, starts, bounds, numbers, pool):
+                outcomes[outcome.name, outcome.mode] = outcome
+                if on_outcome is not None:
+                    on_outcome(outcome)
     solved = [outcome for outcome in outcomes.values() if outcome.solved]
     if not solved:
         raise SolverFailure(list(outcomes.values()))
@@ -160,41 +167,43 @@ def _program(nlp: DesignNlp) -> Program:
     return Program(nlp.oracle.serialize(), library, nlp.n, nlp.pose, nlp.forces)
 
 
-def _start(study: Study, candidate: Candidate, mode: Mode) -> Start:
+def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None) -> Start:
     """Begin with equal joints that are just accurate, and with the stiffest joints.
 
-    If both fail where the posture is free, the task's own posture is the last resort.
+    Where the posture is free, the best stiffness of the posture as given is a third start, so that
+    freedom does not end in a worse local optimum; if all fail, the task's own posture is the last
+    resort.
     """
     equal = np.full(study.robot.n, float(np.median(study.nominal)))
-    points = tuple(
-        (candidate.q, springs)
-        for springs in (accurate_springs(study, candidate.q, equal), study.upper)
-    )
+    springs = [accurate_springs(study, candidate.q, equal), study.upper]
+    if table is not None:
+        springs.append(table.springs)
+    points = tuple((candidate.q, each) for each in springs)
     fallbacks = ((study.task_pose.q, study.upper),) if mode == "free" else ()
     return Start(candidate.pose.name, mode, points, fallbacks)
 
 
+def _workers(starts: int) -> Executor:
+    """Return a process for each core."""
+    context = multiprocessing.get_context("spawn")
+    workers = min(starts, len(os.sched_getaffinity(0)))
+    return ProcessPoolExecutor(workers, context, initializer=_keep_to_one_core)
+
+
+def _keep_to_one_core() -> None:
+    """Keep the linear solver of a worker from spinning threads on the other workers' cores.
+
+    OpenMP reads this when Ipopt is loaded, at the worker's first search.
+    """
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+
 def _run(
-    program: Program,
-    starts: Sequence[Start],
-    bounds: Bounds,
-    numbers: Array,
-    executor: Executor | None,
-    on_outcome: Callable[[Outcome], None] | None,
-) -> dict[tuple[str, Mode], Outcome]:
-    if executor is None:
-        workers = min(len(starts), len(os.sched_getaffinity(0)))
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers, mp_context=context) as pool:
-            return _run(program, starts, bounds, numbers, pool, on_outcome)
-    futures = [executor.submit(solve, program, start, bounds, numbers) for start in starts]
-    outcomes = {}
+    program: Program, starts: Sequence[Start], bounds: Bounds, numbers: Array, pool: Executor
+) -> Iterator[Outcome]:
+    futures = [pool.submit(solve, program, start, bounds, numbers) for start in starts]
     for future in as_completed(futures):
-        outcome = future.result()
-        outcomes[outcome.name, outcome.mode] = outcome
-        if on_outcome is not None:
-            on_outcome(outcome)
-    return outcomes
+        yield future.result()
 
 
 def _gains(study: Study, results: Sequence[PoseResult], winner: Outcome) -> Gains | None:

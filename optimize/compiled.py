@@ -6,6 +6,7 @@ Without a C compiler everything runs in CasADi's virtual machine, about ten time
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import os
 import shutil
@@ -74,5 +75,6 @@ def _compile(solver: ca.Function, compiler: str, folder: Path, scratch: Path) ->
         command = [compiler, *FLAGS, str(source), "-o", str(built), "-lm"]
         if subprocess.run(command, capture_output=True, check=False).returncode != 0:
             return None
+        ctypes.CDLL(str(built))  # raises OSError for code of another machine
         built.replace(library)
     return library

@@ -34,7 +34,7 @@ NODES = 150
 
 
 HALF_TURN = 1e-12
-"""Keeps the pose error finite for a tip turned by exactly half a turn."""
+"""Keeps the pose error of a tip turned by exactly half a turn finite, and from vanishing there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +72,8 @@ def tip_pose_error(model: ImpactModel, q: Matrix, position: Matrix, rotation: Ma
     pose = frame_pose(model.robot, model.tip, q)
     E = ca.mtimes(rotation.T, pose.rotation)
     sine = ca.vertcat(E[2, 1] - E[1, 2], E[0, 2] - E[2, 0], E[1, 0] - E[0, 1])
-    half_cosine = ca.sqrt(ca.fmax(1 + ca.trace(E), 0) + HALF_TURN)
-    return ca.vertcat(pose.position - position, sine / half_cosine)
+    square = ca.fmax(1 + ca.trace(E), 0) + HALF_TURN  # 4 cos²(angle/2)
+    return ca.vertcat(pose.position - position, sine / ca.sqrt(square) + HALF_TURN / square)
 
 
 def deflections(model: ImpactModel, q: Matrix, springs: Matrix, forces: Matrix) -> Matrix:

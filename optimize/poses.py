@@ -9,7 +9,7 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, JointKind, frame_pose
+from softimpact.symbolic import ImpactModel, InvalidValue, Joint, JointKind, frame_pose
 from softimpact.symbolic.rigid import Array
 
 from .repair import posture_at_pose
@@ -57,6 +57,9 @@ def candidates(study: Study) -> list[Candidate]:
 
     A fixed base robot does not feel a turn about its first axis if the impact turns with it, so
     turning the pose back compares like with like.
+
+    Raises:
+        InvalidValue: a pose cannot be moved to where it holds the tip exactly, as the study wants.
     """
     task = tip_pose(study.model, study.task_pose.q)
     return [_candidate(study, pose, task) for pose in study.poses]
@@ -68,11 +71,22 @@ def _candidate(study: Study, pose: Pose, task: tuple[Array, Array]) -> Candidate
         turn = _best_turn(study.model, pose.q, task)
         turned = turn if abs(turn) > TURNED else 0.0
     back = pose.q.copy()
-    back[0] -= turned
-    held = posture_at_pose(study, back, *task) if study.exact else None
-    q = back if held is None else held
+    back[0] = _within_limits(study.robot.joints[0], back[0] - turned)
+    q = posture_at_pose(study, back, *task) if study.exact else back
+    if q is None:
+        raise InvalidValue(
+            f"{study.source}: poses.{pose.name}.q",
+            f"no posture near it holds the tip where pose '{study.task_pose.name}' does; change "
+            "it, or set task.exact = false",
+        )
     offset = np.linalg.norm(tip_pose(study.model, q)[0] - task[0])
     return Candidate(pose, turned, float(abs(q - back).max()), q, float(offset))
+
+
+def _within_limits(joint: Joint, angle: float) -> float:
+    """Return the angle, a full turn on or back if only that is within the joint's limits."""
+    same = (angle, angle - 2 * np.pi, angle + 2 * np.pi)
+    return next((a for a in same if joint.lower <= a <= joint.upper), angle)
 
 
 def _best_turn(model: ImpactModel, q: Array, task: tuple[Array, Array]) -> float:

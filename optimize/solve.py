@@ -145,7 +145,7 @@ def solve(program: Program, start: Start, bounds: Bounds, parameters: Array) -> 
         if any(outcome.solved for outcome in found):
             break
         found.append(_attempt(program, start, *point, bounds, parameters))
-    best = min(found, key=_preference)
+    best = min(found, key=preference)
     return Outcome(
         **{
             **vars(best),
@@ -156,7 +156,8 @@ def solve(program: Program, start: Start, bounds: Bounds, parameters: Array) -> 
     )
 
 
-def _preference(outcome: Outcome) -> tuple[bool, bool, float]:
+def preference(outcome: Outcome) -> tuple[bool, bool, float]:
+    """Sort key: solved before feasible before the rest; then by force, or by violation."""
     feasible = outcome.violation <= FEASIBLE
     return not outcome.solved, not feasible, outcome.force if feasible else outcome.violation
 
@@ -181,17 +182,15 @@ def _attempt(
     q_lower, q_upper = (
         (posture, posture) if start.mode == "table" else (bounds.q_lower, bounds.q_upper)
     )
-    solution = solver(
-        x0=x0,
-        p=parameters,
-        lbx=np.concatenate([q_lower, np.log10(bounds.springs_lower), [0.0]]),
-        ubx=np.concatenate([q_upper, np.log10(bounds.springs_upper), [np.inf]]),
-        lbg=lower,
-        ubg=upper,
-    )
+    least = np.concatenate([q_lower, np.log10(bounds.springs_lower), [0.0]])
+    most = np.concatenate([q_upper, np.log10(bounds.springs_upper), [np.inf]])
+    solution = solver(x0=x0, p=parameters, lbx=least, ubx=most, lbg=lower, ubg=upper)
     x, g = np.array(solution["x"]).ravel(), np.array(solution["g"]).ravel()
+    x = np.clip(x, least, most)  # Ipopt relaxes bounds by 1e-8
     stats = solver.stats()
-    violation = float(np.maximum(np.maximum(lower - g, g - upper), 0.0).max())
+    violated = np.maximum(np.maximum(lower - g, g - upper), 0.0)
+    violation = float(violated[: program.forces.start].max())
+    peak = x[-1] + g[program.forces].max()  # where Ipopt gave up, F need not bound the forces
     return Outcome(
         name=start.name,
         mode=start.mode,
@@ -202,6 +201,6 @@ def _attempt(
         seconds=0.0,
         q=x[:n],
         springs=10 ** x[n : 2 * n],
-        force=float(x[-1] * bounds.unit),
+        force=float(peak * bounds.unit),
         violation=violation,
     )

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -15,7 +17,9 @@ from softimpact.symbolic import (
     Contact,
     ImpactModel,
     InvalidValue,
+    Joint,
     Robot,
+    SoftImpactError,
     UnknownName,
     approach_velocity,
     body_region,
@@ -34,7 +38,7 @@ Vector3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
 
 
 class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
 class RobotSection(_Section):
@@ -172,13 +176,14 @@ def load_study(path: str | Path, overrides: dict[str, dict[str, Any]] | None = N
         overrides: values that replace the file's, by section and field, as a command line gives.
 
     Raises:
-        InvalidValue: a field is missing, unknown, of the wrong type or out of range.
-        SoftImpactError: the robot, a frame, a region or a vector is wrong.
+        InvalidValue: a field is missing, unknown, of the wrong type or out of range; names file
+            and field.
     """
     source = Path(path)
     content = _read(source)
     for section, fields in (overrides or {}).items():
-        content[section] = {**content.get(section, {}), **fields}
+        given = content.get(section, {})
+        content[section] = {**given, **fields} if isinstance(given, dict) else given
     try:
         return _build(StudyFile.model_validate(content), source)
     except ValidationError as error:
@@ -198,27 +203,43 @@ def _read(source: Path) -> dict[str, Any]:
 
 def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
     first = error.errors()[0]
-    field = ".".join(str(part) for part in first["loc"]) or "study"
+    field = ".".join(str(part) for part in first["loc"])
     more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
-    return InvalidValue(f"{source}: {field}", f"{first['msg']}{more}")
+    where = f"{source}: {field}" if field else str(source)
+    return InvalidValue(where, f"{first['msg'].removeprefix('Value error, ')}{more}")
+
+
+@contextmanager
+def _naming(source: Path, section: str, field: str) -> Iterator[None]:
+    """Let errors name the file and the section; and the field, unless they name it themselves."""
+    try:
+        yield
+    except InvalidValue as error:
+        raise InvalidValue(f"{source}: {section}.{error.field}", error.reason) from None
+    except SoftImpactError as error:
+        raise InvalidValue(f"{source}: {section}.{field}", str(error)) from None
 
 
 def _build(file: StudyFile, source: Path) -> Study:
     robot = _robot(file.robot, source)
-    lower = per_joint(robot, "stiffness.lower", file.stiffness.lower)
-    upper = per_joint(robot, "stiffness.upper", file.stiffness.upper)
-    nominal = per_joint(robot, "stiffness.nominal", file.stiffness.nominal)
-    _require_order(robot, lower, upper)
-    model = _model(robot, file.robot, nominal)
-    direction = unit_direction(file.impact.direction)
-    poses = tuple(_pose(robot, pose) for pose in file.poses)
+    with _naming(source, "stiffness", "lower"):
+        lower, upper, nominal = _stiffness(robot, file.stiffness)
+    with _naming(source, "robot", "rotor_inertia"):
+        model = _model(robot, file.robot, nominal)
+    with _naming(source, "impact", "direction"):
+        direction = unit_direction(file.impact.direction)
+    with _naming(source, "impact", "region"):
+        region = body_region(file.impact.region)
+    with _naming(source, "poses", "q"):
+        poses = tuple(_pose(robot, pose) for pose in file.poses)
     for pose in poses:
-        approach_velocity(model, pose.q, direction)
+        with _naming(source, "impact", f"direction at pose '{pose.name}'"):
+            approach_velocity(model, pose.q, direction)
     return Study(
         title=file.title or source.stem,
         source=source,
         model=model,
-        contact=Contact(body_region(file.impact.region), file.impact.clamped),
+        contact=Contact(region, file.impact.clamped),
         direction=direction,
         speed=file.impact.speed,
         lower=lower,
@@ -233,13 +254,30 @@ def _build(file: StudyFile, source: Path) -> Study:
 
 
 def _robot(section: RobotSection, source: Path) -> Robot:
-    """Load the robot; a path is taken relative to the study file."""
+    """Load the robot, a chain to its tip; a path is taken relative to the study file."""
     beside = source.parent / section.model
-    robot = load_robot(beside if beside.is_file() else section.model)
-    tip = section.tip or robot.tip
-    if tip is None:
-        raise UnknownName("frame (give robot.tip)", "", robot.frames)
-    return chain_to(robot, tip)
+    with _naming(source, "robot", "model"):
+        robot = load_robot(beside if beside.is_file() else section.model)
+    with _naming(source, "robot", "tip"):
+        tip = section.tip if section.tip is not None else robot.tip
+        if tip is None:
+            raise UnknownName("frame (none is named)", "", robot.frames)
+        chain = chain_to(robot, tip)
+        if chain.n == 0:
+            raise InvalidValue("tip", f"frame '{tip}' is fixed to the base; name one that moves")
+    with _naming(source, "robot", "model"):
+        for joint in chain.joints:
+            _require_drive(joint)
+    return chain
+
+
+def _require_drive(joint: Joint) -> None:
+    if not joint.actuated or joint.stiffness:
+        raise InvalidValue(
+            "model",
+            f"joint '{joint.name}' has no motor or a spring of its own; a study gives every joint "
+            "a motor and a spring",
+        )
 
 
 def _model(robot: Robot, section: RobotSection, nominal: Array) -> ImpactModel:
@@ -252,21 +290,30 @@ def _model(robot: Robot, section: RobotSection, nominal: Array) -> ImpactModel:
     return impact_model(robot, drives_=built)
 
 
-def _require_order(robot: Robot, lower: Array, upper: Array) -> None:
-    for name, low, high in zip(robot.joint_names, lower, upper, strict=True):
+def _stiffness(robot: Robot, section: StiffnessSection) -> tuple[Array, Array, Array]:
+    """Return lower and upper bounds and the nominal stiffness, length n each."""
+    lower = per_joint(robot, "lower", section.lower)
+    upper = per_joint(robot, "upper", section.upper)
+    nominal = per_joint(robot, "nominal", section.nominal)
+    for joint, low, high, value in zip(robot.joint_names, lower, upper, nominal, strict=True):
         if low > high:
             raise InvalidValue(
-                "stiffness", f"lower bound {low:g} is above the upper {high:g} at joint '{name}'"
+                "lower", f"lower bound {low:g} is above the upper {high:g} at joint '{joint}'"
             )
+        if not low <= value <= high:
+            raise InvalidValue(
+                "nominal", f"{value:g} at joint '{joint}' is outside its bounds [{low:g}, {high:g}]"
+            )
+    return lower, upper, nominal
 
 
 def _pose(robot: Robot, section: PoseSection) -> Pose:
-    q = robot.vector(f"poses.{section.name}.q", section.q)
+    q = robot.vector(f"{section.name}.q", section.q)
     lower, upper = robot.limits
     for name, value, low, high in zip(robot.joint_names, q, lower, upper, strict=True):
         if not low <= value <= high:
             raise InvalidValue(
-                f"poses.{section.name}.q",
+                f"{section.name}.q",
                 f"{value:g} at joint '{name}' is outside its limits [{low:g}, {high:g}]",
             )
     return Pose(section.name, q, section.recovered)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.rigid import Array
 
 from .nlp import NODES, build_nlp, parameters
@@ -21,6 +22,10 @@ MARGIN = 1.5
 
 LARGEST_PHASE = 1.5
 """Largest angular frequency times the step; the leapfrog is stable below 2."""
+
+
+MOST_STEPS = 4500
+"""Time steps beyond which compiling and running the impact would take minutes."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +49,11 @@ class Timing:
 def impact_timing(study: Study, postures: Sequence[Array]) -> Timing:
     """Return a duration that holds every first contact, and steps that resolve the robot.
 
-    Contacts are tried with the nominal and the stiffest springs; frequencies with the stiffest.
+    Contacts are tried with the softest, the nominal and the stiffest springs; frequencies with the
+    stiffest.
+
+    Raises:
+        InvalidValue: the stiffest springs are so stiff that an impact needs too many steps.
     """
     frequency = max(_largest_frequency(study, q) for q in postures)
     duration = SHORTEST
@@ -59,7 +68,14 @@ def impact_timing(study: Study, postures: Sequence[Array]) -> Timing:
 
 
 def _steps(duration: float, frequency: float) -> int:
-    return NODES * max(1, int(np.ceil(duration * frequency / LARGEST_PHASE / NODES)))
+    steps = NODES * max(1, int(np.ceil(duration * frequency / LARGEST_PHASE / NODES)))
+    if steps > MOST_STEPS:
+        raise InvalidValue(
+            "stiffness.upper",
+            f"joints that stiff vibrate so fast that {duration:g} s of impact need {steps} time "
+            f"steps, more than {MOST_STEPS}; lower the bound or raise robot.rotor_inertia",
+        )
+    return steps
 
 
 def _largest_frequency(study: Study, q: Array) -> float:
@@ -74,7 +90,7 @@ def _longest_contact(study: Study, postures: Sequence[Array], timing: Timing) ->
     numbers = parameters(study, np.zeros(3), np.eye(3), timing.step, 1.0)
     longest = 0.0
     for q in postures:
-        for springs in (study.nominal, study.upper):
+        for springs in (study.lower, study.nominal, study.upper):
             x = np.concatenate([q, np.log10(springs), [0.0]])
             force = np.array(nlp.oracle(x, numbers)[1])[nlp.forces].ravel()
             if force[-1] > 0.0:

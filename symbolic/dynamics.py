@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from .joint_frames import customised
-from .kinematics import Motion, cross, motions, rotate
+from .kinematics import Motion, cross, motions, require_length, rotate
 from .matrices import Matrix, on_scalars
 from .rigid import Array, Inertia
 from .robot import BASE, Joint, JointKind, Robot
@@ -186,6 +186,7 @@ def stiffness_of_potential(
 
 
 def _potential_hessian(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> Matrix:
+    require_length(robot, "q", q)
     symbol = ca.SX.sym("q", robot.n)
     hessian, _ = ca.hessian(_potential_energy(robot, gravity, symbol), symbol)
     return ca.substitute(ca.densify(hessian), symbol, q)
@@ -197,6 +198,7 @@ def gravity_torques(robot: Robot, q: Matrix, gravity: Sequence[float] = STANDARD
 
 
 def _potential_gradient(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> Matrix:
+    require_length(robot, "q", q)
     symbol = ca.SX.sym("q", robot.n)
     gradient = ca.gradient(_potential_energy(robot, gravity, symbol), symbol)
     return ca.substitute(ca.densify(gradient), symbol, q)
@@ -219,6 +221,7 @@ def bias_torques(
 
 
 def _bias_torques(robot: Robot, gravity: tuple[float, ...], q: Matrix, velocity: Matrix) -> Matrix:
+    require_length(robot, "velocity", velocity)
     moves = motions(robot, q)
     spin = {BASE: ca.SX.zeros(3)}
     spin_rate = {BASE: ca.SX.zeros(3)}

@@ -15,7 +15,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .rigid import ROTATION_NOISE, Array, Inertia, Placement, rotation_about_z
+from .rigid import ROTATION_NOISE, Array, Inertia, Placement, product, rotation_about_z
 from .robot import BASE, Joint, JointKind, Robot
 
 NEARLY_PARALLEL = 2e-2
@@ -44,7 +44,7 @@ def _with_sparse_frames(robot: Robot) -> Robot:
         offset = joint.offset
         if joint.kind is JointKind.HINGE:  # a turn about its axis is an offset of its coordinate
             sparse = _sparse_rotation(placement.rotation[:, 2])
-            turn = sparse.T @ placement.rotation
+            turn = product(sparse.T, placement.rotation)
             offset = _quarter_turns(offset + float(np.arctan2(turn[1, 0], turn[0, 0])))
             placement = Placement(sparse, placement.translation)
         joints.append(
@@ -99,10 +99,10 @@ def _slide_to_parent_axis(joint: Joint, slides: list[float]) -> float:
         return 0.0
     p = joint.placement.translation - [0.0, 0.0, slides[joint.parent]]
     axis = joint.placement.rotation[:, 2]
-    horizontal = axis[:2] @ axis[:2]
+    horizontal = float(product(axis[:2], axis[:2]))
     if horizontal < NEARLY_PARALLEL**2:
         return float(-p[2] * axis[2])
-    return float(-(p[:2] @ axis[:2]) / horizontal)
+    return float(-product(p[:2], axis[:2]) / horizontal)
 
 
 def _turn_to_child_axis(child: Joint, slide: float, child_slide: float) -> float:

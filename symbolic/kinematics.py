@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from .errors import WrongLength
 from .joint_frames import customised
 from .matrices import Matrix, on_scalars
 from .rigid import Array
@@ -61,8 +62,16 @@ def _cosine_and_sine(offset: float, angle: Matrix) -> tuple[Matrix, Matrix]:
     return ((c, s), (-s, c), (-c, -s), (s, -c))[round(quarters) % 4]
 
 
+def require_length(robot: Robot, field: str, values: Matrix) -> None:
+    """Raise WrongLength unless there is one value a joint."""
+    found = ca.SX(values).numel()
+    if found != robot.n:
+        raise WrongLength(field, found, robot.n, robot.joint_names)
+
+
 def motions(robot: Robot, q: Matrix) -> list[Motion]:
-    """Return the motions of all joints at configuration q."""
+    """Return the motions of all joints at configuration q; raises WrongLength."""
+    require_length(robot, "q", q)
     return [motion(joint, q[i]) for i, joint in enumerate(robot.joints)]
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from softimpact.robots import built_in_robots
 
 from .errors import InvalidInertia, ModelFileError, UnknownName, UnsupportedModel
-from .rigid import Array, Inertia, Placement, rotation_from_axis
+from .rigid import Array, Inertia, Placement, product, rotation_from_axis
 from .robot import BASE, Frame, Joint, JointKind, Robot
 
 KINDS = {
@@ -341,5 +341,5 @@ def _frame_along(axis: Array, position: Array) -> Placement:
 def _inertia(model: mujoco.MjModel, body: int) -> Inertia:
     principal = _placement(model.body_ipos[body], model.body_iquat[body])
     R = principal.rotation
-    tensor = R @ np.diag(model.body_inertia[body]) @ R.T
+    tensor = product(product(R, np.diag(model.body_inertia[body])), R.T)
     return Inertia.from_center_of_mass(model.body_mass[body], principal.translation, tensor)

@@ -43,19 +43,20 @@ class Factorisation:
     def __init__(self, matrix: Matrix) -> None:
         n = matrix.shape[0]
         self.n = n
+        self.l: list[list[Matrix]] = [[] for _ in range(n)]
         self.d: list[Matrix] = []
-        self.l: list[list[Matrix]] = [[0.0] * n for _ in range(n)]
+        u: list[list[Matrix]] = [[] for _ in range(n)]  # L D
         for j in range(n):
-            scaled = [self.l[j][k] * self.d[k] for k in range(j)]
-            self.d.append(matrix[j, j] - _dot(self.l[j][:j], scaled))
+            self.d.append(matrix[j, j] - _dot(self.l[j], u[j]))
             for i in range(j + 1, n):
-                self.l[i][j] = (matrix[i, j] - _dot(self.l[i][:j], scaled)) / self.d[j]
+                u[i].append(matrix[i, j] - _dot(self.l[i], u[j]))
+                self.l[i].append(u[i][j] / self.d[j])
 
     def halfway(self, column: Matrix) -> list[Matrix]:
         """Return y with L y = column; then xᵀM⁻¹x = Σ y²/d."""
         y: list[Matrix] = []
         for i in range(self.n):
-            y.append(column[i] - _dot(self.l[i][:i], y))
+            y.append(column[i] - _dot(self.l[i], y))
         return y
 
     def solve(self, columns: Matrix) -> Matrix:

@@ -21,6 +21,21 @@ def _frozen(value: ArrayLike, shape: tuple[int, ...]) -> Array:
     return array
 
 
+def product(first: ArrayLike, second: ArrayLike) -> Array:
+    """Matrix product, rounded alike on every machine.
+
+    NumPy hands its own to a library that picks fused instructions by the processor; the last bits
+    of model constants, and with them generated code, would follow.
+    """
+    a, b = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
+    columns = b.T.tolist() if b.ndim == 2 else [b.tolist()]
+    rows = a.tolist() if a.ndim == 2 else [a.tolist()]
+    entries = [
+        [sum(x * y for x, y in zip(row, column, strict=True)) for column in columns] for row in rows
+    ]
+    return np.array(entries).reshape(a.shape[:-1] + b.shape[1:])
+
+
 @dataclass(frozen=True, eq=False)
 class Placement:
     """Pose of a frame in its parent: x_parent = rotation x + translation [m]."""
@@ -43,12 +58,13 @@ class Placement:
 
     def __matmul__(self, other: Placement) -> Placement:
         return Placement(
-            self.rotation @ other.rotation, self.rotation @ other.translation + self.translation
+            product(self.rotation, other.rotation),
+            product(self.rotation, other.translation) + self.translation,
         )
 
     def inverse(self) -> Placement:
         """Return the parent's pose in this frame."""
-        return Placement(self.rotation.T, -self.rotation.T @ self.translation)
+        return Placement(self.rotation.T, -product(self.rotation.T, self.translation))
 
 
 def rotation_about_z(angle: float) -> Array:
@@ -61,7 +77,9 @@ def rotation_from_axis(axis: Array, angle: float) -> Array:
     """Rotation matrix about a unit axis by an angle [rad] (Rodrigues)."""
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
+    return np.asarray(
+        np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * product(cross, cross)
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +106,7 @@ class Inertia:
     def from_center_of_mass(mass: float, com: ArrayLike, about_com: ArrayLike) -> Inertia:
         """Inertia from the mass, the centre of mass [m] and the tensor about it [kg m²]."""
         c = np.array(com, dtype=float)
-        steiner = mass * (c @ c * np.eye(3) - np.outer(c, c))
+        steiner = mass * (product(c, c) * np.eye(3) - np.outer(c, c))
         return Inertia(mass, mass * c, np.array(about_com, dtype=float) + steiner)
 
     def __add__(self, other: Inertia) -> Inertia:
@@ -108,7 +126,8 @@ class Inertia:
     def seen_from(self, placement: Placement) -> Inertia:
         """Return the same mass distribution in the parent frame of ``placement``."""
         R, p = placement.rotation, placement.translation
-        h = R @ self.first_moment
-        shift = (2 * p @ h + self.mass * p @ p) * np.eye(3)
+        h = product(R, self.first_moment)
+        shift = (2 * product(p, h) + self.mass * product(p, p)) * np.eye(3)
+        turned = product(product(R, self.about_origin), R.T)
         shift -= np.outer(p, h) + np.outer(h, p) + self.mass * np.outer(p, p)
-        return Inertia(self.mass, h + self.mass * p, R @ self.about_origin @ R.T + shift)
+        return Inertia(self.mass, h + self.mass * p, turned + shift)

@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from softimpact.codegen.functions import CFunction, functions_of, parameters_of
+from softimpact.codegen.description import CFunction
+from softimpact.codegen.functions import functions_of, parameters_of
 from softimpact.codegen.manifest import Manifest
 from softimpact.codegen.samples import Sample
 from softimpact.symbolic import Robot

@@ -90,6 +90,7 @@ def assert_agrees(library: Library, samples: list[Sample]) -> int:
 def stated_bound(record: FunctionRecord, real: str) -> float:
     """Return the bound of the manifest; in double never more than the design's 1e-12."""
     assert record.double_error == 1e-12
+    assert record.float_error <= 2e-3
     return record.double_error if real == "double" else record.float_error
 
 
@@ -217,3 +218,37 @@ def test_stretched_arm_has_no_operational_space_inertia(
         for function in functions:
             assert library.call(function, bent)[0] == OK
             assert library.call(function, straight)[0] == SINGULAR
+
+
+@pytest.mark.parametrize("real", ["double", "float"])
+@pytest.mark.parametrize("robot", ["panda", "gantry"])
+def test_any_bits_give_finite_results_or_a_status(
+    package: Callable[[str], Generated], robot: str, real: str
+) -> None:
+    generated = package(robot)
+    library = generated.load(real)
+    n, fields = generated.robot.n, len(parameters_of(generated.robot))
+    kind, bits = (np.float64, np.uint64) if real == "double" else (np.float32, np.uint32)
+    random = np.random.default_rng(11)
+    answered = 0
+    for _ in range(300):
+        numbers = random.integers(0, np.iinfo(bits).max, n + 3 + fields * n, dtype=bits).view(kind)
+        numbers = np.where(random.random(numbers.size) < 0.9, abs(numbers), numbers)
+        numbers = np.where(np.isfinite(numbers), numbers, 1).astype(float)
+        q, direction, parameters = np.split(numbers, [n, n + 3])
+        sample = Sample(tuple(q), tuple(direction), tuple(map(tuple, parameters.reshape(-1, n))))
+        for function in generated.functions:
+            status, outputs = library.call(function, sample)
+            for output in outputs:
+                assert np.isfinite(output).all() if status == OK else np.isnan(output).all()
+            answered += status == OK
+    assert answered > 300
+
+
+@pytest.mark.slow
+def test_sanitizers_find_nothing(package: Callable[[str], Generated], tmp_path: Path) -> None:
+    generated = package("panda")
+    sources = [*generated.folder.glob("src/*.c"), *generated.folder.glob("test/*.c")]
+    checks = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g"]
+    run(tool("gcc"), *generated.flags("double"), *checks, *sources, "-o", tmp_path / "t", "-lm")
+    assert run(tmp_path / "t").endswith("all passed\n")

@@ -122,3 +122,12 @@ def test_package_left_behind_by_a_killed_process_comes_back(tmp_path: Path) -> N
     replace_package(folder, package("two"))
     assert contents(folder) == package("two")
     assert [p.name for p in tmp_path.iterdir()] == ["p"]
+
+
+def test_foreign_folder_in_the_place_of_the_older_package_stays(tmp_path: Path) -> None:
+    mine = tmp_path / ".p.previous"
+    mine.mkdir()
+    (mine / "notes.txt").write_text("mine")
+    with pytest.raises(ForeignFiles):
+        replace_package(tmp_path / "p", package("one"))
+    assert contents(mine) == {"notes.txt": "mine"}

@@ -8,6 +8,7 @@ import json
 import re
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import casadi as ca
@@ -29,6 +30,7 @@ from softimpact.symbolic import (
 )
 
 ROOT = Path(__file__).parents[2]
+FLOAT_CALLS = {"sinf", "cosf", "sqrtf", "fmaxf", "panda_sine_cosine"}
 
 
 @pytest.mark.parametrize("name", ["panda", "rr"])
@@ -97,6 +99,8 @@ def test_rejects_arguments_without_meaning(tmp_path: Path, panda: Robot) -> None
     out = tmp_path / "p"
     with pytest.raises(FrameNotFound, match="hand_tcp"):
         generate_package(panda, out, tip="nose")
+    with pytest.raises(InvalidValue, match="'link0' cannot move"):
+        generate_package(panda, out, tip="link0")
     with pytest.raises(InvalidValue, match="real"):
         generate_package(panda, out, real="half")  # type: ignore[arg-type]
     with pytest.raises(InvalidValue, match="chain_order"):
@@ -116,6 +120,13 @@ def test_samples_are_exact_in_float_and_inside_the_limits(panda: Robot) -> None:
         assert np.ravel(sample.parameters[:2]).min() > 0
 
 
+def test_joints_that_hardly_move_are_sampled_where_they_are(panda: Robot) -> None:
+    fixed = replace(panda.joints[2], lower=0.3, upper=0.3001)
+    robot = replace(panda, joints=(*panda.joints[:2], fixed, *panda.joints[3:]))
+    for sample in draw_samples(robot, parameters_of(robot), 5, seed=4):
+        assert sample.q[2] == pytest.approx(0.30005, abs=1e-6)
+
+
 def test_float_builds_hold_no_double_operation(
     package: Callable[[str], Generated], tmp_path: Path
 ) -> None:
@@ -124,9 +135,18 @@ def test_float_builds_hold_no_double_operation(
         target = tmp_path / f"{source.stem}.o"
         run(tool("gcc"), *generated.flags("float"), "-c", source, "-o", target)
         needed = set(re.findall(r" U (\w+)", run(tool("nm"), target)))
-        assert needed <= {"sinf", "cosf", "sincosf", "sqrtf", "fmaxf", "_GLOBAL_OFFSET_TABLE_"}
+        assert needed <= {*FLOAT_CALLS, "sincosf", "_GLOBAL_OFFSET_TABLE_"}
         code = run(tool("objdump"), "-d", target)
         assert not re.search(r"\b(cvtss2sd|cvtsd2ss|mulsd|addsd|fcvt)\b", code)
+
+
+def test_names_of_the_model_cannot_end_a_comment(tmp_path: Path, panda: Robot) -> None:
+    named = replace(panda.joints[0], name="*/ #error /* joint")
+    robot = replace(panda, name="x */ #error", joints=(named, *panda.joints[1:]))
+    generate_package(robot, tmp_path / "p", name="panda", chain_order=1)
+    include = f"-I{tmp_path / 'p/include'}"
+    run(tool("gcc"), "-Wall", "-Werror", include, "-c", tmp_path / "p/src/panda_common.c",
+        "-o", tmp_path / "x.o")  # fmt: skip
 
 
 def test_header_serves_cplusplus(package: Callable[[str], Generated], tmp_path: Path) -> None:

@@ -31,6 +31,7 @@ HEAD = """
 #define X_FMAX fmax
 #define X_POW pow
 typedef double x_real;
+static inline void x_sine_cosine(double x, double *s, double *c) { *s = sin(x); *c = cos(x); }
 """
 X = ca.SX.sym("x", 3)
 A, B, C = X[0], X[1], X[2]
@@ -158,6 +159,16 @@ def test_sines_of_shifted_angles_keep_their_joints_name() -> None:
     assert printed.lines[0].strip() == "const x_real s1 = X_SIN(q[0] + X_R(0.25));"
     assert printed.lines[1].strip() == "const x_real c2 = X_COS(q[1]);"
     assert printed.lines[-1].strip() == "const x_real y = s1*c2 + X_SIN(q[0]*q[1]);"
+
+
+def test_sine_and_cosine_of_one_angle_are_computed_at_once() -> None:
+    graph = graph_of([X], [ca.sin(B) + ca.cos(B + 0.5) * ca.sin(0.5 + B) * ca.cos(B) - ca.cos(C)])
+    printed = print_graph(graph, [["q[0]", "q[1]", "q[2]"]], [["y"]], "x", angles=0)
+    text = "\n".join(printed.lines)
+    assert "x_sine_cosine(q[1], &s2, &c2);" in text
+    assert "t1 = q[1] + X_R(0.5);\n    x_real s2_2, c2_2;\n    x_sine_cosine(t1, &s2_2" in text
+    assert "c3 = X_COS(q[2]);" in text
+    assert text.count("X_SIN") + text.count("sine_cosine") == 2
 
 
 def test_lines_stay_short() -> None:

@@ -10,6 +10,7 @@ from random_robots import robots, vectors
 
 from softimpact.symbolic import (
     STANDARD_GRAVITY,
+    WrongLength,
     bias_torques,
     gravity_torques,
     load_robot,
@@ -48,7 +49,7 @@ def test_dynamics_agree_with_pinocchio(name):
         assert_near(gravity_torques(robot, q, GRAVITY), oracle.bias(q, 0 * q, GRAVITY))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(robots(), vectors(5), vectors(5))
 def test_dynamics_of_random_trees_agree_with_pinocchio(robot, q, velocity):
     q, velocity = q[: robot.n], velocity[: robot.n]
@@ -91,6 +92,22 @@ def test_every_kind_of_matrix_gives_the_same_numbers():
     assert_near(mixed, bias, 1e-14)
     mixed = ca.Function("f", [V], [bias_torques(robot, q, V)])(velocity)
     assert_near(mixed, bias, 1e-14)
+
+
+@pytest.mark.parametrize("n", [6, 8])
+@pytest.mark.parametrize(
+    "make", [np.zeros, lambda n: ca.SX.sym("q", n), lambda n: ca.MX.sym("q", n)]
+)
+def test_vectors_must_fit_the_robot(make, n):
+    robot = load_robot("panda")
+    for quantity in (mass_matrix, potential_energy, gravity_torques, stiffness_of_potential):
+        with pytest.raises(WrongLength, match=f"q: has {n} values, but 7 are needed.*joint1") as e:
+            quantity(robot, make(n))
+        assert (e.value.found, e.value.expected) == (n, 7)
+    with pytest.raises(WrongLength, match="q: "):
+        bias_torques(robot, make(n), np.zeros(7))
+    with pytest.raises(WrongLength, match="velocity: "):
+        bias_torques(robot, np.zeros(7), make(n))
 
 
 def test_springs_of_the_file_store_energy():

@@ -49,13 +49,13 @@ def test_customisation_of_real_robots_changes_nothing(name):
     assert_same(robot, q, velocity)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(robots(), vectors(5), vectors(5))
 def test_customisation_of_random_trees_changes_nothing(robot, q, velocity):
     assert_same(robot, q[: robot.n], velocity[: robot.n])
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(robots(), vectors(5), vectors(5))
 def test_customising_twice_changes_nothing(robot, q, velocity):
     assert_same(customised(robot), q[: robot.n], velocity[: robot.n])

@@ -11,6 +11,7 @@ from random_robots import robots, unit_vector, vectors
 
 from softimpact.symbolic import (
     FrameNotFound,
+    WrongLength,
     contact_point_jacobian,
     direction_jacobian,
     frame_jacobian,
@@ -37,7 +38,7 @@ def test_frames_of_files_agree_with_pinocchio(name):
             assert_near(pose.position, theirs.translation)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(robots(), vectors(5))
 def test_frames_of_random_trees_agree_with_pinocchio(robot, q):
     q = q[: robot.n]
@@ -47,7 +48,7 @@ def test_frames_of_random_trees_agree_with_pinocchio(robot, q):
     assert_near(frame_pose(robot, "tip", q).rotation, oracle.pose("tip", q).rotation)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(robots(), vectors(5))
 def test_direction_row_is_the_projected_jacobian(robot, q):
     q, n = q[: robot.n], unit_vector(3)
@@ -56,7 +57,7 @@ def test_direction_row_is_the_projected_jacobian(robot, q):
     assert_near(J, np.array(frame_jacobian(robot, "tip", q))[:3])
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(robots(), vectors(5))
 def test_axes_of_a_joint_only_turn_the_jacobian(robot, q):
     q = q[: robot.n]
@@ -104,6 +105,16 @@ def test_every_kind_of_matrix_gives_the_same_numbers():
         assert_near(
             ca.Function("f", [x], [row])(q), direction_jacobian(robot, "flange", q, n), 1e-14
         )
+
+
+@pytest.mark.parametrize("n", [6, 8])
+def test_configurations_must_fit_the_robot(n):
+    robot = load_robot("panda")
+    for quantity in (frame_pose, frame_jacobian, contact_point_jacobian):
+        with pytest.raises(WrongLength, match=f"q: has {n} values, but 7 are needed"):
+            quantity(robot, "flange", np.zeros(n))
+    with pytest.raises(WrongLength, match="q: "):
+        direction_jacobian(robot, "flange", np.zeros(n), [0, 1, 0])
 
 
 def test_frames_of_the_base_do_not_move():

@@ -89,7 +89,7 @@ def test_digest_sees_where_the_frames_are(panda):
     assert other.digest() != panda.digest()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(robots(min_joints=2), vectors(5))
 def test_welding_joints_keeps_the_rest_of_the_dynamics(robot, q):
     """M, gravity and J of the welded robot are those of the free one, without the welded rows."""

@@ -33,20 +33,20 @@ int panda_chain(
         return status;
     }
 
-    const panda_real c1 = PANDA_COS(q[0]);
-    const panda_real s1 = PANDA_SIN(q[0]);
-    const panda_real c2 = PANDA_COS(q[1]);
-    const panda_real s2 = PANDA_SIN(q[1]);
-    const panda_real c3 = PANDA_COS(q[2]);
-    const panda_real s3 = PANDA_SIN(q[2]);
-    const panda_real c4 = PANDA_COS(q[3]);
-    const panda_real s4 = PANDA_SIN(q[3]);
-    const panda_real c5 = PANDA_COS(q[4]);
-    const panda_real s5 = PANDA_SIN(q[4]);
-    const panda_real c6 = PANDA_COS(q[5]);
-    const panda_real s6 = PANDA_SIN(q[5]);
-    const panda_real c7 = PANDA_COS(q[6]);
-    const panda_real s7 = PANDA_SIN(q[6]);
+    panda_real s1, c1;
+    panda_sine_cosine(q[0], &s1, &c1);
+    panda_real s2, c2;
+    panda_sine_cosine(q[1], &s2, &c2);
+    panda_real s3, c3;
+    panda_sine_cosine(q[2], &s3, &c3);
+    panda_real s4, c4;
+    panda_sine_cosine(q[3], &s4, &c4);
+    panda_real s5, c5;
+    panda_sine_cosine(q[4], &s5, &c5);
+    panda_real s6, c6;
+    panda_sine_cosine(q[5], &s6, &c6);
+    panda_real s7, c7;
+    panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = c1*u[1] - s1*u[0];
     const panda_real t2 = c1*u[0] + s1*u[1];
     const panda_real t3 = c2*t2 - s2*u[2];
@@ -76,10 +76,10 @@ int panda_chain(
     const panda_real t27 = s2*(c3*t23 - s3*t25) - c2*t26;
     const panda_real t28 = PANDA_R(0.0025736053713382)*c7 - PANDA_R(0.0020344399586618)*s7;
     const panda_real t29 = PANDA_R(0.176)*t28;
-    const panda_real t30 = PANDA_R(0.00668415196736096) + t29;
+    const panda_real t30 = PANDA_R(0.00668415196736097) + t29;
     const panda_real t31 = PANDA_R(0.00242094377852124)*s7 + PANDA_R(0.000782782563368494)*c7;
     const panda_real t32 = s7*t31;
-    const panda_real t33 = PANDA_R(0.00954377126949221) + (PANDA_R(0.00242094377852124) - t32);
+    const panda_real t33 = PANDA_R(0.00954377126949222) + (PANDA_R(0.00242094377852124) - t32);
     const panda_real t34 = PANDA_R(0.0012555365982729)*s7 - PANDA_R(0.000965305169919117)*c7;
     const panda_real t35 = PANDA_R(0.0147485703826753) - t34;
     const panda_real t36 = s6*(t33 - t30) + c6*(PANDA_R(2.0)*t35);
@@ -141,7 +141,7 @@ int panda_chain(
     const panda_real t92 = c2*(PANDA_R(2.0)*(PANDA_R(0.00398335888393556) + t91));
     const panda_real t93 = t72 + s2*(s2*(PANDA_R(1.07068659976348) + (t75 - t86) - t72) - t92);
     const panda_real t94 = PANDA_R(0.0373374484894065) + t93;
-    const panda_real t95 = PANDA_R(0.00668415196736096) + PANDA_R(0.088)*t28;
+    const panda_real t95 = PANDA_R(0.00668415196736097) + PANDA_R(0.088)*t28;
     const panda_real t96 = c6*t34 + s6*t95 + PANDA_R(0.384)*t28;
     const panda_real t97 = c6*t42;
     const panda_real t98 = t54 - PANDA_R(0.384)*t97;
@@ -161,7 +161,7 @@ int panda_chain(
     const panda_real t112 = t111/t94;
     const panda_real t113 = s3*t88 - c3*t90;
     const panda_real t114 = s2*(PANDA_R(0.0102611018210083) + (c3*t85 + t84));
-    const panda_real t115 = t114 + c2*(PANDA_R(0.000768936102946405) - t113);
+    const panda_real t115 = t114 + c2*(PANDA_R(0.000768936102946406) - t113);
     const panda_real t116 = s3*t104 + c3*t109 - t112*t115;
     const panda_real t117 = t115/t94;
     const panda_real t118 = PANDA_R(1.11684236475334) + (t77 + t86) - t117*t115;
@@ -230,7 +230,7 @@ int panda_chain(
     const panda_real t181 = t178/t180;
     const panda_real t182 = t17 - (t170*t27 + t172*t121 + t174*t129 + t176*t140 + t179*t157);
     const panda_real t183 = t112*t111 + t119*t116 + t128*t125 + t139*t136 + t156*t153 + t181*t178;
-    const panda_real t184 = PANDA_R(0.00668415196736096) - t183;
+    const panda_real t184 = PANDA_R(0.00668415196736097) - t183;
     const panda_real t185 = t112*t27 + t119*t121 + t128*t129 - t139*t140 + t156*t157 - t181*t182;
     const panda_real t186 = t185/t184;
     const panda_real t187 = t182/t180 - t181*t186;

@@ -17,20 +17,20 @@ int panda_contact_jacobian(const panda_real q[7], const panda_real n[3], panda_r
         return status;
     }
 
-    const panda_real c1 = PANDA_COS(q[0]);
-    const panda_real s1 = PANDA_SIN(q[0]);
-    const panda_real c2 = PANDA_COS(q[1]);
-    const panda_real s2 = PANDA_SIN(q[1]);
-    const panda_real c3 = PANDA_COS(q[2]);
-    const panda_real s3 = PANDA_SIN(q[2]);
-    const panda_real c4 = PANDA_COS(q[3]);
-    const panda_real s4 = PANDA_SIN(q[3]);
-    const panda_real c5 = PANDA_COS(q[4]);
-    const panda_real s5 = PANDA_SIN(q[4]);
-    const panda_real c6 = PANDA_COS(q[5]);
-    const panda_real s6 = PANDA_SIN(q[5]);
-    const panda_real c7 = PANDA_COS(q[6]);
-    const panda_real s7 = PANDA_SIN(q[6]);
+    panda_real s1, c1;
+    panda_sine_cosine(q[0], &s1, &c1);
+    panda_real s2, c2;
+    panda_sine_cosine(q[1], &s2, &c2);
+    panda_real s3, c3;
+    panda_sine_cosine(q[2], &s3, &c3);
+    panda_real s4, c4;
+    panda_sine_cosine(q[3], &s4, &c4);
+    panda_real s5, c5;
+    panda_sine_cosine(q[4], &s5, &c5);
+    panda_real s6, c6;
+    panda_sine_cosine(q[5], &s6, &c6);
+    panda_real s7, c7;
+    panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = c1*u[1] - s1*u[0];
     const panda_real t2 = c1*u[0] + s1*u[1];
     const panda_real t3 = c2*t2 - s2*u[2];

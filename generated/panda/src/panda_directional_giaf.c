@@ -25,20 +25,20 @@ int panda_directional_giaf(
         return status;
     }
 
-    const panda_real c1 = PANDA_COS(q[0]);
-    const panda_real s1 = PANDA_SIN(q[0]);
-    const panda_real c2 = PANDA_COS(q[1]);
-    const panda_real s2 = PANDA_SIN(q[1]);
-    const panda_real c3 = PANDA_COS(q[2]);
-    const panda_real s3 = PANDA_SIN(q[2]);
-    const panda_real c4 = PANDA_COS(q[3]);
-    const panda_real s4 = PANDA_SIN(q[3]);
-    const panda_real c5 = PANDA_COS(q[4]);
-    const panda_real s5 = PANDA_SIN(q[4]);
-    const panda_real c6 = PANDA_COS(q[5]);
-    const panda_real s6 = PANDA_SIN(q[5]);
-    const panda_real c7 = PANDA_COS(q[6]);
-    const panda_real s7 = PANDA_SIN(q[6]);
+    panda_real s1, c1;
+    panda_sine_cosine(q[0], &s1, &c1);
+    panda_real s2, c2;
+    panda_sine_cosine(q[1], &s2, &c2);
+    panda_real s3, c3;
+    panda_sine_cosine(q[2], &s3, &c3);
+    panda_real s4, c4;
+    panda_sine_cosine(q[3], &s4, &c4);
+    panda_real s5, c5;
+    panda_sine_cosine(q[4], &s5, &c5);
+    panda_real s6, c6;
+    panda_sine_cosine(q[5], &s6, &c6);
+    panda_real s7, c7;
+    panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = c2*c1;
     const panda_real t2 = c3*t1 - s3*s1;
     const panda_real t3 = s2*c1;
@@ -54,10 +54,10 @@ int panda_directional_giaf(
     const panda_real t13 = t11 - PANDA_R(0.2104)*t12;
     const panda_real t14 = PANDA_R(0.0025736053713382)*c7 - PANDA_R(0.0020344399586618)*s7;
     const panda_real t15 = PANDA_R(0.176)*t14;
-    const panda_real t16 = PANDA_R(0.00668415196736096) + t15;
+    const panda_real t16 = PANDA_R(0.00668415196736097) + t15;
     const panda_real t17 = PANDA_R(0.00242094377852124)*s7 + PANDA_R(0.000782782563368494)*c7;
     const panda_real t18 = s7*t17;
-    const panda_real t19 = PANDA_R(0.00954377126949221) + (PANDA_R(0.00242094377852124) - t18);
+    const panda_real t19 = PANDA_R(0.00954377126949222) + (PANDA_R(0.00242094377852124) - t18);
     const panda_real t20 = PANDA_R(0.0012555365982729)*s7 - PANDA_R(0.000965305169919117)*c7;
     const panda_real t21 = PANDA_R(0.0147485703826753) - t20;
     const panda_real t22 = s6*(t19 - t16) + c6*(PANDA_R(2.0)*t21);
@@ -134,7 +134,7 @@ int panda_directional_giaf(
     const panda_real t93 = s1*t92;
     const panda_real t94 = s3*t74 - c3*t76;
     const panda_real t95 = s2*(PANDA_R(0.0102611018210083) + (c3*t71 + t70));
-    const panda_real t96 = t95 + c2*(PANDA_R(0.000768936102946405) - t94);
+    const panda_real t96 = t95 + c2*(PANDA_R(0.000768936102946406) - t94);
     const panda_real t97 = t96/t80;
     const panda_real t98 = t93 + t97*t13;
     const panda_real t99 = PANDA_R(1.11684236475334) + (t63 + t72);
@@ -216,7 +216,7 @@ int panda_directional_giaf(
     const panda_real t175 = t91 - t89;
     const panda_real t176 = t13 - t11;
     const panda_real t177 = t12*t175 - t90*t176;
-    const panda_real t178 = PANDA_R(0.00668415196736096) + PANDA_R(0.088)*t14;
+    const panda_real t178 = PANDA_R(0.00668415196736097) + PANDA_R(0.088)*t14;
     const panda_real t179 = c6*t20 + s6*t178 + PANDA_R(0.384)*t14;
     const panda_real t180 = c6*t28;
     const panda_real t181 = t40 - PANDA_R(0.384)*t180;
@@ -248,7 +248,7 @@ int panda_directional_giaf(
     const panda_real t207 = t198*t98 - t196*t13 + t200*t107 - t202*t121 + t204*t141 + t206*t171;
     const panda_real t208 = t177 - t207;
     const panda_real t209 = t196*t195 + t198*t197 + t200*t199 + t202*t201 + t204*t203 + t206*t205;
-    const panda_real t210 = PANDA_R(0.00668415196736096) - t209;
+    const panda_real t210 = PANDA_R(0.00668415196736097) - t209;
     const panda_real t211 = t208/t210;
     const panda_real t212 = t174 + t171*t173 + t208*t211;
     const panda_real t213 = c2*s1;
@@ -374,7 +374,7 @@ int panda_directional_giaf(
     const panda_real t333 = t322*t225 + t324*t281 + t326*t287 + t328*t295 + t330*t305 - t332*t318;
     const panda_real t334 = t261 - t333;
     const panda_real t335 = t322*t195 + t324*t323 + t326*t325 + t328*t327 + t330*t329 + t332*t331;
-    const panda_real t336 = PANDA_R(0.00668415196736096) + p->rotor_inertia[6] - t335;
+    const panda_real t336 = PANDA_R(0.00668415196736097) + p->rotor_inertia[6] - t335;
     const panda_real t337 = t334/t336;
     const panda_real t338 = t225*t279 + t281*t283 + t287*t289 + t295*t297 + t305*t308 + t318*t321;
     const panda_real t339 = t338 + t334*t337;

@@ -19,24 +19,24 @@ int panda_generalised_mass_matrix(
         return status;
     }
 
-    const panda_real c2 = PANDA_COS(q[1]);
-    const panda_real s2 = PANDA_SIN(q[1]);
-    const panda_real c3 = PANDA_COS(q[2]);
-    const panda_real s3 = PANDA_SIN(q[2]);
-    const panda_real c4 = PANDA_COS(q[3]);
-    const panda_real s4 = PANDA_SIN(q[3]);
-    const panda_real c5 = PANDA_COS(q[4]);
-    const panda_real s5 = PANDA_SIN(q[4]);
-    const panda_real c6 = PANDA_COS(q[5]);
-    const panda_real s6 = PANDA_SIN(q[5]);
-    const panda_real c7 = PANDA_COS(q[6]);
-    const panda_real s7 = PANDA_SIN(q[6]);
+    panda_real s2, c2;
+    panda_sine_cosine(q[1], &s2, &c2);
+    panda_real s3, c3;
+    panda_sine_cosine(q[2], &s3, &c3);
+    panda_real s4, c4;
+    panda_sine_cosine(q[3], &s4, &c4);
+    panda_real s5, c5;
+    panda_sine_cosine(q[4], &s5, &c5);
+    panda_real s6, c6;
+    panda_sine_cosine(q[5], &s6, &c6);
+    panda_real s7, c7;
+    panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = PANDA_R(0.0025736053713382)*c7 - PANDA_R(0.0020344399586618)*s7;
     const panda_real t2 = PANDA_R(0.176)*t1;
-    const panda_real t3 = PANDA_R(0.00668415196736096) + t2;
+    const panda_real t3 = PANDA_R(0.00668415196736097) + t2;
     const panda_real t4 = PANDA_R(0.00242094377852124)*s7 + PANDA_R(0.000782782563368494)*c7;
     const panda_real t5 = s7*t4;
-    const panda_real t6 = PANDA_R(0.00954377126949221) + (PANDA_R(0.00242094377852124) - t5);
+    const panda_real t6 = PANDA_R(0.00954377126949222) + (PANDA_R(0.00242094377852124) - t5);
     const panda_real t7 = PANDA_R(0.0012555365982729)*s7 - PANDA_R(0.000965305169919117)*c7;
     const panda_real t8 = PANDA_R(0.0147485703826753) - t7;
     const panda_real t9 = s6*(t6 - t3) + c6*(PANDA_R(2.0)*t8);
@@ -101,7 +101,7 @@ int panda_generalised_mass_matrix(
     const panda_real M0_1_1 = M0_8_1 + p->rotor_inertia[0];
     const panda_real M0_3_2 = s3*t56 - c3*t57;
     const panda_real t61 = s2*(PANDA_R(0.0102611018210083) + (c3*t53 + t52));
-    const panda_real M0_2_1 = -(t61 + c2*(PANDA_R(0.000768936102946405) - M0_3_2));
+    const panda_real M0_2_1 = -(t61 + c2*(PANDA_R(0.000768936102946406) - M0_3_2));
     const panda_real M0_9_2 = PANDA_R(1.11684236475334) + (t45 + t54);
     const panda_real M0_2_2 = M0_9_2 + p->rotor_inertia[1];
     const panda_real M0_3_1 = c2*M0_10_3 - s2*t58;
@@ -134,7 +134,7 @@ int panda_generalised_mass_matrix(
     const panda_real M0_6_2 = s3*t72 + c3*t76;
     const panda_real M0_6_4 = -t74;
     const panda_real M0_6_6 = M0_13_6 + p->rotor_inertia[5];
-    const panda_real t77 = PANDA_R(0.00668415196736096) + PANDA_R(0.088)*t1;
+    const panda_real t77 = PANDA_R(0.00668415196736097) + PANDA_R(0.088)*t1;
     const panda_real t78 = c6*t7 + s6*t77 + PANDA_R(0.384)*t1;
     const panda_real t79 = c6*t14;
     const panda_real t80 = t25 - PANDA_R(0.384)*t79;
@@ -153,7 +153,7 @@ int panda_generalised_mass_matrix(
     const panda_real M0_7_1 = c2*M0_7_3 - s2*(c3*t85 - s3*t89);
     const panda_real M0_7_2 = s3*t85 + c3*t89;
     const panda_real M0_7_6 = -t25;
-    const panda_real M0_7_7 = PANDA_R(0.00668415196736096) + p->rotor_inertia[6];
+    const panda_real M0_7_7 = PANDA_R(0.00668415196736097) + p->rotor_inertia[6];
     const panda_real results[34] = {
         M0_1_1, M0_2_1, M0_2_2, M0_3_1, M0_3_2, M0_3_3, M0_4_1, M0_4_2, M0_4_3, M0_4_4, M0_5_1,
         M0_5_2, M0_5_3, M0_5_4, M0_5_5, M0_6_1, M0_6_2, M0_6_3, M0_6_4, M0_6_5, M0_6_6, M0_7_1,
@@ -260,13 +260,13 @@ int panda_generalised_mass_matrix(
     M0[3][13] = M0[13][3] = M0_7_4;
     M0[4][13] = M0[13][4] = M0_7_5;
     M0[5][13] = M0[13][5] = M0_7_6;
-    M0[6][13] = M0[13][6] = PANDA_R(0.00668415196736096);
+    M0[6][13] = M0[13][6] = PANDA_R(0.00668415196736097);
     M0[7][13] = M0[13][7] = M0_7_1;
     M0[8][13] = M0[13][8] = M0_7_2;
     M0[9][13] = M0[13][9] = M0_7_3;
     M0[10][13] = M0[13][10] = M0_7_4;
     M0[11][13] = M0[13][11] = M0_7_5;
     M0[12][13] = M0[13][12] = M0_7_6;
-    M0[13][13] = PANDA_R(0.00668415196736096);
+    M0[13][13] = PANDA_R(0.00668415196736097);
     return PANDA_OK;
 }

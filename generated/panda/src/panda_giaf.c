@@ -16,18 +16,18 @@ int panda_giaf(const panda_real q[7], const panda_params *p, panda_giaf_t *out)
         return status;
     }
 
-    const panda_real c2 = PANDA_COS(q[1]);
-    const panda_real s2 = PANDA_SIN(q[1]);
-    const panda_real c3 = PANDA_COS(q[2]);
-    const panda_real s3 = PANDA_SIN(q[2]);
-    const panda_real c4 = PANDA_COS(q[3]);
-    const panda_real s4 = PANDA_SIN(q[3]);
-    const panda_real c5 = PANDA_COS(q[4]);
-    const panda_real s5 = PANDA_SIN(q[4]);
-    const panda_real c6 = PANDA_COS(q[5]);
-    const panda_real s6 = PANDA_SIN(q[5]);
-    const panda_real c7 = PANDA_COS(q[6]);
-    const panda_real s7 = PANDA_SIN(q[6]);
+    panda_real s2, c2;
+    panda_sine_cosine(q[1], &s2, &c2);
+    panda_real s3, c3;
+    panda_sine_cosine(q[2], &s3, &c3);
+    panda_real s4, c4;
+    panda_sine_cosine(q[3], &s4, &c4);
+    panda_real s5, c5;
+    panda_sine_cosine(q[4], &s5, &c5);
+    panda_real s6, c6;
+    panda_sine_cosine(q[5], &s6, &c6);
+    panda_real s7, c7;
+    panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = s3*s2;
     const panda_real t2 = PANDA_R(0.384) + PANDA_R(0.088)*s6;
     const panda_real t3 = t2 - PANDA_R(0.2104)*c6;
@@ -39,10 +39,10 @@ int panda_giaf(const panda_real q[7], const panda_params *p, panda_giaf_t *out)
     const panda_real t9 = t1*t4 - t5*t8;
     const panda_real t10 = PANDA_R(0.0025736053713382)*c7 - PANDA_R(0.0020344399586618)*s7;
     const panda_real t11 = PANDA_R(0.176)*t10;
-    const panda_real t12 = PANDA_R(0.00668415196736096) + t11;
+    const panda_real t12 = PANDA_R(0.00668415196736097) + t11;
     const panda_real t13 = PANDA_R(0.00242094377852124)*s7 + PANDA_R(0.000782782563368494)*c7;
     const panda_real t14 = s7*t13;
-    const panda_real t15 = PANDA_R(0.00954377126949221) + (PANDA_R(0.00242094377852124) - t14);
+    const panda_real t15 = PANDA_R(0.00954377126949222) + (PANDA_R(0.00242094377852124) - t14);
     const panda_real t16 = PANDA_R(0.0012555365982729)*s7 - PANDA_R(0.000965305169919117)*c7;
     const panda_real t17 = PANDA_R(0.0147485703826753) - t16;
     const panda_real t18 = s6*(t15 - t12) + c6*(PANDA_R(2.0)*t17);
@@ -110,7 +110,7 @@ int panda_giaf(const panda_real q[7], const panda_params *p, panda_giaf_t *out)
     const panda_real t80 = t79*t8 + c3*t4;
     const panda_real t81 = s3*t70 - c3*t72;
     const panda_real t82 = s2*(PANDA_R(0.0102611018210083) + (c3*t67 + t66));
-    const panda_real t83 = t82 + c2*(PANDA_R(0.000768936102946405) - t81);
+    const panda_real t83 = t82 + c2*(PANDA_R(0.000768936102946406) - t81);
     const panda_real t84 = t83/t77;
     const panda_real t85 = t80 + t84*t9;
     const panda_real t86 = PANDA_R(1.11684236475334) + (t59 + t68);
@@ -183,7 +183,7 @@ int panda_giaf(const panda_real q[7], const panda_params *p, panda_giaf_t *out)
     const panda_real t153 = t150/t152;
     const panda_real t154 = t3 - t2;
     const panda_real t155 = c6*t7 + t6*t154;
-    const panda_real t156 = PANDA_R(0.00668415196736096) + PANDA_R(0.088)*t10;
+    const panda_real t156 = PANDA_R(0.00668415196736097) + PANDA_R(0.088)*t10;
     const panda_real t157 = c6*t16 + s6*t156 + PANDA_R(0.384)*t10;
     const panda_real t158 = c6*t24;
     const panda_real t159 = t36 - PANDA_R(0.384)*t158;
@@ -215,7 +215,7 @@ int panda_giaf(const panda_real q[7], const panda_params *p, panda_giaf_t *out)
     const panda_real t185 = t176*t85 - t174*t9 - t178*t94 - t180*t105 - t182*t122 + t184*t150;
     const panda_real t186 = t155 - t185;
     const panda_real t187 = t174*t173 + t176*t175 + t178*t177 + t180*t179 + t182*t181 + t184*t183;
-    const panda_real t188 = PANDA_R(0.00668415196736096) + p->rotor_inertia[6] - t187;
+    const panda_real t188 = PANDA_R(0.00668415196736097) + p->rotor_inertia[6] - t187;
     const panda_real t189 = t186/t188;
     const panda_real t190 = t9*t78 + t85*t88 + t94*t96 + t105*t107 + t122*t125 + t150*t153;
     const panda_real t191 = t190 + t186*t189;
@@ -325,7 +325,7 @@ int panda_giaf(const panda_real q[7], const panda_params *p, panda_giaf_t *out)
     const panda_real t295 = t286*t245 - t284*t9 - t288*t251 - t290*t259 - t292*t269 + t294*t281;
     const panda_real t296 = t155 - t295;
     const panda_real t297 = t284*t173 + t286*t285 + t288*t287 + t290*t289 + t292*t291 + t294*t293;
-    const panda_real t298 = PANDA_R(0.00668415196736096) - t297;
+    const panda_real t298 = PANDA_R(0.00668415196736097) - t297;
     const panda_real t299 = t296/t298;
     const panda_real t300 = t9*t243 + t245*t247 + t251*t253 + t259*t261 + t269*t271 + t281*t283;
     const panda_real t301 = t300 + t296*t299;

@@ -33,6 +33,17 @@
 #define PANDA_FMAX(x, y) PANDA_F(fmax)(x, y)
 #define PANDA_POW(x, y) PANDA_F(pow)(x, y)
 
+/* Sine s and cosine c of a finite x. */
+#if defined(PANDA_USE_FLOAT)
+void panda_sine_cosine(float x, float *s, float *c);
+#else
+static inline void panda_sine_cosine(double x, double *s, double *c)
+{
+    *s = sin(x);
+    *c = cos(x);
+}
+#endif
+
 /* 1 if all numbers are finite; a comparison with a NaN is false. */
 static inline int panda_all_finite(const panda_real *x, int count)
 {

@@ -12,24 +12,24 @@ int panda_mass_matrix(const panda_real q[7], panda_real M[7][7])
         return PANDA_NOT_FINITE;
     }
 
-    const panda_real c2 = PANDA_COS(q[1]);
-    const panda_real s2 = PANDA_SIN(q[1]);
-    const panda_real c3 = PANDA_COS(q[2]);
-    const panda_real s3 = PANDA_SIN(q[2]);
-    const panda_real c4 = PANDA_COS(q[3]);
-    const panda_real s4 = PANDA_SIN(q[3]);
-    const panda_real c5 = PANDA_COS(q[4]);
-    const panda_real s5 = PANDA_SIN(q[4]);
-    const panda_real c6 = PANDA_COS(q[5]);
-    const panda_real s6 = PANDA_SIN(q[5]);
-    const panda_real c7 = PANDA_COS(q[6]);
-    const panda_real s7 = PANDA_SIN(q[6]);
+    panda_real s2, c2;
+    panda_sine_cosine(q[1], &s2, &c2);
+    panda_real s3, c3;
+    panda_sine_cosine(q[2], &s3, &c3);
+    panda_real s4, c4;
+    panda_sine_cosine(q[3], &s4, &c4);
+    panda_real s5, c5;
+    panda_sine_cosine(q[4], &s5, &c5);
+    panda_real s6, c6;
+    panda_sine_cosine(q[5], &s6, &c6);
+    panda_real s7, c7;
+    panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = PANDA_R(0.0025736053713382)*c7 - PANDA_R(0.0020344399586618)*s7;
     const panda_real t2 = PANDA_R(0.176)*t1;
-    const panda_real t3 = PANDA_R(0.00668415196736096) + t2;
+    const panda_real t3 = PANDA_R(0.00668415196736097) + t2;
     const panda_real t4 = PANDA_R(0.00242094377852124)*s7 + PANDA_R(0.000782782563368494)*c7;
     const panda_real t5 = s7*t4;
-    const panda_real t6 = PANDA_R(0.00954377126949221) + (PANDA_R(0.00242094377852124) - t5);
+    const panda_real t6 = PANDA_R(0.00954377126949222) + (PANDA_R(0.00242094377852124) - t5);
     const panda_real t7 = PANDA_R(0.0012555365982729)*s7 - PANDA_R(0.000965305169919117)*c7;
     const panda_real t8 = PANDA_R(0.0147485703826753) - t7;
     const panda_real t9 = s6*(t6 - t3) + c6*(PANDA_R(2.0)*t8);
@@ -93,7 +93,7 @@ int panda_mass_matrix(const panda_real q[7], panda_real M[7][7])
     const panda_real M_11 = PANDA_R(0.0373374484894065) + t60;
     const panda_real M_32 = s3*t56 - c3*t57;
     const panda_real t61 = s2*(PANDA_R(0.0102611018210083) + (c3*t53 + t52));
-    const panda_real M_21 = -(t61 + c2*(PANDA_R(0.000768936102946405) - M_32));
+    const panda_real M_21 = -(t61 + c2*(PANDA_R(0.000768936102946406) - M_32));
     const panda_real M_22 = PANDA_R(1.11684236475334) + (t45 + t54);
     const panda_real M_31 = c2*M_33 - s2*t58;
     const panda_real t62 = M_44 + (PANDA_R(0.316)*t42 + PANDA_R(0.0825)*t40);
@@ -121,7 +121,7 @@ int panda_mass_matrix(const panda_real q[7], panda_real M[7][7])
     const panda_real M_61 = c2*M_63 - s2*(c3*t72 - s3*t76);
     const panda_real M_62 = s3*t72 + c3*t76;
     const panda_real M_64 = -t74;
-    const panda_real t77 = PANDA_R(0.00668415196736096) + PANDA_R(0.088)*t1;
+    const panda_real t77 = PANDA_R(0.00668415196736097) + PANDA_R(0.088)*t1;
     const panda_real t78 = c6*t7 + s6*t77 + PANDA_R(0.384)*t1;
     const panda_real t79 = c6*t14;
     const panda_real t80 = t25 - PANDA_R(0.384)*t79;
@@ -167,6 +167,6 @@ int panda_mass_matrix(const panda_real q[7], panda_real M[7][7])
     M[3][6] = M[6][3] = M_74;
     M[4][6] = M[6][4] = M_75;
     M[5][6] = M[6][5] = M_76;
-    M[6][6] = PANDA_R(0.00668415196736096);
+    M[6][6] = PANDA_R(0.00668415196736097);
     return PANDA_OK;
 }

@@ -16,20 +16,20 @@ int panda_osim(const panda_real q[7], const panda_params *p, panda_osim_t *out)
         return status;
     }
 
-    const panda_real c1 = PANDA_COS(q[0]);
-    const panda_real s1 = PANDA_SIN(q[0]);
-    const panda_real c2 = PANDA_COS(q[1]);
-    const panda_real s2 = PANDA_SIN(q[1]);
-    const panda_real c3 = PANDA_COS(q[2]);
-    const panda_real s3 = PANDA_SIN(q[2]);
-    const panda_real c4 = PANDA_COS(q[3]);
-    const panda_real s4 = PANDA_SIN(q[3]);
-    const panda_real c5 = PANDA_COS(q[4]);
-    const panda_real s5 = PANDA_SIN(q[4]);
-    const panda_real c6 = PANDA_COS(q[5]);
-    const panda_real s6 = PANDA_SIN(q[5]);
-    const panda_real c7 = PANDA_COS(q[6]);
-    const panda_real s7 = PANDA_SIN(q[6]);
+    panda_real s1, c1;
+    panda_sine_cosine(q[0], &s1, &c1);
+    panda_real s2, c2;
+    panda_sine_cosine(q[1], &s2, &c2);
+    panda_real s3, c3;
+    panda_sine_cosine(q[2], &s3, &c3);
+    panda_real s4, c4;
+    panda_sine_cosine(q[3], &s4, &c4);
+    panda_real s5, c5;
+    panda_sine_cosine(q[4], &s5, &c5);
+    panda_real s6, c6;
+    panda_sine_cosine(q[5], &s6, &c6);
+    panda_real s7, c7;
+    panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = c2*c1;
     const panda_real t2 = c3*t1 - s3*s1;
     const panda_real t3 = s2*c1;
@@ -45,10 +45,10 @@ int panda_osim(const panda_real q[7], const panda_params *p, panda_osim_t *out)
     const panda_real t13 = t11 - PANDA_R(0.2104)*t12;
     const panda_real t14 = PANDA_R(0.0025736053713382)*c7 - PANDA_R(0.0020344399586618)*s7;
     const panda_real t15 = PANDA_R(0.176)*t14;
-    const panda_real t16 = PANDA_R(0.00668415196736096) + t15;
+    const panda_real t16 = PANDA_R(0.00668415196736097) + t15;
     const panda_real t17 = PANDA_R(0.00242094377852124)*s7 + PANDA_R(0.000782782563368494)*c7;
     const panda_real t18 = s7*t17;
-    const panda_real t19 = PANDA_R(0.00954377126949221) + (PANDA_R(0.00242094377852124) - t18);
+    const panda_real t19 = PANDA_R(0.00954377126949222) + (PANDA_R(0.00242094377852124) - t18);
     const panda_real t20 = PANDA_R(0.0012555365982729)*s7 - PANDA_R(0.000965305169919117)*c7;
     const panda_real t21 = PANDA_R(0.0147485703826753) - t20;
     const panda_real t22 = s6*(t19 - t16) + c6*(PANDA_R(2.0)*t21);
@@ -126,7 +126,7 @@ int panda_osim(const panda_real q[7], const panda_params *p, panda_osim_t *out)
     const panda_real t94 = s1*t93;
     const panda_real t95 = s3*t74 - c3*t76;
     const panda_real t96 = s2*(PANDA_R(0.0102611018210083) + (c3*t71 + t70));
-    const panda_real t97 = t96 + c2*(PANDA_R(0.000768936102946405) - t95);
+    const panda_real t97 = t96 + c2*(PANDA_R(0.000768936102946406) - t95);
     const panda_real t98 = t97/t81;
     const panda_real t99 = t94 + t98*t13;
     const panda_real t100 = PANDA_R(1.11684236475334) + (t63 + t72);
@@ -210,7 +210,7 @@ int panda_osim(const panda_real q[7], const panda_params *p, panda_osim_t *out)
     const panda_real t178 = t92 - t90;
     const panda_real t179 = t13 - t11;
     const panda_real t180 = t12*t178 - t91*t179;
-    const panda_real t181 = PANDA_R(0.00668415196736096) + PANDA_R(0.088)*t14;
+    const panda_real t181 = PANDA_R(0.00668415196736097) + PANDA_R(0.088)*t14;
     const panda_real t182 = c6*t20 + s6*t181 + PANDA_R(0.384)*t14;
     const panda_real t183 = c6*t28;
     const panda_real t184 = t40 - PANDA_R(0.384)*t183;
@@ -242,7 +242,7 @@ int panda_osim(const panda_real q[7], const panda_params *p, panda_osim_t *out)
     const panda_real t210 = t201*t99 - t199*t13 + t203*t108 - t205*t122 + t207*t142 + t209*t173;
     const panda_real t211 = t180 - t210;
     const panda_real t212 = t199*t198 + t201*t200 + t203*t202 + t205*t204 + t207*t206 + t209*t208;
-    const panda_real t213 = PANDA_R(0.00668415196736096) + p->rotor_inertia[6] - t212;
+    const panda_real t213 = PANDA_R(0.00668415196736097) + p->rotor_inertia[6] - t212;
     const panda_real t214 = t211/t213;
     const panda_real t215 = t177 + t173*t176 + t211*t214;
     const panda_real t216 = c2*s1;
@@ -367,7 +367,7 @@ int panda_osim(const panda_real q[7], const panda_params *p, panda_osim_t *out)
     const panda_real t329 = t320*t278 - t318*t13 + t322*t284 - t324*t292 + t326*t302 + t328*t314;
     const panda_real t330 = t180 - t329;
     const panda_real t331 = t318*t198 + t320*t319 + t322*t321 + t324*t323 + t326*t325 + t328*t327;
-    const panda_real t332 = PANDA_R(0.00668415196736096) - t331;
+    const panda_real t332 = PANDA_R(0.00668415196736097) - t331;
     const panda_real t333 = t330/t332;
     const panda_real t334 = t317 + t314*t316 + t330*t333;
     const panda_real t335 = t230 + t283*t229;

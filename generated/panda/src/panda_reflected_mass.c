@@ -17,20 +17,20 @@ int panda_reflected_mass(const panda_real q[7], const panda_real n[3], panda_rea
         return status;
     }
 
-    const panda_real c1 = PANDA_COS(q[0]);
-    const panda_real s1 = PANDA_SIN(q[0]);
-    const panda_real c2 = PANDA_COS(q[1]);
-    const panda_real s2 = PANDA_SIN(q[1]);
-    const panda_real c3 = PANDA_COS(q[2]);
-    const panda_real s3 = PANDA_SIN(q[2]);
-    const panda_real c4 = PANDA_COS(q[3]);
-    const panda_real s4 = PANDA_SIN(q[3]);
-    const panda_real c5 = PANDA_COS(q[4]);
-    const panda_real s5 = PANDA_SIN(q[4]);
-    const panda_real c6 = PANDA_COS(q[5]);
-    const panda_real s6 = PANDA_SIN(q[5]);
-    const panda_real c7 = PANDA_COS(q[6]);
-    const panda_real s7 = PANDA_SIN(q[6]);
+    panda_real s1, c1;
+    panda_sine_cosine(q[0], &s1, &c1);
+    panda_real s2, c2;
+    panda_sine_cosine(q[1], &s2, &c2);
+    panda_real s3, c3;
+    panda_sine_cosine(q[2], &s3, &c3);
+    panda_real s4, c4;
+    panda_sine_cosine(q[3], &s4, &c4);
+    panda_real s5, c5;
+    panda_sine_cosine(q[4], &s5, &c5);
+    panda_real s6, c6;
+    panda_sine_cosine(q[5], &s6, &c6);
+    panda_real s7, c7;
+    panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = c1*u[1] - s1*u[0];
     const panda_real t2 = c1*u[0] + s1*u[1];
     const panda_real t3 = c2*t2 - s2*u[2];
@@ -60,10 +60,10 @@ int panda_reflected_mass(const panda_real q[7], const panda_real n[3], panda_rea
     const panda_real t27 = s2*(c3*t23 - s3*t25) - c2*t26;
     const panda_real t28 = PANDA_R(0.0025736053713382)*c7 - PANDA_R(0.0020344399586618)*s7;
     const panda_real t29 = PANDA_R(0.176)*t28;
-    const panda_real t30 = PANDA_R(0.00668415196736096) + t29;
+    const panda_real t30 = PANDA_R(0.00668415196736097) + t29;
     const panda_real t31 = PANDA_R(0.00242094377852124)*s7 + PANDA_R(0.000782782563368494)*c7;
     const panda_real t32 = s7*t31;
-    const panda_real t33 = PANDA_R(0.00954377126949221) + (PANDA_R(0.00242094377852124) - t32);
+    const panda_real t33 = PANDA_R(0.00954377126949222) + (PANDA_R(0.00242094377852124) - t32);
     const panda_real t34 = PANDA_R(0.0012555365982729)*s7 - PANDA_R(0.000965305169919117)*c7;
     const panda_real t35 = PANDA_R(0.0147485703826753) - t34;
     const panda_real t36 = s6*(t33 - t30) + c6*(PANDA_R(2.0)*t35);
@@ -127,7 +127,7 @@ int panda_reflected_mass(const panda_real q[7], const panda_real n[3], panda_rea
     const panda_real t94 = PANDA_R(0.0373374484894065) + t93;
     const panda_real t95 = s3*t88 - c3*t90;
     const panda_real t96 = s2*(PANDA_R(0.0102611018210083) + (c3*t85 + t84));
-    const panda_real t97 = t96 + c2*(PANDA_R(0.000768936102946405) - t95);
+    const panda_real t97 = t96 + c2*(PANDA_R(0.000768936102946406) - t95);
     const panda_real t98 = t97/t94;
     const panda_real t99 = s3*t23 + c3*t25 - t98*t27;
     const panda_real t100 = PANDA_R(1.11684236475334) + (t77 + t86) - t98*t97;
@@ -185,7 +185,7 @@ int panda_reflected_mass(const panda_real q[7], const panda_real n[3], panda_rea
     const panda_real t152 = t151/t130;
     const panda_real t153 = t17 - (t144*t27 + t146*t99 + t148*t105 + t150*t114 + t152*t129);
     const panda_real t154 = t50 - (t144*t143 + t146*t145 + t148*t147 + t150*t149 + t152*t151);
-    const panda_real t155 = PANDA_R(0.00668415196736096) + PANDA_R(0.088)*t28;
+    const panda_real t155 = PANDA_R(0.00668415196736097) + PANDA_R(0.088)*t28;
     const panda_real t156 = c6*t34 + s6*t155 + PANDA_R(0.384)*t28;
     const panda_real t157 = c6*t42;
     const panda_real t158 = t54 - PANDA_R(0.384)*t157;
@@ -215,7 +215,7 @@ int panda_reflected_mass(const panda_real q[7], const panda_real n[3], panda_rea
     const panda_real t182 = t181/t154;
     const panda_real t183 = t172*t27 + t174*t99 + t176*t105 - t178*t114 + t180*t129 - t182*t153;
     const panda_real t184 = t172*t171 + t174*t173 + t176*t175 + t178*t177 + t180*t179 + t182*t181;
-    const panda_real t185 = t183*(t183/(PANDA_R(0.00668415196736096) - t184));
+    const panda_real t185 = t183*(t183/(PANDA_R(0.00668415196736097) - t184));
     const panda_real result = PANDA_R(1.0)/(t131 + t129*(t129/t130) + t153*(t153/t154) + t185);
     if (!(result > PANDA_R(0.0) && result < PANDA_R(17000.0))) {
         return PANDA_SINGULAR;

@@ -90,7 +90,7 @@ int rr_stiffness_matrix(const rr_real q[4], const rr_params *p, rr_real K0[4][4]
 /*
  * Row J_c = n'J over the generalised coordinates (MSM Eq. 4).
  * J_c: m/rad.
- * 24 operations, 8 sines and cosines. Error in float: 8e-06.
+ * 24 operations, 8 sines and cosines. Error in float: 6e-06.
  */
 int rr_contact_jacobian(const rr_real q[4], const rr_real n[3], rr_real J_c[4]);
 
@@ -98,7 +98,7 @@ int rr_contact_jacobian(const rr_real q[4], const rr_real n[3], rr_real J_c[4]);
  * Mass m_c that the contact point feels along n (MSM Eq. 36).
  * m_c: kg; mass felt at the contact point.
  * Of p it reads rotor_inertia.
- * 89 operations, 8 sines and cosines. Error in float: 1e-05.
+ * 89 operations, 8 sines and cosines. Error in float: 8e-06.
  */
 int rr_reflected_mass(const rr_real q[4], const rr_real n[3], const rr_params *p, rr_real *m_c);
 
@@ -125,7 +125,7 @@ typedef struct {
 
 /*
  * Chain of 3 masses that stands for the robot along n.
- * 250 operations, 8 sines and cosines. Error in float: 0.002.
+ * 250 operations, 8 sines and cosines. Error in float: 0.0003.
  */
 int rr_chain(const rr_real q[4], const rr_real n[3], const rr_params *p, rr_chain_t *out);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: 0BSD */
-/* Status texts and default parameters of rr. */
+/* Status texts, default parameters and sines of rr. */
 #include "rr_internal.h"
 
 const char *rr_status_text(int status)
@@ -37,3 +37,28 @@ int rr_default_params(rr_params *p)
     p->position_gain[3] = RR_R(0.0);
     return RR_OK;
 }
+
+#if defined(RR_USE_FLOAT)
+/* Takes the nearest quarter turns off the angle; then a polynomial each. Error < 1.2e-07. */
+void rr_sine_cosine(float x, float *s, float *c)
+{
+    if (!(fabsf(x) < 200.0f)) {
+        *s = sinf(x);
+        *c = cosf(x);
+        return;
+    }
+    const int nearest = (int)(x*0.636619772f + (x < 0.0f ? -0.5f : 0.5f));
+    const unsigned int quarter = (unsigned int)nearest;
+    const float k = (float)nearest;
+    const float about = (x - k*1.5703125f) - k*0.00048375129699707f;
+    const float r = about - k*7.54978995489188e-08f;
+    const float z = r*r;
+    const float sine = r + r*z*(-0.166666552f + z*(0.00833217334f + z*-0.000195166562f));
+    const float tail = 0.0416666456f + z*(-0.00138873619f + z*2.44377297e-05f);
+    const float cosine = 1.0f - 0.5f*z + z*z*tail;
+    const float first = (quarter & 1u) != 0u ? cosine : sine;
+    const float second = (quarter & 1u) != 0u ? sine : cosine;
+    *s = (quarter & 2u) != 0u ? -first : first;
+    *c = ((quarter + 1u) & 2u) != 0u ? -second : second;
+}
+#endif

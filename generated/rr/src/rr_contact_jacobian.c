@@ -17,14 +17,14 @@ int rr_contact_jacobian(const rr_real q[4], const rr_real n[3], rr_real J_c[4])
         return status;
     }
 
-    const rr_real c1 = RR_COS(q[0]);
-    const rr_real s1 = RR_SIN(q[0]);
-    const rr_real c2 = RR_COS(q[1]);
-    const rr_real s2 = RR_SIN(q[1]);
-    const rr_real c3 = RR_COS(q[2]);
-    const rr_real s3 = RR_SIN(q[2]);
-    const rr_real c4 = RR_COS(q[3]);
-    const rr_real s4 = RR_SIN(q[3]);
+    rr_real s1, c1;
+    rr_sine_cosine(q[0], &s1, &c1);
+    rr_real s2, c2;
+    rr_sine_cosine(q[1], &s2, &c2);
+    rr_real s3, c3;
+    rr_sine_cosine(q[2], &s3, &c3);
+    rr_real s4, c4;
+    rr_sine_cosine(q[3], &s4, &c4);
     const rr_real t1 = c1*u[1] - s1*u[0];
     const rr_real t2 = c1*u[0] + s1*u[1];
     const rr_real t3 = c2*t1 - s2*t2;

@@ -33,6 +33,17 @@
 #define RR_FMAX(x, y) RR_F(fmax)(x, y)
 #define RR_POW(x, y) RR_F(pow)(x, y)
 
+/* Sine s and cosine c of a finite x. */
+#if defined(RR_USE_FLOAT)
+void rr_sine_cosine(float x, float *s, float *c);
+#else
+static inline void rr_sine_cosine(double x, double *s, double *c)
+{
+    *s = sin(x);
+    *c = cos(x);
+}
+#endif
+
 /* 1 if all numbers are finite; a comparison with a NaN is false. */
 static inline int rr_all_finite(const rr_real *x, int count)
 {

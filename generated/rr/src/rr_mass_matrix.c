@@ -12,10 +12,10 @@ int rr_mass_matrix(const rr_real q[4], rr_real M[4][4])
         return RR_NOT_FINITE;
     }
 
-    const rr_real c3 = RR_COS(q[2]);
-    const rr_real s3 = RR_SIN(q[2]);
-    const rr_real c4 = RR_COS(q[3]);
-    const rr_real s4 = RR_SIN(q[3]);
+    rr_real s3, c3;
+    rr_sine_cosine(q[2], &s3, &c3);
+    rr_real s4, c4;
+    rr_sine_cosine(q[3], &s4, &c4);
     const rr_real t1 = c3*(RR_R(0.86372)*c4) - s3*(RR_R(0.86372)*s4);
     const rr_real M_21 = RR_R(2.5044576) + (RR_R(1.03951196) + t1);
     const rr_real M_11 = RR_R(4.71) + M_21;

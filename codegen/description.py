@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A C function by what it reads and computes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic import Matrix
+
+from .graph import Graph, graph_of
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A field of the parameter struct, with one entry a joint."""
+
+    name: str
+    unit: str
+    meaning: str
+    positive: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Output:
+    """What a C function writes.
+
+    Attributes:
+        name: of the struct's field or of the argument.
+        value: SX, a scalar, a column or a matrix.
+        unit: of its entries.
+        meaning: in words.
+        symmetric: whether a square matrix is.
+        share: whether it is a share of 1, whose error counts absolutely.
+    """
+
+    name: str
+    value: Matrix
+    unit: str
+    meaning: str
+    symmetric: bool = False
+    share: bool = False
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape as a C array; () for a scalar."""
+        rows, columns = self.value.shape
+        if rows == columns == 1:
+            return ()
+        return (rows * columns,) if 1 in (rows, columns) else (rows, columns)
+
+    @property
+    def places(self) -> list[tuple[int, ...]]:
+        """Return the C indices of the entries that are compared: one of two that are equal."""
+        return [
+            place for place in np.ndindex(self.shape) if not self.symmetric or place[0] >= place[1]
+        ]
+
+    def entry(self, place: tuple[int, ...]) -> Matrix:
+        """Return the expression at C indices."""
+        if len(place) == 2:
+            return self.value[place[0], place[1]]
+        return self.value[place[0] if place else 0]
+
+
+@dataclass(frozen=True, eq=False)
+class Guard:
+    """A number that must lie between two bounds, or else the configuration is singular."""
+
+    value: Matrix
+    low: float
+    high: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class CFunction:
+    """A function of the package.
+
+    Attributes:
+        name: without the package's prefix.
+        summary: one line for the header.
+        outputs: one is an argument of its own, several share a struct.
+        direction: whether it takes the direction of impact n.
+        parameters: names of the struct's fields it reads.
+        guards: what tells singular configurations apart.
+    """
+
+    name: str
+    summary: str
+    outputs: tuple[Output, ...]
+    symbols: tuple[Matrix, ...] = field(repr=False)
+    direction: bool = False
+    parameters: tuple[str, ...] = ()
+    guards: tuple[Guard, ...] = ()
+
+    @cached_property
+    def graph(self) -> Graph:
+        """The outputs' compared entries, then the guards."""
+        values = [ca.vertcat(*[o.entry(place) for place in o.places]) for o in self.outputs]
+        return graph_of(self.symbols, [*values, *(guard.value for guard in self.guards)])
+
+    @cached_property
+    def flops(self) -> int:
+        """Operations for the outputs; checks, sines and cosines do not count."""
+        return self.graph.only(range(len(self.outputs))).flops
+
+    @property
+    def sines_and_cosines(self) -> int:
+        """How many sines and cosines it takes."""
+        return self.graph.count(ca.OP_SIN, ca.OP_COS)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What springs, posture and both buy, and the speed that meets the limit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from softimpact.optimize import Gains
+from softimpact.studio.design_report import DesignReport
+
+from .style import (
+    BEFORE,
+    BLACK,
+    BOTH,
+    LIMIT,
+    SKY,
+    SMALL,
+    SPRINGS,
+    TEXT,
+    legend_below,
+    limit_in_words,
+    new_figure,
+    setting,
+    tidy,
+)
+
+
+def figure_of_gains(report: DesignReport, gains: Gains) -> Figure:
+    """Draw the peak force before and after each part of the design, and the speeds."""
+    figure = new_figure(10.0, 4.8)
+    forces, speeds = figure.subplots(1, 2, width_ratios=(2, 1.2))
+    limit = _draw_forces(forces, report, gains)
+    asked = _draw_speeds(speeds, report)
+    figure.suptitle(f"What the design buys\n{setting(report)}", fontsize=TEXT + 1)
+    legend_below(figure, [limit, asked], columns=2)
+    return figure
+
+
+def _draw_forces(axes: Any, report: DesignReport, gains: Gains) -> Any:
+    heights = [gains.before, gains.springs, gains.posture, gains.both]
+    names = ["before", "springs", "posture", "both"]
+    shares = [force / gains.before - 1 for force in heights]
+    labels = [f"{heights[0]:.1f} N"] + [
+        f"{force:.1f} N\n{_percent(share)}"
+        for force, share in zip(heights[1:], shares[1:], strict=True)
+    ]
+    _bars(axes, names, heights, [BEFORE, SPRINGS, SKY, BOTH], labels)
+    axes.axhline(report.limit, color="white", linewidth=4.5)  # sets it off from the bars
+    label = limit_in_words(report)
+    line = axes.axhline(report.limit, color=LIMIT, linewidth=1.8, linestyle="--", label=label)
+    axes.set_ylim(0.0, 1.18 * max(*heights, report.limit))
+    axes.set_ylabel("peak force of the first contact [N]", fontsize=TEXT)
+    axes.set_title("Force at the study's speed", fontsize=TEXT)
+    return line
+
+
+def _percent(share: float) -> str:
+    rounded = round(100 * share, 1)
+    return f"{rounded:+.1f} %".replace("-", "−") if rounded else "no change"
+
+
+def _draw_speeds(axes: Any, report: DesignReport) -> Any:
+    heights = [report.speed_before, report.speed_after]
+    speed = report.study.speed
+    _bars(axes, ["before", "both"], heights, [BEFORE, BOTH], [f"{v:.3f} m/s" for v in heights])
+    label = f"speed of the study {speed:g} m/s"
+    line = axes.axhline(speed, color=BLACK, linewidth=1.5, linestyle=":", label=label)
+    axes.set_ylim(0.0, 1.18 * max(*heights, speed))
+    axes.set_ylabel("speed at first touch [m/s]", fontsize=TEXT)
+    axes.set_title("Speed that meets the limit", fontsize=TEXT)
+    return line
+
+
+def _bars(
+    axes: Any,
+    names: Sequence[str],
+    heights: Sequence[float],
+    colours: Sequence[str],
+    labels: Sequence[str],
+) -> None:
+    bars = axes.bar(names, heights, width=0.6, color=colours, edgecolor=BLACK, linewidth=0.6)
+    backing = {"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none"}
+    axes.bar_label(bars, labels, padding=4, fontsize=SMALL, bbox=backing)
+    tidy(axes, grid="y")
+    axes.tick_params(axis="x", labelsize=TEXT)

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Compiled NLPs: the cache, and everything that may be wrong with a compiler."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from studies import study_of
+
+from softimpact.optimize.compiled import c_compiler, cache_folder, compiled_nlp
+from softimpact.optimize.nlp import build_nlp, parameters
+from softimpact.optimize.solve import nlp_solver, quiet
+
+COMPILER = c_compiler()
+needs_compiler = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
+
+
+def parabola(weight: float = 1.0) -> ca.Function:
+    """A small problem whose answer is (weight, 1 − weight)."""
+    x = ca.MX.sym("x", 2)
+    problem = {"x": x, "f": ca.sumsqr(x - ca.DM([weight, 0])), "g": ca.sum1(x)}
+    return ca.nlpsol("design", "ipopt", problem, quiet({}))
+
+
+def program(folder: Path, name: str, text: str) -> str:
+    """Write an executable shell script."""
+    path = folder / name
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "a" / "cache"
+    monkeypatch.setenv("SOFTIMPACT_CACHE", str(folder))
+    return folder
+
+
+def test_where_the_cache_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("SOFTIMPACT_CACHE", str(tmp_path / "mine"))
+    assert cache_folder() == tmp_path / "mine"
+    monkeypatch.delenv("SOFTIMPACT_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    assert cache_folder() == tmp_path / "xdg/softimpact"
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert cache_folder() == tmp_path / ".cache/softimpact"
+
+
+def test_which_compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    assert c_compiler() is None
+    clang = program(tmp_path, "clang", "exit 0")
+    assert c_compiler() == clang
+    cc = program(tmp_path, "cc", "exit 0")
+    assert c_compiler() == cc
+    monkeypatch.setenv("CC", clang)
+    assert c_compiler() == clang
+    monkeypatch.setenv("CC", str(tmp_path / "none"))
+    assert c_compiler() is None
+
+
+def test_no_compiler_no_library(cache: Path) -> None:
+    assert compiled_nlp(parabola(), None) is None
+    assert not cache.exists()
+
+
+@needs_compiler
+def test_a_library_solves_the_same_problem(cache: Path) -> None:
+    before = Path.cwd()
+    library = compiled_nlp(parabola(0.25), COMPILER)
+    assert library is not None
+    assert library.parent == cache
+    assert Path.cwd() == before
+    solver = ca.nlpsol("design", "ipopt", str(library), quiet({}))
+    solution = solver(x0=[3, 4], lbg=1, ubg=1)
+    np.testing.assert_allclose(np.array(solution["x"]).ravel(), [0.625, 0.375], atol=1e-7)
+    assert [path.name for path in cache.iterdir()] == [library.name]
+
+
+@needs_compiler
+def test_the_second_time_nothing_is_compiled(cache: Path) -> None:
+    library = compiled_nlp(parabola(), COMPILER)
+    assert library is not None
+    os.utime(library, (1, 1))
+    assert compiled_nlp(parabola(), COMPILER) == library
+    assert library.stat().st_mtime == 1
+    other = compiled_nlp(parabola(2.0), COMPILER)
+    assert other not in (None, library)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "exit 1",
+        "exit 0",  # and no output
+        'for last; do :; done; while [ "$1" != -o ]; do shift; done; echo no > "$2"',
+        "kill -SEGV $$",
+    ],
+)
+def test_a_broken_compiler_does_not_matter(cache: Path, tmp_path: Path, text: str) -> None:
+    assert compiled_nlp(parabola(), program(tmp_path, "cc", text)) is None
+    assert list(cache.iterdir()) == []
+
+
+def test_a_compiler_that_cannot_run_does_not_matter(cache: Path, tmp_path: Path) -> None:
+    assert compiled_nlp(parabola(), str(tmp_path / "none")) is None
+    assert list(cache.iterdir()) == []
+
+
+@needs_compiler
+def test_a_cache_that_cannot_be_written_does_not_matter(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("not a folder")
+    for place in ("file", "file/cache"):
+        monkeypatch.setenv("SOFTIMPACT_CACHE", str(tmp_path / place))
+        assert compiled_nlp(parabola(), COMPILER) is None
+
+
+TWIN = """
+import sys, casadi as ca
+from softimpact.optimize.compiled import c_compiler, compiled_nlp
+x = ca.MX.sym("x", 2)
+solver = ca.nlpsol("design", "ipopt", {"x": x, "f": ca.sumsqr(x - 1), "g": ca.sum1(x)})
+print("ready", flush=True)
+sys.stdin.readline()
+print(compiled_nlp(solver, c_compiler()))
+"""
+
+
+@needs_compiler
+def test_two_processes_may_compile_the_same_at_once(cache: Path) -> None:
+    command = [sys.executable, "-c", TWIN]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes) as a, subprocess.Popen(command, **pipes) as b:
+        for twin in (a, b):
+            assert twin.stdout is not None
+            assert twin.stdout.readline() == "ready\n"
+        for twin in (a, b):
+            assert twin.stdin is not None
+            twin.stdin.write("\n")
+            twin.stdin.flush()
+        libraries = {twin.communicate()[0].strip() for twin in (a, b)}
+    assert (a.returncode, b.returncode) == (0, 0)
+    assert libraries == {str(path) for path in cache.iterdir()}
+    (library,) = libraries
+    solution = ca.nlpsol("design", "ipopt", library, quiet({}))(x0=[3, 4], lbg=0, ubg=9)
+    np.testing.assert_allclose(np.array(solution["x"]).ravel(), 1.0, atol=1e-7)
+
+
+@needs_compiler
+def test_machine_code_computes_what_the_virtual_machine_does(tmp_path: Path) -> None:
+    study = study_of(tmp_path, {"impact": {"region": "head"}}, ("q9",))
+    nlp = build_nlp(study.model, 3, 150)
+    library = compiled_nlp(nlp_solver(nlp.oracle), COMPILER)
+    assert library is not None
+    p = parameters(study, np.zeros(3), np.eye(3), 2e-4, 700.0)
+    random = np.random.default_rng(0)
+    compiled = ca.external("nlp_g", str(library))
+    derivative = ca.external("nlp_jac_g", str(library))
+    exact = nlp_solver(nlp.oracle).get_function("nlp_jac_g")
+    for _ in range(3):
+        q = study.task_pose.q + random.uniform(-0.3, 0.3, 7)
+        x = np.concatenate([q, random.uniform(3, 5, 7), [1.0]])
+        expected = np.array(nlp.oracle(x, p)[1])
+        np.testing.assert_allclose(np.array(compiled(x, p)), expected, atol=1e-9)
+        J, expected = (np.array(f(x, p)[1]) for f in (derivative, exact))
+        np.testing.assert_allclose(J, expected, atol=1e-9 * abs(expected).max())

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""docs/study-files.md holds what the code does: its example loads and every field is explained."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from pydantic import BaseModel
+
+from softimpact.optimize import load_study
+from softimpact.optimize.study import StudyFile
+from softimpact.symbolic.regions import REGIONS
+
+PAGE = Path(__file__).parents[2] / "docs/study-files.md"
+TEXT = PAGE.read_text(encoding="utf-8")
+
+
+def fields(model: type[BaseModel]) -> list[tuple[str, bool]]:
+    """Names of a section's fields and whether they are required."""
+    return [(name, field.is_required()) for name, field in model.model_fields.items()]
+
+
+def section(title: str) -> str:
+    """Text under a heading."""
+    found = re.search(rf"^## `?{re.escape(title)}`?\n(.*?)(?=^## |\Z)", TEXT, re.M | re.S)
+    assert found, title
+    return found[1]
+
+
+def rows(text: str) -> dict[str, str]:
+    """Rows of a section's table by the field they explain."""
+    return {row[1]: row[0] for row in re.finditer(r"^\| `(\w+)` \|.*$", text, re.M)}
+
+
+def test_examples_load(tmp_path: Path) -> None:
+    examples = re.findall(r"^```toml\n(.*?)^```", TEXT, re.M | re.S)
+    assert examples
+    for example in examples:
+        path = tmp_path / "example.toml"
+        path.write_text(example, encoding="utf-8")
+        study = load_study(path)
+        assert study.title
+        assert len(study.poses) > 1
+
+
+SECTIONS = {
+    "[robot]": "robot",
+    "[impact]": "impact",
+    "[stiffness]": "stiffness",
+    "[accuracy]": "accuracy",
+    "[task]": "task",
+}
+
+
+@pytest.mark.parametrize("title", [*SECTIONS, "[[poses]]"])
+def test_every_field_is_explained(title: str) -> None:
+    annotation = {**StudyFile.model_fields}
+    if title == "[[poses]]":
+        (model,) = annotation["poses"].annotation.__args__
+    else:
+        model = annotation[SECTIONS[title]].annotation
+    explained = rows(section(title))
+    assert list(explained) == [name for name, _ in fields(model)]
+    for name, required in fields(model):
+        assert ("| required |" in explained[name]) == required, name
+
+
+def test_no_section_is_left_out() -> None:
+    named = {*SECTIONS.values(), "poses", *rows(section("Top level"))}
+    assert named == set(StudyFile.model_fields)
+
+
+def test_regions_are_all_named() -> None:
+    assert re.findall(r"`(\w+)`", rows(section("[impact]"))["region"])[1:] == list(REGIONS)

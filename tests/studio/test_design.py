@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact design`` on a study of two poses."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from command_line import refusal, run, run_json
+
+STUDY = Path(__file__).resolve().parents[2] / "robots" / "studies" / "panda_24_poses.toml"
+
+
+def small_study(folder, *replacements):
+    """Write the Panda's study with two of its poses and some lines replaced."""
+    head, *poses = STUDY.read_text(encoding="utf-8").split("[[poses]]")
+    kept = [pose for pose in poses if '"q9"' in pose or '"q22"' in pose]
+    text = "[[poses]]".join([head, *kept])
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / "small.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """Return the folder of a design and the object it printed."""
+    folder = tmp_path_factory.mktemp("design")
+    out = folder / "out"
+    outcome = run("design", small_study(folder), "--out", out, "--json")
+    assert outcome.code == 0, outcome.err
+    return out, json.loads(outcome.out)
+
+
+def test_results_are_complete(results):
+    out, printed = results
+    written = json.loads((out / "results.json").read_text(encoding="utf-8"))
+    assert {**written, "out": str(out)} == printed
+    assert {"winner", "check", "gains", "safe_speed", "poses", "versions", "study"} <= set(written)
+    assert (out / "c" / "include" / "panda.h").is_file()
+    assert {path.name for path in out.glob("*.png")} >= {
+        "force_over_time.png",
+        "ranking.png",
+        "postures.png",
+    }
+
+
+def test_poses_are_ranked_and_solved(results):
+    _, record = results
+    best = [min(pose["table"]["force"], pose["free"]["force"]) for pose in record["poses"]]
+    assert best == sorted(best)
+    assert record["winner"]["force"] == best[0]
+    assert all(pose[mode]["solved"] for pose in record["poses"] for mode in ("table", "free"))
+    turned = {pose["name"]: pose["turned"] for pose in record["poses"]}
+    assert turned["q9"] == 0
+    assert turned["q22"] == pytest.approx(0.31, abs=0.01)
+
+
+def test_winner_is_confirmed_by_simulation(results):
+    _, record = results
+    check = record["check"]
+    assert check["linearised"] == pytest.approx(check["nlp"], rel=1e-3)
+    assert check["full"] == pytest.approx(check["nlp"], rel=2e-2)
+    assert record["winner"]["meets_limit"] == (record["winner"]["force"] <= record["limit"])
+
+
+def test_speed_that_meets_the_limit_meets_it(results):
+    _, record = results
+    winner = record["winner"]
+    found = run_json(
+        *("simulate", "panda", "--q", winner["q"], "--direction", "[0, 1, 0]"),
+        *("--joint-stiffness", winner["springs"], "--region", "chest"),
+        *("--speed", record["safe_speed"]["after"]),
+    )
+    assert found["peak_force"] == pytest.approx(record["limit"], rel=1e-5)
+
+
+def test_gains_add_up(results):
+    _, record = results
+    gains = record["gains"]
+    assert gains["both"] <= min(gains["springs"], gains["posture"]) * (1 + 1e-3)
+    assert gains["before"] >= gains["springs"]
+
+
+def test_tables_say_what_was_found(tmp_path):
+    outcome = run("design", small_study(tmp_path), "--out", tmp_path / "out", "--mode", "table")
+    assert outcome.code == 0
+    for piece in ("Winner:", "limit", "m/s", "SUNDIALS", "kN·m/rad", "turned about the base"):
+        assert piece in outcome.out
+    assert "2 of 2 solved" in outcome.out
+
+
+def test_region_and_speed_override_the_study(tmp_path):
+    record = run_json_without_progress(
+        *("design", small_study(tmp_path), "--out", tmp_path / "out", "--mode", "table"),
+        *("--region", "head", "--speed", 0.5),
+    )
+    assert (record["region"], record["limit"], record["limit_kind"]) == (
+        "head",
+        130,
+        "quasi_static",
+    )
+    assert record["study"]["speed"] == 0.5
+    assert record["gains"] is None
+
+
+def run_json_without_progress(*arguments):
+    """Run a command whose progress goes to stderr."""
+    outcome = run(*arguments, "--json")
+    assert outcome.code == 0, outcome.err
+    return json.loads(outcome.out)
+
+
+def test_infeasible_study_fails_with_ipopts_status_and_keeps_older_results(tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "results.json").write_text('{"generator": "softimpact design"}')
+    study = small_study(tmp_path, ("max_deflection = 0.001", "max_deflection = 1e-6"))
+    outcome = run("design", study, "--out", out)
+    assert outcome.code == 3
+    assert "Traceback" not in outcome.err
+    message = outcome.err.splitlines()[-1]
+    assert re.search(r"none of 4 starts was solved \(Ipopt: \w+", message)
+    assert (out / "results.json").read_text() == '{"generator": "softimpact design"}'
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
+
+
+def test_bad_input_is_refused_before_the_search(tmp_path):
+    study = small_study(tmp_path)
+    foreign = tmp_path / "foreign"
+    foreign.mkdir()
+    (foreign / "thesis.tex").write_text("irreplaceable")
+    assert "foreign" in refusal("design", study, "--out", foreign)
+    assert (foreign / "thesis.tex").read_text() == "irreplaceable"
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    assert "file" in refusal("design", study, "--out", blocked / "out")
+    assert "table, free, both" in refusal("design", study, "--mode", "quick")
+    assert "chest" in refusal("design", study, "--region", "elbow")
+    assert "speed" in refusal("design", study, "--speed", "-1")
+    assert "no such" in refusal("design", tmp_path / "absent.toml")
+    bounds = small_study(tmp_path, ("lower = 300.0", "lower = 200000.0"))
+    assert "stiffness" in refusal("design", bounds)
+    outside = small_study(tmp_path, ("0.63, -0.10, -2.36", "1.90, -0.10, -2.36"))
+    assert "outside its limits" in refusal("design", outside)
