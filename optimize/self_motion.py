@@ -13,6 +13,7 @@ from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.rigid import Array
 
 from .nlp import tip_pose_error
+from .poses import tip_pose
 
 CORRECTIONS = 20
 """Newton steps back to the task at most."""
@@ -77,8 +78,6 @@ Hold = Callable[[Array], tuple[Array, Array]]
 
 def _holder(model: ImpactModel, q: Array) -> Hold:
     """Return the pose error and its Jacobian, of the tip against where q has it."""
-    from .poses import tip_pose
-
     position, rotation = tip_pose(model, q)
     x = ca.SX.sym("q", model.robot.n)
     error = tip_pose_error(model, x, ca.DM(position), ca.DM(rotation))

@@ -16,6 +16,7 @@ import typer
 from .analyze_command import analyze
 from .design_command import design
 from .factors_command import factors
+from .factors_study_command import factors_study
 from .generate_command import generate
 from .robots_command import robots
 from .select_command import select
@@ -29,6 +30,7 @@ app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 app.command()(robots)
 app.command()(analyze)
 app.command()(factors)
+app.command()(factors_study)
 app.command()(simulate)
 app.command()(select)
 app.command()(design)

@@ -16,7 +16,7 @@ from softimpact.symbolic.rigid import Array
 
 from .functions import FactorFunctions
 
-STIFFNESSES = tuple(float(k) for k in np.logspace(2, 6, 13)) + (np.inf,)
+STIFFNESSES = (*(float(k) for k in np.logspace(2, 6, 13)), np.inf)
 """Joint stiffness of the sweep, all joints alike [N·m/rad]; the last is rigid."""
 
 REGIONS = ("chest", "head")

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -39,28 +39,35 @@ class HeavyBase:
     giaf: Array
 
 
-def on_heavy_base(model: ImpactModel, poses: Sequence[Array], rotors: Array) -> HeavyBase:
-    """Return the factors of a fixed robot put on floating bases.
+def on_heavy_base(
+    model: ImpactModel, poses: Sequence[Array], rotor_sets: Mapping[str, Array]
+) -> dict[str, HeavyBase]:
+    """Return the factors of a fixed robot put on floating bases, by set of rotors.
 
     Args:
         model: robot and tip.
         poses: link angles, each of length n.
-        rotors: reflected inertias, length n [kg m²].
+        rotor_sets: reflected inertias by name, length n each [kg m²].
     """
-    found = np.array([_on_base(model, poses, rotors, mass) for mass in MASSES])
-    return HeavyBase(1 - found[:, :, 0].T, found[:, :, 1].T)
+    functions = [_on_base(model, mass) for mass in MASSES]
+
+    def of(rotors: Array) -> HeavyBase:
+        found = np.array(
+            [[np.array(on_base(q, rotors)).ravel() for on_base in functions] for q in poses]
+        )
+        return HeavyBase(1 - found[:, :, 0], found[:, :, 1])
+
+    return {name: of(rotors) for name, rotors in rotor_sets.items()}
 
 
-def _on_base(
-    model: ImpactModel, poses: Sequence[Array], rotors: Array, mass: float
-) -> list[tuple[float, float]]:
+def _on_base(model: ImpactModel, mass: float) -> ca.Function:
+    """Return (ξ, ζ) of link angles and rotors, on a base of a given mass."""
     base = Inertia.from_center_of_mass(mass, np.zeros(3), 0.4 * mass * RADIUS**2 * np.eye(3))
     robot = floating_robot(model.robot, base)
-    given = drives(model.robot, rotor_inertia=rotors)
-    floating = floating_model(robot, model.tip, drives_=given)
-    q = ca.SX.sym("q", model.robot.n)
+    q, rotors = ca.SX.sym("q", model.robot.n), ca.SX.sym("B", model.robot.n)
+    geared = replace(drives(model.robot), rotors=rotors)
+    floating = floating_model(robot, model.tip, drives_=geared)
     x = robot.coordinates(q)
     xi = impact_mitigation(floating.rotor_mass_matrix(x), floating.jacobian(x)).factor
     zeta = giaf(floating.free_mobility(x), floating.mobility(x))
-    function = ca.Function("on_base", [q], ca.cse([xi, zeta]))
-    return [(float(xi), float(zeta)) for xi, zeta in (function(q) for q in poses)]
+    return ca.Function("on_base", [q, rotors], [ca.cse(ca.vertcat(xi, zeta))])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from softimpact.optimize import Study
 from softimpact.optimize.best_posture import BestPosture, best_posture, posture_of_least_force
@@ -39,7 +40,7 @@ class AlongSelfMotion:
     giaf: Array
     mass_free: Array
     mass_rigid: Array
-    simulated: Array
+    simulated: NDArray[np.int_]
     peak_force: Array
     most_giaf: BestPosture
     least_mass: BestPosture

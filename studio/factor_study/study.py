@@ -12,7 +12,7 @@ import numpy as np
 from softimpact.optimize import Candidate, Study, candidates
 from softimpact.optimize.self_motion import SelfMotion, self_motion
 from softimpact.symbolic import InvalidValue
-from softimpact.symbolic.rigid import Array, Placement
+from softimpact.symbolic.rigid import Array
 
 from .agreement import Agreement, agreements
 from .functions import factor_functions
@@ -35,7 +35,6 @@ class FactorStudy:
         rotor_sets: reflected rotor inertias by name [kg m²].
         tips: contact frames.
         factors: of every case.
-        skeletons: where joints and tip are in every pose, P×(n+2)×3 [m].
         curve: the self-motion that all poses lie on.
         along: figures along it, for every case.
         heavy_base: on floating bases, study's tip, by rotor set.
@@ -48,7 +47,6 @@ class FactorStudy:
     rotor_sets: Mapping[str, Array]
     tips: tuple[str, ...]
     factors: Mapping[Case, PoseFactors]
-    skeletons: Array
     curve: SelfMotion
     along: Mapping[Case, AlongSelfMotion]
     heavy_base: Mapping[str, HeavyBase]
@@ -92,7 +90,7 @@ def factor_study(
             factors[tip, name] = pose_factors(functions, list(poses), rotors, study.direction)
             along[tip, name] = along_self_motion(study, model, functions, curve)
     say("floating bases")
-    heavy = {name: on_heavy_base(study.model, list(poses), b) for name, b in sets.items()}
+    heavy = on_heavy_base(study.model, list(poses), sets)
     say("forces over joint stiffness")
     return FactorStudy(
         study=study,
@@ -101,7 +99,6 @@ def factor_study(
         rotor_sets=sets,
         tips=frames,
         factors=factors,
-        skeletons=np.array([_skeleton(study, q) for q in poses]),
         curve=curve,
         along=along,
         heavy_base=heavy,
@@ -111,14 +108,3 @@ def factor_study(
 
 def _held_task(study: Study, found: Sequence[Candidate]) -> Array:
     return next(c.q for c in found if c.pose.name == study.task_pose.name)
-
-
-def _skeleton(study: Study, q: Array) -> Array:
-    """Return the base, the bodies' origins on the way to the tip, and the tip [m]."""
-    robot, tip = study.robot, study.robot.frame(study.model.tip)
-    path = list(reversed(robot.ancestors(tip.joint)))
-    pose, points = Placement.identity(), [np.zeros(3)]
-    for i in path:
-        pose = pose @ robot.joints[i].pose(float(q[i]))
-        points.append(pose.translation)
-    return np.array([*points, (pose @ tip.placement).translation])
