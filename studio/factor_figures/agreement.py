@@ -51,7 +51,7 @@ def figure_of_agreement(study: FactorStudy) -> Figure:
     poses = len(study.names)
     figure.suptitle(
         f"{study.study.robot.name}: do factors put {poses} poses in the order of their peak "
-        "forces? (1: exactly; 0: no better than chance)"
+        "forces? (1: exactly, 0: no better than chance, −1: in reverse)"
     )
     legend_below(figure, lines, columns=3)
     return figure
@@ -97,15 +97,7 @@ def figure_of_agreement_scatter(study: FactorStudy) -> Figure:
                 color=series(list(WORDS).index(name))["color"],
             )
             correlation = agreement.correlation[name][k]
-            axes.annotate(
-                f"ρ = {correlation:+.2f}",
-                (0.97, 0.95),
-                xycoords="axes fraction",
-                ha="right",
-                va="top",
-                fontsize=SMALL,
-                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8},
-            )
+            axes.set_title(f"ρ = {correlation:+.2f}", fontsize=SMALL)
             tidy(axes)
         words = "rigid" if np.isinf(stiffness) else f"k_s = {stiffness:g} N·m/rad"
         row[0].set_ylabel(f"peak force [N]\n{words}", fontsize=TEXT)

@@ -64,7 +64,7 @@ def figure_of_sweeps(study: FactorStudy, tip: str) -> Figure:
 
 
 def _sweep(axes: Any, values: Array, scales: tuple[float, ...], unit: str) -> list[Any]:
-    axes.set_ylim(0, 1)
+    axes.set_yscale("log")
     return [
         axes.plot(values[:, k], label=f"{scale:g} {unit}", **{**series(k), "markersize": 3})[0]
         for k, scale in enumerate(scales)

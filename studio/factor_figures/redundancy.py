@@ -25,7 +25,7 @@ from .looks import set_looks
 
 def figure_of_redundancy(study: FactorStudy, tip: str) -> Figure:
     """Draw GIAF, reflected masses and peak force over the self-motion's length."""
-    figure = new_figure(10.0, 10.5)
+    figure = new_figure(10.0, 9.5)
     top, middle, bottom = figure.subplots(3, 1, sharex=True)
     arc = study.curve.arc
     for name in study.rotor_sets:
@@ -45,7 +45,7 @@ def figure_of_redundancy(study: FactorStudy, tip: str) -> Figure:
     for axes in (top, middle, bottom):
         tidy(axes)
     top.set_ylim(bottom=0)
-    middle.set_yscale("log")
+    middle.set_ylim(bottom=0)
     _name_poses(top, study)
     for axes in (middle, bottom):
         _name_poses(axes, study, words=False)

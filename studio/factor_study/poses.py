@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,9 @@ RATIOS = (0.5, 0.75, 1.0, 1.5, 2.0)
 ANGLES = np.linspace(0.0, 2 * np.pi, 361)
 """Directions of the polar plot [rad]."""
 
+PLANES = ("base_xy", "base_xz", "tip_xy", "tip_xz")
+"""Planes of the polar plot, by the frame in whose axes they lie; angles count from its x."""
+
 
 @dataclass(frozen=True, eq=False)
 class PoseFactors:
@@ -34,8 +37,7 @@ class PoseFactors:
         directional_giaf: along the study's direction, length P.
         mass_free: the elastic robot's m_c along it, length P [kg].
         mass_rigid: the rigid robot's, length P [kg].
-        polar_xy: ζ_x of the first pose around z, at ``ANGLES`` from x (Fig. 4).
-        polar_xz: the same in the xz plane.
+        polar: ζ_x of the first pose at ``ANGLES`` in each of ``PLANES`` (Fig. 4).
     """
 
     giaf: Array
@@ -45,12 +47,15 @@ class PoseFactors:
     directional_giaf: Array
     mass_free: Array
     mass_rigid: Array
-    polar_xy: Array
-    polar_xz: Array
+    polar: Mapping[str, Array]
 
 
 def pose_factors(
-    functions: FactorFunctions, poses: Sequence[Array], rotors: Array, direction: Array
+    functions: FactorFunctions,
+    poses: Sequence[Array],
+    rotors: Array,
+    direction: Array,
+    tip_axes: Array,
 ) -> PoseFactors:
     """Return the factors of poses.
 
@@ -59,6 +64,7 @@ def pose_factors(
         poses: link angles, each of length n.
         rotors: reflected inertias, length n [kg m²].
         direction: of the impact, length 3.
+        tip_axes: rotation of the tip in the first pose, 3×3.
     """
     found = [functions.at(q, rotors, direction) for q in poses]
 
@@ -67,12 +73,10 @@ def pose_factors(
             [[functions.at(q, f * rotors, direction).giaf for f in factors] for q in poses]
         )
 
-    cosine, sine, none = np.cos(ANGLES), np.sin(ANGLES), 0 * ANGLES
-
-    def polar(*directions: Array) -> Array:
-        return np.array(
-            [functions.at(poses[0], rotors, x).directional_giaf for x in np.transpose(directions)]
-        )
+    def polar(axes: Array, plane: str) -> Array:
+        first, second = (axes[:, "xyz".index(axis)] for axis in plane)
+        directions = np.outer(np.cos(ANGLES), first) + np.outer(np.sin(ANGLES), second)
+        return np.array([functions.at(poses[0], rotors, x).directional_giaf for x in directions])
 
     return PoseFactors(
         giaf=np.array([f.giaf for f in found]),
@@ -82,6 +86,8 @@ def pose_factors(
         directional_giaf=np.array([f.directional_giaf for f in found]),
         mass_free=np.array([f.mass_free for f in found]),
         mass_rigid=np.array([f.mass_rigid for f in found]),
-        polar_xy=polar(cosine, sine, none),
-        polar_xz=polar(cosine, none, sine),
+        polar={
+            name: polar(tip_axes if name.startswith("tip") else np.eye(3), name[-2:])
+            for name in PLANES
+        },
     )

@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.optimize import Candidate, Study, candidates
+from softimpact.optimize.poses import tip_pose
 from softimpact.optimize.self_motion import SelfMotion, self_motion
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.rigid import Array
@@ -87,7 +88,8 @@ def factor_study(
             say(f"{tip}, rotors {name}: poses and self-motion")
             geared = replace(study.model.drives, rotors=ca.DM(rotors))
             model = replace(study.model, tip=tip, drives=geared)
-            factors[tip, name] = pose_factors(functions, list(poses), rotors, study.direction)
+            axes = tip_pose(model, poses[0])[1]
+            factors[tip, name] = pose_factors(functions, list(poses), rotors, study.direction, axes)
             along[tip, name] = along_self_motion(study, model, functions, curve)
     say("floating bases")
     heavy = on_heavy_base(study.model, list(poses), sets)
