@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, InvalidValue
+from softimpact.symbolic import ImpactModel, InvalidValue, JointKind
 from softimpact.symbolic.rigid import Array
 
 from .nlp import tip_pose_error
@@ -20,6 +20,9 @@ CORRECTIONS = 20
 
 HELD = 1e-10
 """Pose error [m, rad] up to which the task counts as held."""
+
+CLOSE = 0.6
+"""Share of a step within which the curve counts as back where it began."""
 
 SHORTEST = 1e-3
 """Share of a step below which a joint limit counts as reached."""
@@ -35,7 +38,7 @@ class SelfMotion:
     Attributes:
         q: postures along the curve, K×n [rad].
         arc: length of the curve up to each, zero at the posture it was traced from, K [rad].
-        closed: whether it comes back to where it began, else it ends at joint limits.
+        closed: whether it comes back to where it began, up to full turns; else it ends at limits.
     """
 
     q: Array
@@ -60,13 +63,20 @@ def self_motion(model: ImpactModel, q: Array, step: float = 0.02) -> SelfMotion:
     """
     hold = _holder(model, q)
     lower, upper = model.robot.limits
+    hinges = np.array([joint.kind is JointKind.HINGE for joint in model.robot.joints])
 
     def allowed(x: Array) -> bool:
         return bool(((lower <= x) & (x <= upper)).all())
 
+    def returned(x: Array) -> bool:  # full turns apart counts
+        apart = np.where(hinges, np.remainder(x - q + np.pi, 2 * np.pi) - np.pi, x - q)
+        return bool(np.linalg.norm(apart) < CLOSE * step)
+
+    within = Bounds(allowed, returned)
+
     tangent = _tangent(hold(q)[1])
-    forward, closed = _trace(hold, allowed, q, tangent, step)
-    backward = [] if closed else _trace(hold, allowed, q, -tangent, step)[0]
+    forward, closed = _trace(hold, within, q, tangent, step)
+    backward = [] if closed else _trace(hold, within, q, -tangent, step)[0]
     points = np.array([*reversed(backward), q, *forward])
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     arc = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -74,6 +84,19 @@ def self_motion(model: ImpactModel, q: Array, step: float = 0.02) -> SelfMotion:
 
 
 Hold = Callable[[Array], tuple[Array, Array]]
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Where a curve ends.
+
+    Attributes:
+        allowed: whether a posture keeps the joint limits.
+        returned: whether it is the one that the curve began with.
+    """
+
+    allowed: Callable[[Array], bool]
+    returned: Callable[[Array], bool]
 
 
 def _holder(model: ImpactModel, q: Array) -> Hold:
@@ -100,18 +123,18 @@ def _tangent(jacobian: Array) -> Array:
 
 
 def _trace(
-    hold: Hold, allowed: Callable[[Array], bool], start: Array, tangent: Array, step: float
+    hold: Hold, bounds: Bounds, start: Array, tangent: Array, step: float
 ) -> tuple[list[Array], bool]:
     """Postures after ``start`` along a tangent, and whether they lead back to it."""
     points: list[Array] = []
     q, stride = start, step
     while len(points) < LONGEST and stride > SHORTEST * step:
         found = _corrected(hold, q + stride * tangent)
-        if found is None or not allowed(found):
+        if found is None or not bounds.allowed(found):
             stride /= 2
             continue
         points.append(found)
-        if len(points) > 2 and np.linalg.norm(found - start) < step / 2:
+        if len(points) > 2 and bounds.returned(found):
             return points, True
         following = _tangent(hold(found)[1])
         tangent = following if following @ tangent > 0 else -following

@@ -8,9 +8,9 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from softimpact.symbolic import analyse, drives, impact_model, load_robot
-
 from command_line import run
+
+from softimpact.symbolic import analyse, drives, impact_model, load_robot
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
