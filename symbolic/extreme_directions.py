@@ -70,7 +70,9 @@ def _pencil(free: ContactMobility, real: ContactMobility) -> tuple[Matrix, Eigen
 
 
 def _unit_lower(factors: Factorisation, i: int, k: int) -> Matrix:
-    return 1.0 if i == k else factors.l[i][k]
+    if i <= k:
+        return float(i == k)
+    return factors.l[i][k]
 
 
 def _extremes(eigen: Eigen, vectors: Matrix) -> Extremes:
