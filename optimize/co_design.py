@@ -114,7 +114,8 @@ def design(
     Args:
         study: the problem.
         modes: ``table`` seeks k_s for each pose, ``free`` k_s and the posture from each pose.
-        executor: where the searches run; default a process for each core.
+        executor: where the searches run; default a process for each core. Threads of one process
+            take turns, because Ipopt's linear solver is not thread-safe.
         on_outcome: called with every outcome as it arrives.
 
     Raises:
@@ -122,7 +123,7 @@ def design(
     """
     poses = candidates(study)
     timing = impact_timing(study, [pose.q for pose in poses])
-    nlp = build_nlp(study.model, len(study.forces), timing.steps)
+    nlp = build_nlp(study.model, len(study.forces), timing.nodes, timing.substeps)
     before = [peak_force(study, nlp, timing, pose.q, study.nominal) for pose in poses]
     unit = float(np.median(before))
     position, rotation = tip_pose(study.model, study.task_pose.q)
@@ -168,16 +169,15 @@ def _program(nlp: DesignNlp) -> Program:
 
 
 def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None) -> Start:
-    """Begin with equal joints that are just accurate, and with the stiffest joints.
+    """Begin with equal joints that are just accurate, and with a second stiffness.
 
-    Where the posture is free, the best stiffness of the posture as given is a third start, so that
-    freedom does not end in a worse local optimum; if all fail, the task's own posture is the last
-    resort.
+    That is the stiffest of all where the posture is given, and where it is free the best found for
+    it as given, so that freedom does not end in a worse local optimum. If all fail, the task's own
+    posture is the last resort.
     """
     equal = np.full(study.robot.n, float(np.median(study.nominal)))
-    springs = [accurate_springs(study, candidate.q, equal), study.upper]
-    if table is not None:
-        springs.append(table.springs)
+    springs = [accurate_springs(study, candidate.q, equal)]
+    springs.append(study.upper if table is None else table.springs)
     points = tuple((candidate.q, each) for each in springs)
     fallbacks = ((study.task_pose.q, study.upper),) if mode == "free" else ()
     return Start(candidate.pose.name, mode, points, fallbacks)
@@ -186,8 +186,14 @@ def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None
 def _workers(starts: int) -> Executor:
     """Return a process for each core."""
     context = multiprocessing.get_context("spawn")
-    workers = min(starts, len(os.sched_getaffinity(0)))
-    return ProcessPoolExecutor(workers, context, initializer=_keep_to_one_core)
+    return ProcessPoolExecutor(min(starts, _cores()), context, initializer=_keep_to_one_core)
+
+
+def _cores() -> int:
+    """Number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _keep_to_one_core() -> None:

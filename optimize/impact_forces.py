@@ -71,7 +71,7 @@ class ImpactDynamics:
 
 
 def contact_forces(
-    dynamics: ImpactDynamics, contact: ContactParameters, step: Matrix, steps: int, nodes: int
+    dynamics: ImpactDynamics, contact: ContactParameters, step: Matrix, nodes: int, substeps: int
 ) -> Matrix:
     """Return the force at ``nodes`` equidistant times, length ``nodes`` [N], differentiable.
 
@@ -81,8 +81,8 @@ def contact_forces(
         dynamics: of the robot, MX expressions.
         contact: the contact, MX expressions or numbers.
         step: time step [s]; 2/step must exceed the robot's largest angular frequency.
-        steps: number of steps, a multiple of ``nodes``.
         nodes: number of forces returned.
+        substeps: time steps from node to node.
     """
     parameters = ca.vertcat(
         ca.vec(dynamics.mobility),
@@ -94,7 +94,7 @@ def contact_forces(
         _nonzeros(dynamics.gains),
     )
     n = dynamics.springs.shape[0]
-    node = _leapfrog(n, steps // nodes, dynamics.gains.sparsity())
+    node = _leapfrog(n, substeps, dynamics.gains.sparsity())
     start = ca.vertcat(
         ca.MX.zeros(2 * n), dynamics.velocity, dynamics.velocity, ca.MX.zeros(len(Body._fields))
     )

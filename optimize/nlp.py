@@ -28,11 +28,6 @@ from softimpact.symbolic.rigid import Array
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .study import Study
 
-NODES = 150
-"""Times at which the force bounds the peak from below; between them it exceeds that bound by some
-0.01 %."""
-
-
 HALF_TURN = 1e-12
 """Keeps the pose error of a tip turned by exactly half a turn finite, and from vanishing there."""
 
@@ -45,13 +40,13 @@ class DesignNlp:
         oracle: (x, p) -> (f, g) of the NLP, x = [q, s, F].
         n: number of joints.
         wrenches: number of forces on the tip that bound the deflection.
-        steps: time steps of the impact.
+        nodes: times at which the force bounds F from below.
     """
 
     oracle: ca.Function
     n: int
     wrenches: int
-    steps: int
+    nodes: int
 
     @property
     def pose(self) -> slice:
@@ -61,7 +56,7 @@ class DesignNlp:
     @property
     def forces(self) -> slice:
         """Entries of g that are f_k − F."""
-        return slice(6 + self.wrenches, 6 + self.wrenches + NODES)
+        return slice(6 + self.wrenches, 6 + self.wrenches + self.nodes)
 
 
 def tip_pose_error(model: ImpactModel, q: Matrix, position: Matrix, rotation: Matrix) -> Matrix:
@@ -85,13 +80,14 @@ def deflections(model: ImpactModel, q: Matrix, springs: Matrix, forces: Matrix) 
     return ca.mtimes(J, ca.mtimes(J.T, forces) / ca.repmat(springs, 1, forces.shape[1]))
 
 
-def build_nlp(model: ImpactModel, wrenches: int, steps: int) -> DesignNlp:
+def build_nlp(model: ImpactModel, wrenches: int, nodes: int, substeps: int) -> DesignNlp:
     """Return the NLP of a robot whose joints are all elastic.
 
     Args:
         model: robot, tip and drives; its springs are replaced by the variables.
         wrenches: number of forces that bound the deflection.
-        steps: time steps of the impact, a multiple of NODES.
+        nodes: times at which the force bounds F from below.
+        substeps: time steps of the impact from node to node.
     """
     n = model.robot.n
     x = ca.MX.sym("x", 2 * n + 1)
@@ -108,12 +104,12 @@ def build_nlp(model: ImpactModel, wrenches: int, steps: int) -> DesignNlp:
     rotors = model.drives.rotors
     dynamics = ImpactDynamics(mobility, jacobian, springs, rotors, gains, velocity * speed)
     pressed = contact_forces(
-        dynamics, ContactParameters(*ca.vertsplit(contact)), step, steps, NODES
+        dynamics, ContactParameters(*ca.vertsplit(contact)), step, nodes, substeps
     )
     slack = ca.sum1(given_way**2).T / bound**2 - 1
     g = ca.vertcat(error, slack, pressed / unit - peak)
     oracle = ca.Function("oracle", [x, p], [peak, g], ["x", "p"], ["f", "g"], FEW_DIRECTIONS)
-    return DesignNlp(oracle, n, wrenches, steps)
+    return DesignNlp(oracle, n, wrenches, nodes)
 
 
 def _posture(model: ImpactModel, wrenches: int) -> ca.Function:

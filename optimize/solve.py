@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from dataclasses import dataclass
 from functools import lru_cache
@@ -116,6 +117,10 @@ FEASIBLE = 1e-5
 """Violation up to which a point counts as feasible."""
 
 
+IN_TURN = threading.Lock()
+"""Held by a search: MUMPS, Ipopt's linear solver, is not thread-safe."""
+
+
 @lru_cache(maxsize=4)
 def _solver(oracle: str, library: Path | None) -> tuple[ca.Function, ca.Function]:
     functions = ca.Function.deserialize(oracle)
@@ -139,6 +144,11 @@ def solve(program: Program, start: Start, bounds: Bounds, parameters: Array) -> 
         The solved point of least force; if there is none, the feasible point of least force, else
         the one of least violation.
     """
+    with IN_TURN:
+        return _search(program, start, bounds, parameters)
+
+
+def _search(program: Program, start: Start, bounds: Bounds, parameters: Array) -> Outcome:
     begin = time.perf_counter()
     found = [_attempt(program, start, *point, bounds, parameters) for point in start.points]
     for point in start.fallbacks:

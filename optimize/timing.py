@@ -11,7 +11,7 @@ import numpy as np
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.rigid import Array
 
-from .nlp import NODES, build_nlp, parameters
+from .nlp import build_nlp, parameters
 from .study import Study
 
 SHORTEST, LONGEST = 0.02, 0.64
@@ -24,6 +24,10 @@ LARGEST_PHASE = 1.5
 """Largest angular frequency times the step; the leapfrog is stable below 2."""
 
 
+NODES = 150
+"""Fewest times at which the force bounds the peak from below (there are less than twice as many);
+between them the force exceeds that bound by some 0.01 %."""
+
 MOST_STEPS = 4500
 """Time steps beyond which compiling and running the impact would take minutes."""
 
@@ -34,11 +38,18 @@ class Timing:
 
     Attributes:
         duration: simulated [s].
-        steps: number of steps, a multiple of the force nodes.
+        nodes: times, evenly spaced up to the duration, at which the force is taken.
+        substeps: time steps from node to node.
     """
 
     duration: float
-    steps: int
+    nodes: int
+    substeps: int
+
+    @property
+    def steps(self) -> int:
+        """Number of time steps."""
+        return self.nodes * self.substeps
 
     @property
     def step(self) -> float:
@@ -58,24 +69,25 @@ def impact_timing(study: Study, postures: Sequence[Array]) -> Timing:
     frequency = max(_largest_frequency(study, q) for q in postures)
     duration = SHORTEST
     while True:
-        timing = Timing(duration, _steps(duration, frequency))
+        timing = _timing(duration, frequency)
         longest = _longest_contact(study, postures, timing)
         if longest is not None or duration >= LONGEST:
             break
         duration *= 2.0
     wanted = min(LONGEST, MARGIN * (duration if longest is None else float(longest)))
-    return Timing(wanted, _steps(wanted, frequency))
+    return _timing(wanted, frequency)
 
 
-def _steps(duration: float, frequency: float) -> int:
-    steps = NODES * max(1, int(np.ceil(duration * frequency / LARGEST_PHASE / NODES)))
+def _timing(duration: float, frequency: float) -> Timing:
+    steps = max(NODES, int(np.ceil(duration * frequency / LARGEST_PHASE)))
     if steps > MOST_STEPS:
         raise InvalidValue(
             "stiffness.upper",
             f"joints that stiff vibrate so fast that {duration:g} s of impact need {steps} time "
             f"steps, more than {MOST_STEPS}; lower the bound or raise robot.rotor_inertia",
         )
-    return steps
+    substeps = steps // NODES
+    return Timing(duration, int(np.ceil(steps / substeps)), substeps)
 
 
 def _largest_frequency(study: Study, q: Array) -> float:
@@ -86,7 +98,7 @@ def _largest_frequency(study: Study, q: Array) -> float:
 
 def _longest_contact(study: Study, postures: Sequence[Array], timing: Timing) -> float | None:
     """Longest first contact [s]; None if one of them outlasts the duration."""
-    nlp = build_nlp(study.model, len(study.forces), timing.steps)
+    nlp = build_nlp(study.model, len(study.forces), timing.nodes, timing.substeps)
     numbers = parameters(study, np.zeros(3), np.eye(3), timing.step, 1.0)
     longest = 0.0
     for q in postures:
@@ -95,5 +107,5 @@ def _longest_contact(study: Study, postures: Sequence[Array], timing: Timing) ->
             force = np.array(nlp.oracle(x, numbers)[1])[nlp.forces].ravel()
             if force[-1] > 0.0:
                 return None
-            longest = max(longest, timing.duration * np.count_nonzero(force) / NODES)
+            longest = max(longest, timing.duration * np.count_nonzero(force) / timing.nodes)
     return longest

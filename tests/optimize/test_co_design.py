@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import multiprocessing
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -121,7 +121,7 @@ def test_two_springs_are_no_worse_than_a_grid(
 ) -> None:
     study = one_or_two_free(tmp_path, region, joints, ("q9",))
     result = design(study, ["table"], InProcess())
-    nlp = build_nlp(study.model, 3, result.timing.steps)
+    nlp = build_nlp(study.model, 3, result.timing.nodes, result.timing.substeps)
     q = result.poses[0].candidate.q
     best = np.inf
     axis = np.geomspace(300.0, 1e5, 15)
@@ -163,7 +163,7 @@ def test_posture_and_spring_are_no_worse_than_a_sweep(
 ) -> None:
     study = one_or_two_free(tmp_path, region, (joint,), POSES)
     result = design(study, ["free"], InProcess())
-    nlp = build_nlp(study.model, 3, result.timing.steps)
+    nlp = build_nlp(study.model, 3, result.timing.nodes, result.timing.substeps)
     best, postures = np.inf, 0
     for q in self_motion(study):
         postures += 1
@@ -306,7 +306,15 @@ def test_the_whole_study(region: str) -> None:
     for pose in result.poses:
         assert pose.table is not None
         assert pose.free is not None
-        assert best <= pose.table.force <= pose.force_before * (1 + 1e-3) or not np.all(
-            pose.deflection_before <= study.max_deflection
-        )
+        assert pose.free.force <= pose.table.force * (1 + 1e-3)
+        if pose.deflection_before <= study.max_deflection:
+            assert pose.table.force <= pose.force_before * (1 + 1e-5)
     assert result.winner.force == best
+
+
+def test_threads_take_turns(tmp_path: Path) -> None:
+    """The linear solver is not thread-safe: two searches at once used to crash the interpreter."""
+    study = study_of(tmp_path, None, ("q9", "q22"))
+    with ThreadPoolExecutor(2) as executor:
+        result = design(study, ("table",), executor)
+    assert all(outcome.solved for outcome in result.outcomes("table"))

@@ -160,7 +160,7 @@ def test_two_processes_may_compile_the_same_at_once(cache: Path) -> None:
 @needs_compiler
 def test_machine_code_computes_what_the_virtual_machine_does(tmp_path: Path) -> None:
     study = study_of(tmp_path, {"impact": {"region": "head"}}, ("q9",))
-    nlp = build_nlp(study.model, 3, 150)
+    nlp = build_nlp(study.model, 3, 150, 1)
     library = compiled_nlp(nlp_solver(nlp.oracle), COMPILER)
     assert library is not None
     p = parameters(study, np.zeros(3), np.eye(3), 2e-4, 700.0)
