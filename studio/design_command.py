@@ -128,4 +128,6 @@ def _print(report: DesignReport, folder: Path) -> None:
     from .design_tables import print_design
 
     print_design(report)
-    Console(soft_wrap=True).print(f"\nResults, figures and the C package: {folder}")
+    Console(soft_wrap=True, highlight=False).print(
+        f"\nResults, figures and the C package: {folder}"
+    )

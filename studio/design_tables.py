@@ -6,9 +6,27 @@ from __future__ import annotations
 from rich.console import Console
 
 from softimpact.optimize import Outcome
+from softimpact.symbolic.rigid import Array
 
 from .design_report import DesignReport, RankedPose, gains_in_words, limit_kind
 from .output import Cell, print_table
+
+COLUMNS = (
+    "rank",
+    "pose",
+    "m_c\nkg",
+    "k_r\nkN/m",
+    "m_a\nkg",
+    "GIAF",
+    "before\nN",
+    "table\nN",
+    "free\nN",
+    "Ipopt",
+    "best k_s\nkN·m/rad",
+)
+
+WIDE = 118
+"""Columns of a terminal that hold the whole ranking of a seven-joint arm."""
 
 
 def print_design(report: DesignReport) -> None:
@@ -16,25 +34,17 @@ def print_design(report: DesignReport) -> None:
     study = report.study
     contact = study.contact
     held = "clamped" if contact.clamped else "free to give way"
+    console = Console(soft_wrap=True, highlight=False)
+    fits = not console.is_terminal or console.width >= WIDE
+    columns = COLUMNS if fits else COLUMNS[:-1]
     print_table(
         f"{study.title}\n{contact.region.title}, {held}, {study.speed:g} m/s; peak of the first "
         f"contact. Nominal: k_s = {_stiffness(study.nominal)} kN·m/rad",
-        (
-            "rank",
-            "pose",
-            "m_c\nkg",
-            "k_r\nkN/m",
-            "m_a\nkg",
-            "GIAF",
-            "before\nN",
-            "table\nN",
-            "free\nN",
-            "best k_s\nkN·m/rad",
-            "Ipopt",
-        ),
-        [_row(pose) for pose in report.poses],
+        columns,
+        [_row(pose)[: len(columns)] for pose in report.poses],
     )
-    console = Console(soft_wrap=True, highlight=False)
+    if not fits:
+        console.print(f"joint stiffness: in results.json, or here from {WIDE} columns on")
     for line in [*_notes(report), *_winner(report)]:
         console.print(line)
 
@@ -51,8 +61,8 @@ def _row(pose: RankedPose) -> list[Cell]:
         _force(result.force_before),
         _force(None if result.table is None else result.table.force),
         _force(None if result.free is None else result.free.force),
-        _stiffness(pose.best.springs),
         _status(result.table, result.free),
+        _stiffness(pose.best.springs),
     ]
 
 
@@ -65,8 +75,10 @@ def _force(force: float | None) -> str | None:
     return None if force is None else f"{force:.1f}"
 
 
-def _stiffness(springs: object) -> str:
-    return " ".join(f"{1e-3 * float(k):.3g}" for k in springs)  # type: ignore[attr-defined]
+def _stiffness(springs: Array) -> str:
+    """Joint stiffnesses in kN·m/rad, once if they are all the same."""
+    shown = [f"{1e-3 * float(k):.3g}" for k in springs]
+    return shown[0] if len(set(shown)) == 1 else " ".join(shown)
 
 
 def _status(*outcomes: Outcome | None) -> str:

@@ -12,11 +12,15 @@ from typing import Any
 
 import numpy as np
 import typer
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 Cell = float | str | None
+
+ENDLESS = 1000
+"""Columns of a line that nobody folds."""
 
 
 def plain(value: Any) -> Any:
@@ -41,12 +45,22 @@ def print_json(result: Mapping[str, Any]) -> None:
 
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     """Print a table to stdout; numbers to four digits, what does not apply as a dash."""
-    table = Table(title=Text(title), title_justify="left")
+    table = Table(
+        title=Text(title),
+        title_justify="left",
+        box=SIMPLE_HEAD,
+        pad_edge=False,
+        padding=(0, 1, 0, 0),
+    )
     for column in columns:
         table.add_column(Text(column), overflow="fold")
     for row in rows:
         table.add_row(*(Text(shown(cell)) for cell in row))
-    Console().print(table)
+    console = Console()
+    if not console.is_terminal:  # a file or a pipe has no width to fold into
+        unbounded = console.options.update(max_width=ENDLESS)
+        console.width = max(console.width, console.measure(table, options=unbounded).maximum)
+    console.print(table)
 
 
 def shown(cell: Cell) -> str:

@@ -107,7 +107,7 @@ def ur5(tmp_path_factory: pytest.TempPathFactory) -> DesignReport:
     )
     winner = poses[0].table
     assert winner is not None
-    timing = Timing(duration=0.04, steps=400)
+    timing = Timing(duration=0.04, nodes=200, substeps=2)
     return design_report(Design(study, poses, winner, None, timing, compiled=False))
 
 
