@@ -72,7 +72,7 @@ def posture_of_least_force(study: Study, start: Array) -> BestPosture:
     """
     free = replace(study, max_deflection=1e3)
     timing = impact_timing(free, [start])
-    nlp = build_nlp(free.model, len(free.forces), timing.steps)
+    nlp = build_nlp(free.model, len(free.forces), timing.nodes, timing.substeps)
     position, rotation = tip_pose(free.model, start)
     unit = 100.0
     numbers = parameters(free, position, rotation, timing.step, unit)

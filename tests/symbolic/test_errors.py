@@ -10,6 +10,7 @@ from softimpact.symbolic.errors import (
     FrameNotFound,
     InvalidInertia,
     InvalidValue,
+    MasslessBase,
     ModelFileError,
     NoEquilibrium,
     SingularDirection,
@@ -28,6 +29,7 @@ EXAMPLES = [
     (InvalidValue("speed", "must be positive"), {"field": "speed", "reason": "must be positive"}),
     (WrongLength("q", 3, 2, ["j1", "j2"]), {"field": "q", "found": 3, "expected": 2}),
     (SingularDirection([0, 0, 1], "choose another"), {"direction": (0.0, 0.0, 1.0)}),
+    (MasslessBase("arm"), {"robot": "arm"}),
     (NoEquilibrium(0.5, "raise the stiffness"), {"residual": 0.5}),
 ]
 
