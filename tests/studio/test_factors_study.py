@@ -12,8 +12,9 @@ import pytest
 from command_line import refusal, run
 from hypothesis import given
 from hypothesis import strategies as st
+from oracles import example_urdf
 from scipy.stats import spearmanr
-from studies import PANDA_24
+from studies import PANDA_24, changed, written
 
 from softimpact.studio.factor_study.agreement import STIFFNESSES, spearman
 
@@ -105,6 +106,15 @@ def test_foreign_folder_is_left_alone(small: Path, tmp_path: Path) -> None:
     message = refusal("factors-study", small, "--out", tmp_path)
     assert "no folder of earlier results" in message
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_robot_without_redundancy(tmp_path: Path) -> None:
+    fields = {"model": str(example_urdf("ur5_robot.urdf")), "tip": "tool0", "rotor_inertia": 0.1}
+    study = changed({"robot": fields, "task": {"pose_of": "only"}})
+    study["poses"] = [{"name": "only", "q": [0.3, -1.2, 1.4, -0.5, 1.0, 0.2]}]
+    message = refusal("factors-study", written(tmp_path, study), "--out", tmp_path / "out")
+    assert "no self-motion" in message
+    assert not (tmp_path / "out").exists()
 
 
 def test_missing_study(tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ def column(vector):
     return np.array(vector).ravel()
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(arms(), vectors(5), seeds)
 def test_no_direction_lies_beyond_the_extremes(robot, q, seed):
     free, real = mobilities(impact_model(robot), q[: robot.n])
@@ -46,7 +46,7 @@ def test_no_direction_lies_beyond_the_extremes(robot, q, seed):
     assert np.linalg.norm(column(found.least_direction)) == pytest.approx(1)
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(arms(), vectors(5), seeds)
 def test_mass_ratio_has_the_same_extremes_elsewhere(robot, q, seed):
     free, real = mobilities(impact_model(robot), q[: robot.n])

@@ -89,7 +89,7 @@ def test_rate_is_what_pinocchio_integrates(pair):
     np.testing.assert_allclose(np.array(robot.rate(q, v)).ravel(), slope, atol=1e-7)
 
 
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(robots(max_joints=4), inertias(), seeds)
 def test_jacobian_is_the_slope_of_the_pose(robot, base, seed):
     """J (v, ω, q̇) is the velocity of the frame as the configuration moves by its rate."""
@@ -102,7 +102,7 @@ def test_jacobian_is_the_slope_of_the_pose(robot, base, seed):
     np.testing.assert_allclose(J[:3] @ v, np.array(slope(q)).ravel(), atol=1e-12)
 
 
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(robots(max_joints=4), inertias(), seeds)
 def test_energy_is_kept_in_free_fall(robot, base, seed):
     """With M a + h = 0 the sum of kinetic and potential energy does not change."""

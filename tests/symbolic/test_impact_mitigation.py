@@ -25,7 +25,7 @@ from softimpact.symbolic.rigid import Inertia
 
 STUDY = tomllib.loads((FOLDER / "studies" / "panda_24_poses.toml").read_text())
 POSES = [pose["q"] for pose in STUDY["poses"]]
-LAWS = settings(max_examples=30)
+LAWS = settings(max_examples=15)
 
 
 def mitigation(robot, base, q, rotors=None):

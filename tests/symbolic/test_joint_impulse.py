@@ -30,7 +30,7 @@ def balance(H, push, velocity, e, inverse_mass, other_speed):
     return solution[:n], solution[n]
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(robots(max_joints=5), vectors(5), vectors(5), seeds, restitutions, masses)
 def test_agrees_with_the_balance(robot, q, velocity, seed, e, other):
     q, velocity, n = q[: robot.n], velocity[: robot.n], unit_vector(seed)

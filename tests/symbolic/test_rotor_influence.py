@@ -29,7 +29,7 @@ def column(matrix):
     return np.array(matrix).ravel()
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(arms(), vectors(5))
 def test_one_rotor_at_a_time(robot, q):
     q = q[: robot.n]
@@ -43,7 +43,7 @@ def test_one_rotor_at_a_time(robot, q):
     assert float(giaf(model.free_mobility(q), model.mobility(q))) <= found.min() * (1 + 1e-9)
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(arms(), vectors(5))
 def test_sensitivities_are_the_derivatives(robot, q):
     q = q[: robot.n]
