@@ -29,7 +29,7 @@ bench: $(VENV)/installed-test
 	$(BIN)/python -m benchmarks
 
 generated: $(VENV)/installed
-	for robot in panda rr; do $(BIN)/softimpact generate $$robot --out generated/$$robot || exit 1; done
+	for robot in panda rr rmin; do $(BIN)/softimpact generate $$robot --out generated/$$robot || exit 1; done
 
 clean:
 	rm -rf $(VENV) build dist results

@@ -13,6 +13,7 @@ from softimpact.symbolic import (
     Robot,
     closed_chain,
     directional_giaf,
+    extreme_directional_giaf,
     giaf,
     giif,
     loop_gaps,
@@ -81,7 +82,12 @@ def functions_of(
         functions.append(builder.reduced_model())
     functions.append(builder.chain(chain_order))
     if builder.moves_in_space():
-        functions += [builder.osim(), builder.giaf(), builder.directional_giaf()]
+        functions += [
+            builder.osim(),
+            builder.giaf(),
+            builder.directional_giaf(),
+            builder.absorption_extremes(),
+        ]
     return tuple(functions)
 
 
@@ -236,3 +242,23 @@ class _Builder:
         output = Output("giaf", value, "dimensionless", "1 if rotors do not count", share=True)
         summary = "Share of the inertia along n that is not the rotors' (GIAF Eq. 29)."
         return self._function("directional_giaf", summary, (output,), guards)
+
+    def absorption_extremes(self) -> CFunction:
+        real, free = self.model.mobility(self.q), self.model.free_mobility(self.q)
+        found = extreme_directional_giaf(free, real)
+        outputs = (
+            Output("least", found.least, "dimensionless", "smallest value", share=True),
+            Output("greatest", found.greatest, "dimensionless", "largest value", share=True),
+            Output(
+                "least_direction",
+                found.least_direction,
+                "dimensionless",
+                "unit vector; where two values meet, one of many",
+            ),
+            Output(
+                "greatest_direction", found.greatest_direction, "dimensionless", "the same for it"
+            ),
+        )
+        guards = (self._in_space(real.inertia), self._in_space(free.inertia))
+        summary = "Directions of least and greatest absorption, base axes (GIAF Eq. 29)."
+        return self._function("absorption_extremes", summary, outputs, guards)

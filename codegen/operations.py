@@ -113,6 +113,7 @@ OPERATIONS: dict[int, Operation] = {
     ca.OP_FABS: _call("FABS", abs, np.abs, "even"),
     ca.OP_FMIN: _call2("FMIN", min, np.minimum),
     ca.OP_FMAX: _call2("FMAX", max, np.maximum),
+    ca.OP_COPYSIGN: _call2("COPYSIGN", lambda a, b: a.copy_sign(b), np.copysign),
     ca.OP_POW: _call2("POW", lambda a, b: a**b, exact.correctly_rounded(np.power)),
     ca.OP_CONSTPOW: _call2("POW", lambda a, b: a**b, exact.correctly_rounded(np.power)),
 }

@@ -15,6 +15,8 @@ import typer
 
 from .analyze_command import analyze
 from .design_command import design
+from .factors_command import factors
+from .factors_study_command import factors_study
 from .generate_command import generate
 from .reproduce_command import reproduce
 from .robots_command import robots
@@ -28,6 +30,8 @@ app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 app.command()(robots)
 app.command()(analyze)
+app.command()(factors)
+app.command()(factors_study)
 app.command()(simulate)
 app.command()(select)
 app.command()(design)

@@ -15,6 +15,8 @@ from softimpact.symbolic import (
     chain_to,
     configuration_at_rest,
     drives,
+    floating_model,
+    floating_robot,
     impact_model,
     link_angles_at_rest,
     load_robot,
@@ -80,6 +82,18 @@ def situation(typed: Typed) -> Situation:
     return Situation(model, robot.vector("q", q), direction)
 
 
+def free_situation(typed: Typed) -> Situation:
+    """Return the situation of a robot on a free base; its q begins with the base's six zeros."""
+    robot = load_robot(typed.model, typed.tip, floating=True)
+    if robot.tip is None:
+        raise _no_tip(typed.model, robot)
+    free = floating_robot(robot)
+    q = robot.vector("q", values.vector("q", typed.q))
+    direction = unit_direction(values.vector("direction", typed.direction, 3))
+    model = floating_model(free, drives_=drives_of(robot, typed.drives))
+    return Situation(model, np.array(free.coordinates(q)).ravel(), direction)
+
+
 def robot_to_tip(name: str, tip: str | None) -> Robot:
     """Return the chain of a robot to its contact point.
 
@@ -92,14 +106,18 @@ def robot_to_tip(name: str, tip: str | None) -> Robot:
     """
     robot = load_robot(name, tip)
     if robot.tip is None:
-        known = ", ".join(robot.frames)
-        raise InvalidValue("tip", f"{name} names no contact frame; choose one of: {known}")
+        raise _no_tip(name, robot)
     chain = chain_to(robot, robot.tip)
     if chain.n == 0:
         raise InvalidValue(
             "tip", f"frame '{robot.tip}' is fixed to the base; choose one that moves"
         )
     return chain
+
+
+def _no_tip(name: str, robot: Robot) -> InvalidValue:
+    known = ", ".join(robot.frames)
+    return InvalidValue("tip", f"{name} names no contact frame; choose one of: {known}")
 
 
 def link_angles(model: ImpactModel, motor_angles: Array) -> Array:

@@ -20,7 +20,17 @@ from .dynamics import (
     potential_energy,
     stiffness_of_potential,
 )
+from .eigen import Eigen, symmetric_eigen
 from .elastic import LinearModel
+from .ellipsoids import (
+    Ellipsoid,
+    dynamic_impact_ellipsoid,
+    dynamic_impact_measure,
+    force_measure,
+    generalised_inertia_ellipsoid,
+    manipulability,
+    manipulability_ellipsoid,
+)
 from .equilibrium import link_angles_at_rest, motor_angles_at_rest
 from .errors import (
     FrameNotFound,
@@ -28,6 +38,7 @@ from .errors import (
     InvalidValue,
     LoopCannotClose,
     LoopError,
+    MasslessBase,
     ModelFileError,
     NoEquilibrium,
     RedundantLoop,
@@ -38,8 +49,13 @@ from .errors import (
     UnsupportedModel,
     WrongLength,
 )
+from .extreme_directions import Extremes, extreme_directional_giaf, extreme_mass_ratio
 from .factors import ContactMobility, contact_mobility, directional_giaf, giaf, giif
+from .floating import FloatingRobot, floating_model, floating_robot
+from .impact_factors import ImpactFactors, impact_factors
+from .impact_mitigation import ImpactMitigation, impact_mitigation
 from .impact_model import ImpactModel, impact_model
+from .joint_impulse import JointImpulse, joint_impulse
 from .kinematics import contact_point_jacobian, direction_jacobian, frame_jacobian, frame_pose
 from .loading import load_robot
 from .loop_equations import ClosedChain
@@ -55,6 +71,7 @@ from .matrices import Matrix, count_flops
 from .reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
 from .regions import REGIONS, BodyRegion, body_region
 from .robot import Frame, Joint, JointKind, Loop, Robot, chain_to, lock_joints
+from .rotor_influence import giaf_by_gear, giaf_by_rotor, single_joint_giaf
 
 __all__ = [
     "REGIONS",
@@ -67,17 +84,25 @@ __all__ = [
     "Contact",
     "ContactMobility",
     "Drives",
+    "Eigen",
+    "Ellipsoid",
+    "Extremes",
+    "FloatingRobot",
     "Frame",
     "FrameNotFound",
+    "ImpactFactors",
+    "ImpactMitigation",
     "ImpactModel",
     "InvalidInertia",
     "InvalidValue",
     "Joint",
+    "JointImpulse",
     "JointKind",
     "LinearModel",
     "Loop",
     "LoopCannotClose",
     "LoopError",
+    "MasslessBase",
     "Matrix",
     "ModelFileError",
     "NoEquilibrium",
@@ -107,14 +132,27 @@ __all__ = [
     "direction_jacobian",
     "directional_giaf",
     "drives",
+    "dynamic_impact_ellipsoid",
+    "dynamic_impact_measure",
+    "extreme_directional_giaf",
+    "extreme_mass_ratio",
+    "floating_model",
+    "floating_robot",
+    "force_measure",
     "frame_jacobian",
     "frame_pose",
     "free_end",
+    "generalised_inertia_ellipsoid",
     "generalised_velocity",
     "giaf",
+    "giaf_by_gear",
+    "giaf_by_rotor",
     "giif",
     "gravity_torques",
+    "impact_factors",
+    "impact_mitigation",
     "impact_model",
+    "joint_impulse",
     "least_velocity",
     "link_angles_at_rest",
     "load_robot",
@@ -123,13 +161,17 @@ __all__ = [
     "loop_gaps",
     "loop_jacobian",
     "loop_tangent",
+    "manipulability",
+    "manipulability_ellipsoid",
     "mass_matrix",
     "motor_angles_at_rest",
     "potential_energy",
     "reduce_to_two_masses",
     "reflected_mass",
     "require_closed_at",
+    "single_joint_giaf",
     "static_stiffness",
     "stiffness_of_potential",
+    "symmetric_eigen",
     "unit_direction",
 ]

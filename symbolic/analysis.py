@@ -97,7 +97,7 @@ def analyse(model: ImpactModel, q: ArrayLike, direction: ArrayLike, order: int =
     require_closed_at(model.robot, angles)
     n = unit_direction(direction)
     J = model.jacobian(angles)
-    still = IMMOBILE * _reach(model)
+    still = IMMOBILE * reach(model)
     if np.linalg.norm(np.array(J).T @ n) <= still:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")
     linear = model.linear(angles, n)
@@ -121,8 +121,8 @@ def analyse(model: ImpactModel, q: ArrayLike, direction: ArrayLike, order: int =
     )
 
 
-def _reach(model: ImpactModel) -> float:
-    """Length of the stretched arm from its first joint [m]: the size of J's entries."""
+def reach(model: ImpactModel) -> float:
+    """Return the length of the stretched arm from its first joint [m]: the size of J's entries."""
     robot, frame = model.robot, model.robot.frame(model.tip)
     path = [robot.joints[i] for i in robot.ancestors(frame.joint)]
     lengths = [np.linalg.norm(joint.placement.translation) for joint in path[:-1]]

@@ -103,3 +103,14 @@ class RedundantLoop(LoopError):
 
 class SingularLoop(LoopError):
     """The dependent joints of a closed chain do not follow from the independent ones."""
+
+
+class MasslessBase(SoftImpactError):
+    """A base that is to float has no mass."""
+
+    def __init__(self, robot: str) -> None:
+        self.robot = robot
+        super().__init__(
+            f"robot '{robot}': its base has no mass, so it cannot float; "
+            "give the root link an <inertial> element"
+        )

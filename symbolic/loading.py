@@ -30,7 +30,7 @@ ROTOR_SET = "rotor_inertia:"
 """Prefix of the MJCF ``custom/numeric`` elements that hold named sets of rotor inertias."""
 
 
-def load_robot(model: str | Path, tip: str | None = None) -> Robot:
+def load_robot(model: str | Path, tip: str | None = None, *, floating: bool = False) -> Robot:
     """Read a built-in robot, or one from a URDF (``.urdf``) or MJCF (``.xml``) file.
 
     Meshes are not needed. Every body and every site becomes a frame. The model's gravity is not
@@ -44,6 +44,8 @@ def load_robot(model: str | Path, tip: str | None = None) -> Robot:
     Args:
         model: name of a built-in robot, or path of a file.
         tip: frame taken as the contact point where none is named; default the file's.
+        floating: accept a free joint at the root (MJCF) and drop it; the root's frame is the base
+            then. ``floating_robot`` frees the base of any robot, however its file attaches it.
 
     Raises:
         ModelFileError: the file is missing, not readable as URDF or MJCF, or holds no joint.
@@ -52,7 +54,7 @@ def load_robot(model: str | Path, tip: str | None = None) -> Robot:
         FrameNotFound: the robot has no frame ``tip``.
     """
     path = _model_path(model)
-    compiled, home = _compile(path)
+    compiled, home = _compile(path, floating)
     _reject_unsupported(compiled, path)
     robot = _RobotBuilder(compiled, path).robot(tip or _custom_texts(compiled).get("tip"))
     if robot.loops:
@@ -108,12 +110,12 @@ def _rotor_inertia_sets(model: mujoco.MjModel, path: Path) -> dict[str, tuple[fl
     return sets
 
 
-def _compile(path: Path) -> tuple[mujoco.MjModel, list[float]]:
+def _compile(path: Path, floating: bool) -> tuple[mujoco.MjModel, list[float]]:
     """Return the compiled model and the configuration of its first keyframe or reference."""
     if not path.is_file():
         raise ModelFileError(str(path), "no such file")
     with _warnings() as heard:
-        return _compile_spec(path, heard)
+        return _compile_spec(path, heard, floating)
 
 
 @contextmanager
@@ -128,13 +130,17 @@ def _warnings() -> Iterator[list[str]]:
         mujoco.set_mju_user_warning(before)
 
 
-def _compile_spec(path: Path, heard: list[str]) -> tuple[mujoco.MjModel, list[float]]:
+def _compile_spec(
+    path: Path, heard: list[str], floating: bool
+) -> tuple[mujoco.MjModel, list[float]]:
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except ValueError as error:
         raise ModelFileError(str(path), f"not a URDF or MJCF: {_one_line(error)}") from None
     spec.compiler.fusestatic = False
     keys = [[float(x) for x in key.qpos] for key in spec.keys[:1]]
+    if floating:
+        _drop_free_joint(spec)
     hollow = _drop_meshes(spec, keep_shapes=path.suffix != ".urdf")
     for body in spec.bodies[1:]:
         _check_mass(body, str(path))
@@ -148,12 +154,24 @@ def _compile_spec(path: Path, heard: list[str]) -> tuple[mujoco.MjModel, list[fl
     except ValueError as error:
         raise _compile_error(str(path), _one_line(error)) from None
     for body in hollow:
-        if model.body_weldid[body.id] != 0:
+        if floating or model.body_weldid[body.id] != 0:
             raise InvalidInertia(
                 str(path), body.name, "takes its inertia from a mesh; give it an <inertial> element"
             )
     home = keys[0] if keys and len(keys[0]) == model.nq else [float(x) for x in model.qpos0]
     return model, home
+
+
+def _drop_free_joint(spec: mujoco.MjSpec) -> None:
+    """Weld the only body at the root to the world, frame on frame, if a free joint moves it."""
+    if len(spec.worldbody.bodies) != 1:
+        return
+    root = spec.worldbody.bodies[0]
+    for joint in root.joints:
+        if joint.type == mujoco.mjtJoint.mjJNT_FREE:
+            spec.delete(joint)
+            root.pos, root.quat = [0, 0, 0], [1, 0, 0, 0]
+            root.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
 
 
 def _drop_meshes(spec: mujoco.MjSpec, keep_shapes: bool) -> list[mujoco.MjsBody]:
@@ -242,6 +260,7 @@ class _RobotBuilder:
         self.model, self.path = model, path
         self.joints: list[Joint] = []
         self.inertias: list[Inertia] = []
+        self.base_inertia = Inertia.zero()
         self.frames: dict[str, Frame] = {}
         self.actuated = _actuated_joints(model)
 
@@ -261,7 +280,15 @@ class _RobotBuilder:
         name = self.model.names.split(b"\0")[0].decode() or self.path.stem
         sets = _rotor_inertia_sets(self.model, self.path)
         loops = tuple(self._loops(carriers))
-        return Robot(name, tuple(joints), self.frames, tip, sets, loops)
+        return Robot(
+            name,
+            tuple(joints),
+            self.frames,
+            tip,
+            sets,
+            loops,
+            base_inertia=self.base_inertia,
+        )
 
     def _loops(self, carriers: Mapping[int, tuple[int, Placement]]) -> Iterator[Loop]:
         """Yield what ``equality/connect`` elements close, between sites or points of bodies."""
@@ -293,8 +320,11 @@ class _RobotBuilder:
             axis_frame = _frame_along(model.jnt_axis[joint], model.jnt_pos[joint])
             self._add_joint(joint, carrier, pose @ axis_frame)
             carrier, pose = len(self.joints) - 1, axis_frame.inverse()
-        if carrier != BASE:
-            self.inertias[carrier] += _inertia(model, body).seen_from(pose)
+        inertia = _inertia(model, body).seen_from(pose)
+        if carrier == BASE:
+            self.base_inertia += inertia
+        else:
+            self.inertias[carrier] += inertia
         self._add_frame(model.body(body).name, carrier, pose)
         return carrier, pose
 

@@ -99,6 +99,7 @@ class Robot:
             several ways to assemble them; None is zero.
         independent: names of the joints whose coordinates describe a closed chain; empty leaves
             the choice to ``closed_chain``.
+        base_inertia: of what is fixed to the base, in its frame; felt by floating robots only.
     """
 
     name: str
@@ -109,6 +110,7 @@ class Robot:
     loops: tuple[Loop, ...] = ()
     home: tuple[float, ...] | None = None
     independent: tuple[str, ...] = ()
+    base_inertia: Inertia = field(default_factory=Inertia.zero)
 
     @property
     def n(self) -> int:
@@ -255,6 +257,7 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
             raise UnknownName("joint", name, robot.joint_names)
     carrier: dict[int, tuple[int, Placement]] = {BASE: (BASE, Placement.identity())}
     kept: list[Joint] = []
+    base = robot.base_inertia
     for index, joint in enumerate(robot.joints):
         parent, where = carrier[joint.parent]
         if joint.name not in locked:
@@ -264,9 +267,11 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
             continue
         pose = where @ joint.pose(locked[joint.name])
         carrier[index] = (parent, pose)
-        if parent != BASE:
-            body = kept[parent]
-            kept[parent] = replace(body, inertia=body.inertia + joint.inertia.seen_from(pose))
+        moved = joint.inertia.seen_from(pose)
+        if parent == BASE:
+            base = base + moved
+        else:
+            kept[parent] = replace(kept[parent], inertia=kept[parent].inertia + moved)
     frames = {
         name: Frame(name, carrier[frame.joint][0], carrier[frame.joint][1] @ frame.placement)
         for name, frame in robot.frames.items()
@@ -287,6 +292,7 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
         rotor_inertia_sets=sets,
         home=home,
         independent=independent,
+        base_inertia=base,
     )
 
 

@@ -120,6 +120,56 @@ class Pinocchio:
         return int(self.model.getFrameId(name, pin.FrameType.BODY))
 
 
+class FreeFlyer:
+    """Pinocchio's model of a file behind a free-flyer, with joints in the robot's order.
+
+    Configurations are (p, x, y, z, w, q), velocities (v, ω, q̇) in the base's axes.
+    """
+
+    def __init__(self, path: Path, robot: Robot) -> None:
+        self.model = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer())
+        self.data = self.model.createData()
+        joints = [self.model.joints[self.model.getJointId(name)] for name in robot.joint_names]
+        self.v_order = [*range(6), *(joint.idx_v for joint in joints)]
+        self.q_order = [*range(7), *(joint.idx_q for joint in joints)]
+
+    def configuration(self, ours: Array) -> Array:
+        """Return a configuration in Pinocchio's order."""
+        theirs = np.zeros(self.model.nq)
+        theirs[self.q_order] = ours
+        return theirs
+
+    def velocity(self, ours: Array | float) -> Array:
+        """Return a velocity in Pinocchio's order."""
+        theirs = np.zeros(self.model.nv)
+        theirs[self.v_order] = ours
+        return theirs
+
+    def mass_matrix(self, q: Array) -> Array:
+        """Return M."""
+        upper = np.triu(pin.crba(self.model, self.data, self.configuration(q)))
+        return (upper + np.triu(upper, 1).T)[np.ix_(self.v_order, self.v_order)]
+
+    def bias(self, q: Array, velocity: Array, gravity: Array) -> Array:
+        """Return gravity, Coriolis and centrifugal forces."""
+        self.model.gravity.linear = np.array(gravity)
+        state = (self.configuration(q), self.velocity(velocity), self.velocity(0.0))
+        return pin.rnea(self.model, self.data, *state)[self.v_order]
+
+    def jacobian(self, frame: str, q: Array) -> Array:
+        """Return the 6×(6+n) Jacobian in the world's axes."""
+        index = self.model.getFrameId(frame)
+        pin.computeJointJacobians(self.model, self.data, self.configuration(q))
+        pin.updateFramePlacements(self.model, self.data)
+        J = pin.getFrameJacobian(self.model, self.data, index, pin.LOCAL_WORLD_ALIGNED)
+        return J[:, self.v_order]
+
+    def pose(self, frame: str, q: Array) -> pin.SE3:
+        """Return the pose of a frame in the world."""
+        pin.forwardKinematics(self.model, self.data, self.configuration(q))
+        return pin.updateFramePlacement(self.model, self.data, self.model.getFrameId(frame))
+
+
 def _depth_first(robot: Robot, parent: int = BASE) -> Iterator[int]:
     for i, joint in enumerate(robot.joints):
         if joint.parent == parent:

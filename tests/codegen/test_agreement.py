@@ -20,12 +20,14 @@ from softimpact.symbolic import (
     Drives,
     ImpactModel,
     directional_giaf,
+    extreme_directional_giaf,
     giaf,
     giif,
 )
 from softimpact.symbolic.rigid import Array
 
 ROBOTS = ["panda", "rr", "ur5", "baxter", "gantry", "rmin"]
+ON_THREE_AXES = ("osim", "giaf", "directional_giaf", "absorption_extremes")
 OK, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR = 0, 2, 3, 4, 5
 
 
@@ -46,6 +48,7 @@ def oracle(package: Generated, sample: Sample) -> dict[str, list[Array]]:
     n = ca.DM(sample.n) / ca.norm_2(ca.DM(sample.n))
     reduced, chain = model.reduced(q, n), model.chain(q, n, package.manifest.chain_order)
     real, free = model.mobility(q), model.free_mobility(q)
+    extremes = extreme_directional_giaf(free, real)
     values = {
         "mass_matrix": [model.mass_matrix(q)],
         "jacobian": [model.jacobian(q)],
@@ -55,6 +58,7 @@ def oracle(package: Generated, sample: Sample) -> dict[str, list[Array]]:
         "reflected_mass": [model.reflected_mass(q, n)],
         "reduced_model": [reduced.m_c, reduced.k_r, reduced.m_a],
         "chain": [ca.vertcat(*chain.mass), ca.vertcat(*chain.stiffness)],
+        "absorption_extremes": list(vars(extremes).values()),
         "osim": [real.inertia, free.inertia],
         "giaf": [giaf(free, real), giif(free, real)],
         "directional_giaf": [directional_giaf(free, real, n)],
@@ -211,8 +215,8 @@ def test_stretched_arm_has_no_operational_space_inertia(
     elbow = generated.robot.joint_names.index("elbow_joint")
     bent = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=1)[0]
     straight = replace(bent, q=tuple(0.0 if i == elbow else x for i, x in enumerate(bent.q)))
-    functions = [f for f in generated.functions if "giaf" in f.name or f.name == "osim"]
-    assert len(functions) == 3
+    functions = [f for f in generated.functions if f.name in ON_THREE_AXES]
+    assert len(functions) == len(ON_THREE_AXES)
     for real in ("double", "float"):
         library = generated.load(real)
         for function in functions:

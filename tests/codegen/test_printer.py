@@ -29,6 +29,7 @@ HEAD = """
 #define X_FABS fabs
 #define X_FMIN fmin
 #define X_FMAX fmax
+#define X_COPYSIGN copysign
 #define X_POW pow
 typedef double x_real;
 static inline void x_sine_cosine(double x, double *s, double *c) { *s = sin(x); *c = cos(x); }
@@ -48,6 +49,7 @@ OPERATIONS: dict[str, ca.SX] = {
     "sin": ca.sin(A),
     "cos": ca.cos(A),
     "exp": ca.exp(A),
+    "copysign": ca.copysign(A, B),
     "log": ca.log(A),
     "fabs": ca.fabs(A),
     "fmin": ca.fmin(A, B),

@@ -31,6 +31,7 @@
 #define PANDA_FABS(x) PANDA_F(fabs)(x)
 #define PANDA_FMIN(x, y) PANDA_F(fmin)(x, y)
 #define PANDA_FMAX(x, y) PANDA_F(fmax)(x, y)
+#define PANDA_COPYSIGN(x, y) PANDA_F(copysign)(x, y)
 #define PANDA_POW(x, y) PANDA_F(pow)(x, y)
 
 /* Sine s and cosine c of a finite x. */

@@ -25,5 +25,6 @@ extern const double panda_golden_chain[PANDA_GOLDEN_CASES][6];
 extern const double panda_golden_osim[PANDA_GOLDEN_CASES][12];
 extern const double panda_golden_giaf[PANDA_GOLDEN_CASES][2];
 extern const double panda_golden_directional_giaf[PANDA_GOLDEN_CASES][1];
+extern const double panda_golden_absorption_extremes[PANDA_GOLDEN_CASES][8];
 
 #endif

@@ -756,6 +756,81 @@ static void test_directional_giaf(void)
            name, "nothing written for bad inputs");
 }
 
+static void test_absorption_extremes(void)
+{
+    const char *const name = "panda_absorption_extremes";
+    panda_absorption_extremes_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_absorption_extremes[k];
+        expect(panda_absorption_extremes(in->q, &in->p, &out) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)out.least;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 1));
+            right += LENGTH(found);
+        }
+        {
+            double found[1];
+            found[0] = (double)out.greatest;
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 1));
+            right += LENGTH(found);
+        }
+        {
+            double found[3];
+            for (size_t i = 0; i < 3; ++i) {
+                found[i] = (double)out.least_direction[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+        {
+            double found[3];
+            for (size_t i = 0; i < 3; ++i) {
+                found[i] = (double)out.greatest_direction[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
+            right += LENGTH(found);
+        }
+    }
+    const double bound = BOUND(1e-12, 5e-05);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_absorption_extremes(in.q, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_absorption_extremes(in.q, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = (panda_real)NAN;
+    expect(panda_absorption_extremes(in.q, &in.p, &out) == PANDA_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[6] = -1;
+    expect(panda_absorption_extremes(in.q, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is negative");
+    in = panda_golden_inputs[0];
+    in.p.rotor_inertia[0] = 0;
+    expect(panda_absorption_extremes(in.q, &in.p, &out) == PANDA_OUT_OF_RANGE,
+           name, "rotor_inertia is zero");
+    in = panda_golden_inputs[0];
+    expect(panda_absorption_extremes(NULL, &in.p, &out) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_absorption_extremes(in.q, NULL, &out) == PANDA_NULL_POINTER,
+           name, "p is NULL");
+    expect(panda_absorption_extremes(in.q, &in.p, NULL) == PANDA_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
 static void test_common(void)
 {
     panda_params p;
@@ -784,6 +859,7 @@ int main(void)
     test_osim();
     test_giaf();
     test_directional_giaf();
+    test_absorption_extremes();
     printf(failures == 0 ? "all passed\n" : "%d failed\n", failures);
     return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -31,6 +31,7 @@
 #define RMIN_FABS(x) RMIN_F(fabs)(x)
 #define RMIN_FMIN(x, y) RMIN_F(fmin)(x, y)
 #define RMIN_FMAX(x, y) RMIN_F(fmax)(x, y)
+#define RMIN_COPYSIGN(x, y) RMIN_F(copysign)(x, y)
 #define RMIN_POW(x, y) RMIN_F(pow)(x, y)
 
 /* Sine s and cosine c of a finite x. */

@@ -31,6 +31,7 @@
 #define RR_FABS(x) RR_F(fabs)(x)
 #define RR_FMIN(x, y) RR_F(fmin)(x, y)
 #define RR_FMAX(x, y) RR_F(fmax)(x, y)
+#define RR_COPYSIGN(x, y) RR_F(copysign)(x, y)
 #define RR_POW(x, y) RR_F(pow)(x, y)
 
 /* Sine s and cosine c of a finite x. */

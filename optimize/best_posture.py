@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The posture that serves a task best by any measure, found by Ipopt."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic import ImpactModel, Matrix
+from softimpact.symbolic.rigid import Array
+
+from .nlp import build_nlp, parameters, tip_pose_error
+from .poses import tip_pose
+from .solve import Bounds, Program, Start, quiet, solve
+from .study import Study
+from .timing import impact_timing
+
+
+@dataclass(frozen=True, eq=False)
+class BestPosture:
+    """A local optimum over postures.
+
+    Attributes:
+        q: the posture, length n [rad].
+        value: of the measure there.
+        status: Ipopt's.
+        solved: whether a local optimum was found; if not, q is the last iterate.
+    """
+
+    q: Array
+    value: float
+    status: str
+    solved: bool
+
+
+def best_posture(
+    model: ImpactModel, start: Array, measure: Callable[[Matrix], Matrix]
+) -> BestPosture:
+    """Minimise a measure of the posture, the tip held where the start has it.
+
+    Args:
+        model: robot and tip.
+        start: posture that holds the task, length n [rad].
+        measure: of the link angles (SX), to be made small; any expression of
+            ``softimpact.symbolic``.
+    """
+    position, rotation = tip_pose(model, start)
+    q = ca.SX.sym("q", model.robot.n)
+    problem: dict[str, Any] = {
+        "x": q,
+        "f": measure(q),
+        "g": tip_pose_error(model, q, ca.DM(position), ca.DM(rotation)),
+    }
+    solver = ca.nlpsol("posture", "ipopt", problem, quiet({"tol": 1e-9}))
+    lower, upper = model.robot.limits
+    found = solver(x0=start, lbx=lower, ubx=upper, lbg=0, ubg=0)
+    stats = solver.stats()
+    value, best = float(found["f"]), np.array(found["x"]).ravel()
+    return BestPosture(best, value, stats["return_status"], bool(stats["success"]))
+
+
+def posture_of_least_force(study: Study, start: Array) -> BestPosture:
+    """Minimise the peak force over postures, with the study's nominal joint stiffness.
+
+    Args:
+        study: robot, impact and stiffness; its bound on the deflection does not count.
+        start: posture that holds the task, length n [rad].
+    """
+    free = replace(study, max_deflection=1e3)
+    timing = impact_timing(free, [start])
+    nlp = build_nlp(free.model, len(free.forces), timing.nodes, timing.substeps)
+    position, rotation = tip_pose(free.model, start)
+    unit = 100.0
+    numbers = parameters(free, position, rotation, timing.step, unit)
+    program = Program(nlp.oracle.serialize(), None, nlp.n, nlp.pose, nlp.forces)
+    bounds = Bounds(*free.robot.limits, free.nominal, free.nominal, unit)
+    found = solve(program, Start("start", "free", ((start, free.nominal),)), bounds, numbers)
+    return BestPosture(found.q, found.force, found.status, found.solved)

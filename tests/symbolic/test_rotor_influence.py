@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Single-joint factors and sensitivities against their definitions and CasADi's derivatives."""
+
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from random_robots import arms, vectors
+
+from softimpact.symbolic import (
+    giaf,
+    giaf_by_gear,
+    giaf_by_rotor,
+    impact_model,
+    single_joint_giaf,
+)
+
+
+def parts(robot, q):
+    model = impact_model(robot)
+    free = np.array(model.free_mobility(q).matrix)
+    assume(np.linalg.cond(free) < 1e5)
+    return model, ca.DM(model.mass_matrix(q)), ca.DM(robot.armature), model.jacobian(q)
+
+
+def column(matrix):
+    return np.array(matrix).ravel()
+
+
+@settings(max_examples=15)
+@given(arms(), vectors(5))
+def test_one_rotor_at_a_time(robot, q):
+    q = q[: robot.n]
+    model, M, b, J = parts(robot, q)
+    found = column(single_joint_giaf(M, b, J))
+    for i in range(robot.n):
+        alone = impact_model(robot.with_armature(robot.armature * np.eye(robot.n)[i]))
+        expected = float(giaf(model.free_mobility(q), alone.mobility(q)))
+        assert found[i] == pytest.approx(expected, rel=1e-7)
+    assert ((found >= 0) & (found <= 1 + 1e-12)).all()
+    assert float(giaf(model.free_mobility(q), model.mobility(q))) <= found.min() * (1 + 1e-9)
+
+
+@settings(max_examples=15)
+@given(arms(), vectors(5))
+def test_sensitivities_are_the_derivatives(robot, q):
+    q = q[: robot.n]
+    model, M, b, J = parts(robot, q)
+    rotors = ca.SX.sym("b", robot.n)
+    symbolic = replace(model, drives=replace(model.drives, rotors=rotors))
+    zeta = giaf(model.free_mobility(q), symbolic.mobility(q))
+    slope = column(ca.Function("slope", [rotors], [ca.gradient(zeta, rotors)])(b))
+    found = column(giaf_by_rotor(M, b, J))
+    np.testing.assert_allclose(found, slope, rtol=1e-6, atol=1e-9 * abs(slope).max())
+    assert (found <= 0).all()
+    ratios = ca.SX.sym("N", robot.n)
+    motors = robot.armature / 100.0**2
+    geared = replace(model, drives=replace(model.drives, rotors=ratios**2 * motors))
+    zeta = giaf(model.free_mobility(q), geared.mobility(q))
+    slope = column(ca.Function("slope", [ratios], [ca.gradient(zeta, ratios)])(100))
+    np.testing.assert_allclose(
+        column(giaf_by_gear(M, b, J)) / 100, slope, rtol=1e-6, atol=1e-9 * abs(slope).max()
+    )
