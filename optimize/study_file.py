@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Study files as written: TOML, checked field by field."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from softimpact.symbolic import InvalidValue
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Vector3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class RobotSection(_Section):
+    """Which robot, and its drives."""
+
+    model: str
+    tip: str | None = None
+    rotor_inertia: str | Finite | list[Finite] | None = None
+    position_gain: Finite | list[Finite] | None = None
+    computed_torque_gain: Finite | None = None
+
+
+class ImpactSection(_Section):
+    """What is hit, how fast and from where."""
+
+    region: str
+    clamped: bool = True
+    direction: Vector3
+    speed: Positive
+
+
+class StiffnessSection(_Section):
+    """Bounds on the joint stiffness and the design to improve on [N·m/rad]."""
+
+    lower: Positive | list[Positive]
+    upper: Positive | list[Positive]
+    nominal: Positive | list[Positive]
+
+
+class AccuracySection(_Section):
+    """Forces on the tip [N] and how far [m] the springs may give way under each."""
+
+    forces: Annotated[list[Vector3], Field(min_length=1)]
+    max_deflection: Positive
+
+
+class TaskSection(_Section):
+    """Where the tip is held: where one of the poses has it."""
+
+    pose_of: str
+    exact: bool = True
+
+
+class PoseSection(_Section):
+    """A candidate configuration."""
+
+    name: str
+    q: list[Finite]
+    recovered: bool = False
+
+
+class StudyFile(_Section):
+    """A study file, as written."""
+
+    title: str = ""
+    robot: RobotSection
+    impact: ImpactSection
+    stiffness: StiffnessSection
+    accuracy: AccuracySection
+    task: TaskSection
+    poses: Annotated[list[PoseSection], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _poses_are_named_once(self) -> StudyFile:
+        names = [pose.name for pose in self.poses]
+        repeated = {name for name in names if names.count(name) > 1}
+        if repeated:
+            raise ValueError(f"poses: named more than once: {', '.join(sorted(repeated))}")
+        if self.task.pose_of not in names:
+            raise ValueError(f"task.pose_of: no pose is named '{self.task.pose_of}'")
+        return self
+
+
+def read_study_file(source: Path, overrides: dict[str, dict[str, Any]]) -> StudyFile:
+    """Read a study file and check the form of every field.
+
+    Args:
+        source: a TOML file.
+        overrides: values that replace the file's, by section and field.
+
+    Raises:
+        InvalidValue: names file and field.
+    """
+    content = _read(source)
+    for section, fields in overrides.items():
+        given = content.get(section, {})
+        content[section] = {**given, **fields} if isinstance(given, dict) else given
+    try:
+        return StudyFile.model_validate(content)
+    except ValidationError as error:
+        raise _first_problem(source, error) from None
+
+
+def _read(source: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(source.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InvalidValue(str(source), "no such study file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidValue(str(source), f"cannot be read: {error}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InvalidValue(str(source), f"not valid TOML: {error}") from None
+
+
+def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
+    first = error.errors()[0]
+    field = ".".join(str(part) for part in first["loc"])
+    more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+    where = f"{source}: {field}" if field else str(source)
+    return InvalidValue(where, f"{first['msg'].removeprefix('Value error, ')}{more}")
