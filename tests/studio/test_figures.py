@@ -4,21 +4,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from design_reports import panda_report, ur5_report
 from matplotlib.image import imread
 from matplotlib.text import Text
-from oracles import example_urdf
 
-from softimpact.optimize import Design, Outcome, PoseResult, Study, design, load_study
-from softimpact.optimize.poses import Candidate, candidates, tip_pose
-from softimpact.optimize.timing import Timing
-from softimpact.studio.design_report import DesignReport, design_report
+from softimpact.optimize.poses import tip_pose
+from softimpact.studio.design_report import DesignReport
 from softimpact.studio.figures import (
     draw_figures,
     figure_of_forces,
@@ -29,108 +26,15 @@ from softimpact.studio.figures import (
 )
 from softimpact.symbolic import Contact, body_region
 
-PANDA = """
-title = "three poses of the Panda"
-[robot]
-model = "panda"
-rotor_inertia = "drake_fr3"
-[impact]
-region = "chest"
-direction = [0.0, 1.0, 0.0]
-speed = 1.0
-[stiffness]
-lower = 300.0
-upper = 100000.0
-nominal = 15000.0
-[accuracy]
-forces = [[30.0, 0.0, 0.0]]
-max_deflection = 0.001
-[task]
-pose_of = "q9"
-[[poses]]
-name = "q9"
-q = [-1.22, 0.84, 0.72, -2.41, 0.79, 1.97, -2.04]
-[[poses]]
-name = "q19"
-q = [-0.35, 0.64, -0.07, -2.36, 1.18, 1.51, -2.29]
-recovered = true
-[[poses]]
-name = "q22"
-q = [0.00, 0.63, -0.10, -2.36, 1.19, 1.50, -2.29]
-"""
-
-UR5 = """
-[robot]
-model = "{urdf}"
-tip = "tool0"
-rotor_inertia = 0.5
-[impact]
-region = "hand"
-clamped = false
-direction = [0.0, 0.6, 0.8]
-speed = 0.5
-[stiffness]
-lower = 300.0
-upper = [1e4, 2e4, 3e4, 4e4, 5e4, 6e4]
-nominal = 5000.0
-[accuracy]
-forces = [[20.0, 0.0, 0.0]]
-max_deflection = 0.003
-[task]
-pose_of = "up"
-exact = false
-[[poses]]
-name = "up"
-q = [0.3, -1.1, 1.4, -0.6, 1.2, 0.4]
-[[poses]]
-name = "low"
-q = [0.3, -0.4, 1.2, -0.9, 1.2, 0.4]
-"""
-
 
 @pytest.fixture(scope="module")
 def panda(tmp_path_factory: pytest.TempPathFactory) -> DesignReport:
-    """A design by Ipopt, in this process."""
-    study = _study(tmp_path_factory.mktemp("panda"), PANDA)
-    with ThreadPoolExecutor(1) as executor:
-        return design_report(design(study, executor=executor))
+    return panda_report(tmp_path_factory.mktemp("panda"))
 
 
 @pytest.fixture(scope="module")
 def ur5(tmp_path_factory: pytest.TempPathFactory) -> DesignReport:
-    """What a design in table mode alone might find."""
-    urdf = example_urdf("ur5_robot.urdf").as_posix()
-    study = _study(tmp_path_factory.mktemp("ur5"), UR5.format(urdf=urdf))
-    poses = tuple(
-        PoseResult(candidate, 90.0 + i, 1e-3, _found(candidate, study, 70.0 + i), None)
-        for i, candidate in enumerate(candidates(study))
-    )
-    winner = poses[0].table
-    assert winner is not None
-    timing = Timing(duration=0.04, nodes=200, substeps=2)
-    return design_report(Design(study, poses, winner, None, timing, compiled=False))
-
-
-def _study(folder: Path, text: str) -> Study:
-    path = folder / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    return load_study(path)
-
-
-def _found(candidate: Candidate, study: Study, force: float) -> Outcome:
-    return Outcome(
-        name=candidate.pose.name,
-        mode="table",
-        status="Solve_Succeeded",
-        solved=True,
-        iterations=1,
-        attempts=1,
-        seconds=0.0,
-        q=candidate.q,
-        springs=study.nominal * np.linspace(0.2, 1.5, study.robot.n),
-        force=force,
-        violation=0.0,
-    )
+    return ur5_report(tmp_path_factory.mktemp("ur5"))
 
 
 def _with_first_free(report: DesignReport, **changes: Any) -> DesignReport:

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The structure that CONTRIBUTING.md promises."""
+
+import ast
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+MAY_IMPORT = {
+    "robots": set(),
+    "symbolic": {"robots"},
+    "codegen": {"symbolic"},
+    "simulate": {"symbolic"},
+    "optimize": {"symbolic"},
+    "studio": {"robots", "symbolic", "codegen", "simulate", "optimize"},
+}
+
+
+def tracked(*patterns):
+    """Return the files under version control that match."""
+    listed = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard", *patterns],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    return [ROOT / name for name in listed.stdout.splitlines() if (ROOT / name).is_file()]
+
+
+def imported_folders(path):
+    """Yield the folders of softimpact that a module imports."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level == 0:
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        else:
+            continue
+        yield from (name.split(".")[1] for name in names if name.startswith("softimpact."))
+
+
+@pytest.mark.parametrize("folder", MAY_IMPORT)
+def test_arrows_point_one_way(folder):
+    modules = tracked(f"{folder}/*.py")
+    assert modules
+    for path in modules:
+        assert set(imported_folders(path)) <= MAY_IMPORT[folder] | {folder}, path
+
+
+def test_files_can_be_read_at_a_sitting():
+    long = {
+        path.relative_to(ROOT).as_posix(): count
+        for path in tracked("*.py", "*.jinja")
+        if (count := path.read_text(encoding="utf-8").count("\n")) > 400
+    }
+    assert long == {}
+
+
+def test_sources_say_their_licence():
+    sources = [
+        path for path in tracked("*.py", "*.toml", "*.xml", "Makefile") if path.stat().st_size
+    ]
+    assert [p for p in sources if "SPDX-License-Identifier" not in p.read_text("utf-8")[:200]] == []
