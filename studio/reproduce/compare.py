@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -18,7 +18,7 @@ from .compute import SPEED_STIFFNESS, Point, Results
 from .ladder import LADDER, REGIONS
 from .scenarios import GRID, SCENARIOS
 
-Verdict = Literal["agrees", "misprint", "not determined by the text"]
+Verdict = Literal["input", "agrees", "misprint", "not determined by the text"]
 
 ROUNDING = 5e-3
 """Relative difference within which a number that the text determines agrees."""
@@ -97,7 +97,8 @@ def _links(results: Results) -> Iterator[Comparison]:
             units = ("m", "kg", "kg m²", "m")
             names = ("length", "mass", "inertia", "centre of mass")
             for what, unit, a, b in zip(names, units, theirs, ours, strict=True):
-                yield _exact(table, what, f"link of {joint}", unit, a, b, 1e-9)
+                line = _exact(table, what, f"link of {joint}", unit, a, b, 1e-9)
+                yield replace(line, verdict="input" if line.verdict == "agrees" else line.verdict)
 
 
 def _link(robot: Robot, name: str) -> tuple[float, float, float, float]:

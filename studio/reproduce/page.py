@@ -44,8 +44,9 @@ motors (elbow). Two masses that both arrive with the contact point's speed make 
 """
 
 VERDICTS = """\
-*agrees*: to the last printed digit (which may be cut off) or within 0.5 %; mean errors within one
-percentage point. *Difference* is in percent of the printed number, for numbers in % in points.
+*input*: a datum of the robot, which our model must repeat; no result. *agrees*: to the last printed
+digit (which may be cut off) or within 0.5 %; mean errors within one percentage point. *Difference*
+is in percent of the printed number, for numbers in % in points.
 """
 
 

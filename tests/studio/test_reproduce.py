@@ -60,9 +60,9 @@ def test_the_page_shows_every_number_and_figure(
 ) -> None:
     captions = draw(results, tmp_path)
     text = page(results, comparisons, captions)
-    assert text.count("| agrees") + text.count("| misprint") + text.count("| not deter") == len(
-        comparisons
-    )
+    assert text.count("| input") + text.count("| agrees") + text.count("| misprint") + text.count(
+        "| not deter"
+    ) == len(comparisons)
     shown = re.findall(r"\]\((\S+\.png)\)", text)
     assert sorted(shown) == sorted(path.name for path in tmp_path.iterdir())
     assert {name[:5] for name in shown} == {"fig05", "fig06", "fig07", "fig08", "fig09", "ladde"}
@@ -80,7 +80,7 @@ def test_the_whole_paper(tmp_path: Path) -> None:
     )  # fmt: skip
     record = json.loads(done.stdout)
     assert record["verdicts"]["misprint"] == 1
-    assert record["verdicts"]["agrees"] >= 86
+    assert record["verdicts"]["agrees"] >= 46
     assert sum(record["verdicts"].values()) == len(record["comparisons"]) == 101
     figures = {path.stem[:5] for path in out.glob("fig*.png")}
     assert figures == {f"fig{number:02}" for number in (5, 6, 7, 8, 9, 12, 13, 14, 15)}
