@@ -85,9 +85,9 @@ def accuracy(function: CFunction, samples: Sequence[Sample]) -> Accuracy:
     worst = max(epsilon, float(ordered[-1]))
     scale = float(np.finfo(np.float64).eps) / epsilon
     return Accuracy(
-        double=max(DOUBLE_ERROR, _rounded_up(usual * scale)),
-        single=_rounded_up(MARGIN * usual),
-        single_worst=_rounded_up(worst),
+        double=max(DOUBLE_ERROR, rounded_up(usual * scale)),
+        single=rounded_up(MARGIN * usual),
+        single_worst=rounded_up(worst),
     )
 
 
@@ -97,7 +97,8 @@ def _error(output: Output, found: NDArray[Any], right: NDArray[np.float64]) -> N
     return np.asarray(abs(found.astype(float) - right).max(axis=0) / scale)
 
 
-def _rounded_up(value: float) -> float:
+def rounded_up(value: float) -> float:
+    """Return a number rounded up to one digit."""
     exponent = math.floor(math.log10(value))
     return float(f"{math.ceil(value / 10.0**exponent)}e{exponent}")
 
@@ -107,7 +108,7 @@ def _evaluate(
 ) -> tuple[list[NDArray[Any]], NDArray[np.bool_]]:
     """Return all outputs, and for which samples all guards hold."""
     q, n, *parameters = as_columns(samples)
-    arguments = [q, _rounded_unit(n, kind), *parameters]
+    arguments = [q, rounded_unit(n, kind), *parameters]
     values = evaluate_rounded(function.graph, arguments, kind)
     regular = np.ones(len(samples), dtype=bool)
     outputs = len(function.outputs)
@@ -116,7 +117,8 @@ def _evaluate(
     return values[:outputs], regular
 
 
-def _rounded_unit(n: NDArray[np.float64], kind: type[np.floating[Any]]) -> NDArray[np.float64]:
+def rounded_unit(n: NDArray[np.float64], kind: type[np.floating[Any]]) -> NDArray[np.float64]:
+    """Return unit vectors along columns as C computes them."""
     narrow = n.astype(kind)
     narrow = narrow / abs(narrow).max(axis=0)
     length = np.sqrt(narrow[0] * narrow[0] + narrow[1] * narrow[1] + narrow[2] * narrow[2])

@@ -10,11 +10,14 @@ from pathlib import Path
 import jinja2
 
 import softimpact
-from softimpact.symbolic import Robot
+from softimpact.symbolic import REGIONS, Robot
+from softimpact.symbolic.contact import HERTZ_STIFFNESS
 
-from . import sine
+from . import impact, sine
 from .description import Parameter
-from .functions import is_elastic
+from .functions import CHAIN_ENDS, is_elastic
+from .impact_error import FINER
+from .impact_source import ImpactSource
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
@@ -49,6 +52,7 @@ class Package:
         functions: all C functions.
         samples: golden inputs.
         tables: golden results of each function by its short name.
+        impact: peak forces and safe speeds; None where the robot has none.
     """
 
     prefix: str
@@ -62,6 +66,7 @@ class Package:
     functions: tuple[CSource, ...]
     samples: tuple[Sample, ...]
     tables: Mapping[str, Sequence[Sequence[float]]]
+    impact: ImpactSource | None
 
     @property
     def elastic(self) -> bool:
@@ -99,6 +104,11 @@ def render(package: Package) -> dict[str, str]:
         "n": package.robot.n,
         "version": softimpact.__version__,
         "sine": sine,
+        "impact": impact,
+        "finer": int(FINER),
+        "chain_ends": CHAIN_ENDS,
+        "regions": list(REGIONS.values()),
+        "hertz_stiffness": HERTZ_STIFFNESS,
         "measured": MEASURED_SAMPLES,
     }
     files = {
@@ -113,12 +123,16 @@ def render(package: Package) -> dict[str, str]:
         "README.md": "README.md",
         "LICENSE": "LICENSE",
     }
+    if package.impact:
+        for part in ("impact.h", "impact.c", "peak_force.c", "safe_speed.c"):
+            files[f"src/{name}_{part}"] = part
     rendered = {
         path: environment.get_template(f"{template}.jinja").render(context)
         for path, template in files.items()
     }
     function = environment.get_template("function.c.jinja")
-    for source in package.functions:
+    internal = [package.impact.chain] if package.impact else []
+    for source in [*package.functions, *internal]:
         rendered[f"src/{source.name}.c"] = function.render(context, f=source)
     return dict(sorted(rendered.items()))
 
