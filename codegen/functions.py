@@ -205,10 +205,10 @@ class _Builder:
         if directions is None:
             return None
         chain = self.model.chain(self.q, self.n, order, reorthogonalise="once")
-        mass = ca.vertcat(*chain.mass)
+        mass: Matrix = ca.vertcat(*chain.mass)
         rates = approach_rates(self.model, self.q, self.n, directions)
-        motors = list(range(self.model.robot.n))
-        velocity = ca.mtimes(chain.displacement[motors, :].T, rates)
+        motors = chain.displacement[list(range(self.model.robot.n)), :]
+        velocity = ca.mtimes(motors.T, rates)
         outputs = (
             Output("mass", mass, "kg", "the contact force acts on the first"),
             Output("stiffness", ca.vertcat(*chain.stiffness), "N/m", "to the next, last to ground"),

@@ -26,29 +26,30 @@ LEVELS = 3
 FIRST_NODES = 3
 """Nodes after the first at the closest spacing; two follow at each spacing but the last."""
 
-CONTACT_STEP = 0.15
+CONTACT_STEP = 0.16
 """Most radians of the contact's own vibration in a step."""
 
-MODE_STEP = 1.5
+MODE_STEP = 2.5
 """Most radians of the fastest mode in a step."""
 
 STEPS = 1024
 """Most nodes of an impact."""
 
-NEWTON, CLOSE = 12, 1e-6
-"""Most iterations for a force, and the relative change that ends them."""
+NEWTON, CLOSE = 12, 1e-3
+"""Most iterations for a force, and the relative change after which the next would be nothing."""
 
-QL = 30
-"""Most QL steps for a mode's frequency."""
+QL, APART = 30, 1e-6
+"""Most QL steps for a mode's frequency, and the coupling over frequencies that counts as none."""
 
 TRIALS = 16
 """Most impacts integrated for one safe speed; three or so do."""
 
-AIM, NEAR = 0.9994, 1.5e-4
+AIM, NEAR = 0.9994, 3e-4
 """Share of the limit at which a safe speed aims, and how near it must come."""
 
-GUESS = 0.8
-"""First guess of a safe speed over that of the masses at the contact alone."""
+GUESS, POWER = 0.8, 1.002
+"""First guess of a safe speed over that of the masses at the contact alone, and the power of the
+energy's ratio by which it is corrected; both save trials, neither changes what is found."""
 
 LINEAR = (1 / 6, -1 / 120, 1 / 5040)
 """(θ − sin θ)/θ³ over θ²: what a force that grows linearly does to a mode in a step."""

@@ -17,6 +17,8 @@ const char *rr_status_text(int status)
         return "a parameter is out of range";
     case RR_SINGULAR:
         return "the configuration is singular";
+    case RR_UNRESOLVED:
+        return "the impact does not end, or no speed is found, in the steps there are";
     default:
         return "unknown status";
     }
