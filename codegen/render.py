@@ -119,6 +119,7 @@ def render(package: Package) -> dict[str, str]:
         "test/golden.h": "golden.h",
         "test/golden.c": "golden.c",
         "test/run_tests.c": "run_tests.c",
+        "fuzz/fuzz.c": "fuzz.c",
         "CMakeLists.txt": "CMakeLists.txt",
         "README.md": "README.md",
         "LICENSE": "LICENSE",
