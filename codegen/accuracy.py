@@ -108,7 +108,7 @@ def _evaluate(
 ) -> tuple[list[NDArray[Any]], NDArray[np.bool_]]:
     """Return all outputs, and for which samples all guards hold."""
     q, n, *parameters = as_columns(samples)
-    arguments = [q, _rounded_unit(n, kind), *parameters]
+    arguments = [q, rounded_unit(n, kind), *parameters]
     values = evaluate_rounded(function.graph, arguments, kind)
     regular = np.ones(len(samples), dtype=bool)
     outputs = len(function.outputs)
@@ -117,7 +117,8 @@ def _evaluate(
     return values[:outputs], regular
 
 
-def _rounded_unit(n: NDArray[np.float64], kind: type[np.floating[Any]]) -> NDArray[np.float64]:
+def rounded_unit(n: NDArray[np.float64], kind: type[np.floating[Any]]) -> NDArray[np.float64]:
+    """Return unit vectors along columns as C computes them."""
     narrow = n.astype(kind)
     narrow = narrow / abs(narrow).max(axis=0)
     length = np.sqrt(narrow[0] * narrow[0] + narrow[1] * narrow[1] + narrow[2] * narrow[2])

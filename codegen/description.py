@@ -12,6 +12,7 @@ import numpy as np
 from softimpact.symbolic import Matrix
 
 from .graph import Graph, graph_of
+from .reciprocals import with_reciprocals
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,7 @@ class CFunction:
         direction: whether it takes the direction of impact n.
         parameters: names of the struct's fields it reads.
         guards: what tells singular and open configurations apart.
+        open_ended: whether some results may not be finite, which its callers look at.
     """
 
     name: str
@@ -98,12 +100,14 @@ class CFunction:
     direction: bool = False
     parameters: tuple[str, ...] = ()
     guards: tuple[Guard, ...] = ()
+    open_ended: bool = False
 
     @cached_property
     def graph(self) -> Graph:
         """The outputs' compared entries, then the guards."""
         values = [ca.vertcat(*[o.entry(place) for place in o.places]) for o in self.outputs]
-        return graph_of(self.symbols, [*values, *(guard.value for guard in self.guards)])
+        guards = [guard.value for guard in self.guards]
+        return with_reciprocals(graph_of(self.symbols, [*values, *guards]))
 
     @cached_property
     def flops(self) -> int:

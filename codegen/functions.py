@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 
@@ -18,7 +20,9 @@ from softimpact.symbolic import (
     giif,
     loop_gaps,
 )
+from softimpact.symbolic.rigid import Array
 
+from .approach import approach_rates, directions_of_motion, share_outside
 from .description import CFunction, Guard, Output, Parameter
 
 IMMOVABLE = 1e3
@@ -26,6 +30,11 @@ IMMOVABLE = 1e3
 
 LOOP_OPEN = 1e-3
 """Gap of a loop, over the size of the robot, from which on a configuration is refused."""
+OUTSIDE = 1e-6
+"""Squared share of n that may point where the contact point never moves."""
+
+FASTEST = 100.0
+"""Joint velocity for 1 m/s, times the largest entry of J, from which on an approach is singular."""
 
 CHAIN_ENDS = 1e-10
 """Square of the share of a mass's pull that must reach further masses for a chain to go on."""
@@ -89,6 +98,29 @@ def functions_of(
             builder.absorption_extremes(),
         ]
     return tuple(functions)
+
+
+def model_of(robot: Robot, tip: str, gravity: tuple[float, float, float]) -> ImpactModel:
+    """Return the model that a package's functions are made of, over symbols."""
+    return _Builder(robot, tip, gravity).model
+
+
+def impact_chain_of(
+    robot: Robot, tip: str, gravity: tuple[float, float, float], order: int
+) -> CFunction | None:
+    """Return what a package's impacts start from: masses, springs and velocities of a chain.
+
+    None if motors cannot move the contact point along n alone, or only in directions that depend
+    on the configuration.
+    """
+    return _Builder(robot, tip, gravity).impact_chain(order)
+
+
+def linear_model_of(
+    robot: Robot, tip: str, gravity: tuple[float, float, float]
+) -> CFunction | None:
+    """Return the whole linear robot, by which chains are judged; None as ``impact_chain_of``."""
+    return _Builder(robot, tip, gravity).linear_model()
 
 
 class _Builder:
@@ -194,6 +226,55 @@ class _Builder:
         )
         summary = f"Chain of {order} masses that stands for the robot along n."
         return self._function("chain", summary, outputs, tuple(guards))
+
+    def impact_chain(self, order: int) -> CFunction | None:
+        directions = directions_of_motion(self.model)
+        if directions is None:
+            return None
+        chain = self.model.chain(self.q, self.n, order, reorthogonalise="once")
+        mass: Matrix = ca.vertcat(*chain.mass)
+        rates = approach_rates(self.model, self.q, self.n, directions)
+        motors = chain.displacement[list(range(self.model.robot.n)), :]
+        velocity = ca.mtimes(motors.T, rates)
+        outputs = (
+            Output("mass", mass, "kg", "the contact force acts on the first"),
+            Output("stiffness", ca.vertcat(*chain.stiffness), "N/m", "to the next, last to ground"),
+            Output("velocity", velocity, "m/s", "at first touch, for an approach of 1 m/s"),
+        )
+        guards = self._arriving(mass[0], rates, directions)
+        summary = f"Chain of {order} masses as it arrives at an impact; it may end before its last."
+        built = self._function("impact_chain", summary, outputs, guards)
+        return replace(built, open_ended=True)
+
+    def linear_model(self) -> CFunction | None:
+        """Return M0, K0, J_c and the velocities of all coordinates, of which chains are made."""
+        directions = directions_of_motion(self.model)
+        if directions is None:
+            return None
+        linear = self.model.linear(self.q, self.n)
+        rates = approach_rates(self.model, self.q, self.n, directions)
+        velocity = ca.vertcat(rates, ca.SX(self.model.size - self.model.robot.n, 1))
+        outputs = (
+            Output("M0", ca.densify(linear.mass.matrix), "kg m^2", ""),
+            Output("K0", ca.densify(linear.stiffness), "N m/rad", ""),
+            Output("J_c", ca.densify(linear.jacobian), "m/rad", ""),
+            Output("velocity", ca.densify(velocity), "rad/s", ""),
+        )
+        m_c = self.model.reflected_mass(self.q, self.n)
+        guards = self._arriving(m_c, rates, directions)
+        return self._function("linear_model", "Linear model.", outputs, guards)
+
+    def _arriving(self, m_c: Matrix, rates: Matrix, directions: Array) -> tuple[Guard, ...]:
+        """Guards of an approach: along n alone, and without wild joint velocities."""
+        guards = [self._movable(m_c), Guard(ca.sumsqr(rates), 0.0, self._too_fast())]
+        if len(directions) < 3:
+            guards.append(Guard(1 - share_outside(self.n, directions), 1 - OUTSIDE))
+        return tuple(guards)
+
+    def _too_fast(self) -> float:
+        q = np.random.default_rng(3).uniform(-1, 1, (8, self.model.robot.n))
+        arm = max(float(abs(np.array(self.model.jacobian(ca.DM(x)))).max()) for x in q)
+        return float(f"{(FASTEST / arm) ** 2:.2g}")
 
     def osim(self) -> CFunction:
         real, free = self.model.mobility(self.q), self.model.free_mobility(self.q)

@@ -39,6 +39,34 @@ class FunctionRecord:
 
 
 @dataclass(frozen=True)
+class ImpactRecord:
+    """Accuracy of peak forces and safe speeds.
+
+    Attributes:
+        order: masses of the chain that stands for the robot in them.
+        flops: operations that make the chain, before any step in time.
+        chain_error_mean: of peak forces against those of the whole linear robot, on average over
+            random configurations, directions, parameters, body regions and speeds.
+        chain_error_usual: the same, not exceeded by 95 of 100 impacts.
+        chain_error_worst: largest found.
+        double_error: what integration adds, in double.
+        float_error: the same in float.
+        steps: most steps of an impact.
+        trials: most impacts for a safe speed.
+    """
+
+    order: int
+    flops: int
+    chain_error_mean: float
+    chain_error_usual: float
+    chain_error_worst: float
+    double_error: float
+    float_error: float
+    steps: int
+    trials: int
+
+
+@dataclass(frozen=True)
 class Manifest:
     """Summary of a package.
 
@@ -54,6 +82,7 @@ class Manifest:
         gravity: whose curvature enters K0 [m/s²]; zero leaves it out.
         chain_order: masses of the chain.
         functions: all functions.
+        impact: of peak forces and safe speeds, None where the robot has none.
         files: SHA-256 of each file by path.
     """
 
@@ -68,6 +97,7 @@ class Manifest:
     gravity: tuple[float, ...]
     chain_order: int
     functions: tuple[FunctionRecord, ...]
+    impact: ImpactRecord | None
     files: Mapping[str, str]
 
     def to_json(self) -> str:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +18,8 @@ from .configuration import Configuration, has_configuration
 from .configuration_source import configuration_source
 from .description import CFunction, Parameter
 from .files import replace_package, require_own, sha256
-from .functions import coordinates_of, functions_of, parameters_of
+from .functions import functions_of, parameters_of
+from .impact_source import impact_source, longest_chain
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .render import MEASURED_SAMPLES, Default, Package, render
 from .samples import Sample, draw_samples
@@ -26,9 +27,6 @@ from .source import CSource
 
 GOLDEN_CASES = 12
 """Inputs in a package's own test."""
-
-LONGEST_CHAIN = 8
-"""Most masses of a generated chain; longer ones lose their last masses to rounding."""
 
 
 def generate_package(
@@ -41,6 +39,7 @@ def generate_package(
     drives_: Drives | None = None,
     gravity: tuple[float, float, float] | None = None,
     chain_order: int = 3,
+    impact_order: int | None = None,
 ) -> Manifest:
     """Write a C99 package that computes a robot's impact model.
 
@@ -55,6 +54,8 @@ def generate_package(
         gravity: whose curvature enters K0 [m/s²]; zero leaves it out. Default none, but of closed
             chains, whose passive joints rest where springs and gravity balance, the standard one.
         chain_order: number of masses of the chain.
+        impact_order: the same of the chain behind peak forces and safe speeds; None takes the
+            fewest that are right for most impacts.
 
     Returns:
         What was generated, as in the package's ``manifest.json``.
@@ -71,7 +72,7 @@ def generate_package(
     frame = robot.frame(tip or robot.tip or "").name
     if gravity is None:
         gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
-    _check(robot, real, gravity, chain_order)
+    _check(robot, real, gravity, {"chain_order": chain_order, "impact_order": impact_order})
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot)
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
@@ -100,6 +101,7 @@ def generate_package(
         samples=tuple(golden),
         tables=tables,
         configuration=configuration,
+        impact=impact_source(prefix, robot, frame, gravity, parameters, impact_order),
     )
     files = render(package)
     manifest = _manifest(package, {path: sha256(text) for path, text in files.items()})
@@ -113,14 +115,17 @@ def c_name(name: str) -> str:
     return words if words[:1].isalpha() else f"robot_{words}".rstrip("_")
 
 
-def _check(robot: Robot, real: str, gravity: Sequence[float], chain_order: int) -> None:
+def _check(
+    robot: Robot, real: str, gravity: Sequence[float], orders: Mapping[str, int | None]
+) -> None:
     if real not in ("double", "float"):
         raise InvalidValue("real", f"must be 'double' or 'float', not '{real}'")
     if len(gravity) != 3 or not np.isfinite(gravity).all():
         raise InvalidValue("gravity", "needs three finite numbers [x, y, z]")
-    longest = min(LONGEST_CHAIN, coordinates_of(robot))
-    if not 1 <= chain_order <= longest:
-        raise InvalidValue("chain_order", f"must be from 1 to {longest}, not {chain_order}")
+    longest = longest_chain(robot)
+    for field, order in orders.items():
+        if order is not None and not 1 <= order <= longest:
+            raise InvalidValue(field, f"must be from 1 to {longest}, not {order}")
 
 
 def _regular(functions: Sequence[CFunction], samples: Sequence[Sample], tip: str) -> list[Sample]:
@@ -182,5 +187,6 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         gravity=package.gravity,
         chain_order=package.chain_order,
         functions=tuple(records),
+        impact=package.impact.record if package.impact else None,
         files=hashes,
     )

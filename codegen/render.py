@@ -10,12 +10,15 @@ from pathlib import Path
 import jinja2
 
 import softimpact
-from softimpact.symbolic import Robot, closed_chain
+from softimpact.symbolic import REGIONS, Robot, closed_chain
+from softimpact.symbolic.contact import HERTZ_STIFFNESS
 
-from . import sine
+from . import impact, sine
 from .configuration_source import ConfigurationSource
 from .description import Parameter
-from .functions import coordinates_of, is_elastic
+from .functions import CHAIN_ENDS, coordinates_of, is_elastic
+from .impact_error import FINER
+from .impact_source import ImpactSource
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
@@ -51,6 +54,7 @@ class Package:
         samples: golden inputs.
         tables: golden results of each function by its short name.
         configuration: where a closed chain's motors decide the rest; None if they do not.
+        impact: peak forces and safe speeds; None where the robot has none.
     """
 
     prefix: str
@@ -65,6 +69,7 @@ class Package:
     samples: tuple[Sample, ...]
     tables: Mapping[str, Sequence[Sequence[float]]]
     configuration: ConfigurationSource | None = None
+    impact: ImpactSource | None = None
 
     @property
     def elastic(self) -> bool:
@@ -107,6 +112,11 @@ def render(package: Package) -> dict[str, str]:
         "n": package.robot.n,
         "version": softimpact.__version__,
         "sine": sine,
+        "impact": impact,
+        "finer": int(FINER),
+        "chain_ends": CHAIN_ENDS,
+        "regions": list(REGIONS.values()),
+        "hertz_stiffness": HERTZ_STIFFNESS,
         "measured": MEASURED_SAMPLES,
     }
     files = {
@@ -117,16 +127,21 @@ def render(package: Package) -> dict[str, str]:
         "test/golden.h": "golden.h",
         "test/golden.c": "golden.c",
         "test/run_tests.c": "run_tests.c",
+        "fuzz/fuzz.c": "fuzz.c",
         "CMakeLists.txt": "CMakeLists.txt",
         "README.md": "README.md",
         "LICENSE": "LICENSE",
     }
+    if package.impact:
+        for part in ("impact.h", "impact.c", "peak_force.c", "safe_speed.c"):
+            files[f"src/{name}_{part}"] = part
     rendered = {
         path: environment.get_template(f"{template}.jinja").render(context)
         for path, template in files.items()
     }
     function = environment.get_template("function.c.jinja")
-    for source in package.functions:
+    internal = [package.impact.chain] if package.impact else []
+    for source in [*package.functions, *internal]:
         rendered[f"src/{source.name}.c"] = function.render(context, f=source)
     if package.configuration:
         solver = environment.get_template("configuration.c.jinja")

@@ -139,7 +139,7 @@ class CSource:
     @property
     def unchecked(self) -> list[str]:
         """Names of results that may overflow, so that the function must look at them."""
-        if _is_bounded(self.function.graph):
+        if self.function.open_ended or _is_bounded(self.function.graph):
             return []
         guarded = {
             text

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import casadi as ca
 import numpy as np
@@ -127,7 +128,7 @@ class ImpactModel:
         order: int = 3,
         end: ChainEnd = "grounded",
         *,
-        reorthogonalise: bool = False,
+        reorthogonalise: bool | Literal["once"] = False,
     ) -> Chain:
         """Return the chain of ``order`` masses, see ``softimpact.symbolic.chain``."""
         return chain(self.linear(q, direction), order, end, reorthogonalise=reorthogonalise)

@@ -17,6 +17,12 @@ const char *panda_status_text(int status)
         return "a parameter is out of range";
     case PANDA_SINGULAR:
         return "the configuration is singular";
+    case PANDA_LOOP_OPEN:
+        return "a loop of the closed chain is open";
+    case PANDA_NO_EQUILIBRIUM:
+        return "no equilibrium of springs and gravity was found";
+    case PANDA_UNRESOLVED:
+        return "the impact does not end, or no speed is found, in the steps there are";
     default:
         return "unknown status";
     }

@@ -27,4 +27,16 @@ extern const double panda_golden_giaf[PANDA_GOLDEN_CASES][2];
 extern const double panda_golden_directional_giaf[PANDA_GOLDEN_CASES][1];
 extern const double panda_golden_absorption_extremes[PANDA_GOLDEN_CASES][8];
 
+typedef struct {
+    panda_real q[7];
+    panda_real n[3];
+    panda_params p;
+    int part;
+    int clamped;
+    panda_real speed;
+    double force; /* right to 6 digits */
+} panda_golden_impact;
+
+extern const panda_golden_impact panda_golden_impacts[12];
+
 #endif

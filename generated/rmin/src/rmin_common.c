@@ -21,6 +21,8 @@ const char *rmin_status_text(int status)
         return "a loop of the closed chain is open";
     case RMIN_NO_EQUILIBRIUM:
         return "no equilibrium of springs and gravity was found";
+    case RMIN_UNRESOLVED:
+        return "the impact does not end, or no speed is found, in the steps there are";
     default:
         return "unknown status";
     }

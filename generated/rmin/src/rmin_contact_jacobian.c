@@ -44,11 +44,11 @@ int rmin_contact_jacobian(const rmin_real q[6], const rmin_real n[3], rmin_real 
     const rmin_real t13 = c1*t11 + s1*t12;
     const rmin_real t14 = c1*t12 - s1*t11;
     const rmin_real t15 = c5*t9 - s5*t8;
-    const rmin_real t16 = (c2*t13 + s2*t14)*t10 + t15*(c2*t14 - s2*t13);
-    const rmin_real t17 = t10/t16;
+    const rmin_real t16 = RMIN_R(1.0)/((c2*t13 + s2*t14)*t10 + t15*(c2*t14 - s2*t13));
+    const rmin_real t17 = t10*t16;
     const rmin_real t18 = c2*t11 + s2*t12;
     const rmin_real t19 = c2*t12 - s2*t11 + RMIN_R(0.28);
-    const rmin_real t20 = t15/t16;
+    const rmin_real t20 = t15*t16;
     const rmin_real t21 = t5*(t17*(c1*t18 + s1*t19) + t20*(c1*t19 - s1*t18));
     const rmin_real J_c_1 = t5 + RMIN_R(0.28)*t1 - t21;
     const rmin_real t22 = c5*t7 + s5*t6;

@@ -41,11 +41,11 @@ int rmin_jacobian(const rmin_real q[6], rmin_real J[3][4])
     const rmin_real t15 = c1*t13 + s1*t14;
     const rmin_real t16 = c1*t14 - s1*t13;
     const rmin_real t17 = c5*t11 - s5*t10;
-    const rmin_real t18 = (c2*t15 + s2*t16)*t12 + t17*(c2*t16 - s2*t15);
-    const rmin_real t19 = t12/t18;
+    const rmin_real t18 = RMIN_R(1.0)/((c2*t15 + s2*t16)*t12 + t17*(c2*t16 - s2*t15));
+    const rmin_real t19 = t12*t18;
     const rmin_real t20 = c2*t13 + s2*t14;
     const rmin_real t21 = c2*t14 - s2*t13 + RMIN_R(0.28);
-    const rmin_real t22 = t17/t18;
+    const rmin_real t22 = t17*t18;
     const rmin_real t23 = t19*(c1*t20 + s1*t21) + t22*(c1*t21 - s1*t20);
     const rmin_real J_11 = t7*t23 - t6;
     const rmin_real t24 = c5*t9 + s5*t8;

@@ -40,8 +40,8 @@ int rmin_stiffness_matrix(const rmin_real q[6], const rmin_params *p, rmin_real 
     const rmin_real t10 = c5*t8 + s5*t9;
     const rmin_real t11 = c2*t4 - s2*t3;
     const rmin_real t12 = c5*t9 - s5*t8;
-    const rmin_real t13 = t5*t10 + t11*t12;
-    const rmin_real t14 = t5/t13;
+    const rmin_real t13 = RMIN_R(1.0)/(t5*t10 + t11*t12);
+    const rmin_real t14 = t5*t13;
     const rmin_real t15 = RMIN_R(0.02)*c6;
     const rmin_real t16 = RMIN_R(0.0712) + t15;
     const rmin_real t17 = RMIN_R(9.81)*c4;
@@ -52,7 +52,7 @@ int rmin_stiffness_matrix(const rmin_real q[6], const rmin_params *p, rmin_real 
     const rmin_real t22 = t18*t17;
     const rmin_real t23 = t22 + t16*t19;
     const rmin_real t24 = c5*t21 - s5*t23;
-    const rmin_real t25 = t12/t13;
+    const rmin_real t25 = t12*t13;
     const rmin_real t26 = RMIN_R(0.02)*c3;
     const rmin_real t27 = RMIN_R(0.0712) + t26;
     const rmin_real t28 = RMIN_R(9.81)*c1;
@@ -71,8 +71,8 @@ int rmin_stiffness_matrix(const rmin_real q[6], const rmin_params *p, rmin_real 
     const rmin_real t41 = t40 + t37;
     const rmin_real t42 = t39 - c2*t41;
     const rmin_real t43 = RMIN_R(0.28)*t36;
-    const rmin_real t44 = t10/t13;
-    const rmin_real t45 = t11/t13;
+    const rmin_real t44 = t10*t13;
+    const rmin_real t45 = t11*t13;
     const rmin_real t46 = t45*t24 - t44*t35;
     const rmin_real t47 = RMIN_R(0.2)*t46;
     const rmin_real t48 = s3*t47;

@@ -37,26 +37,26 @@ int rr_reflected_mass(const rr_real q[4], const rr_real n[3], const rr_params *p
     const rr_real t6 = t5 + RR_R(0.5)*t3;
     const rr_real t7 = c3*(RR_R(0.86372)*c4) - s3*(RR_R(0.86372)*s4);
     const rr_real t8 = RR_R(2.5044576) + (RR_R(1.03951196) + t7);
-    const rr_real t9 = RR_R(4.71) + t8 + p->rotor_inertia[0];
-    const rr_real t10 = t8/t9;
+    const rr_real t9 = RR_R(1.0)/(RR_R(4.71) + t8 + p->rotor_inertia[0]);
+    const rr_real t10 = t8*t9;
     const rr_real t11 = t6 - t10*t6;
-    const rr_real t12 = t8 + p->rotor_inertia[1] - t10*t8;
+    const rr_real t12 = RR_R(1.0)/(t8 + p->rotor_inertia[1] - t10*t8);
     const rr_real t13 = RR_R(0.5)*t7;
     const rr_real t14 = RR_R(1.03951196) + t13;
-    const rr_real t15 = t14/t9;
+    const rr_real t15 = t14*t9;
     const rr_real t16 = t14 - t15*t8;
-    const rr_real t17 = t16/t12;
+    const rr_real t17 = t16*t12;
     const rr_real t18 = t5 - (t15*t6 + t17*t11);
-    const rr_real t19 = RR_R(1.03951196) + p->rotor_inertia[2] - (t15*t14 + t17*t16);
+    const rr_real t19 = RR_R(1.0)/(RR_R(1.03951196) + p->rotor_inertia[2] - (t15*t14 + t17*t16));
     const rr_real t20 = RR_R(0.20951196) + t13;
-    const rr_real t21 = t20/t9;
+    const rr_real t21 = t20*t9;
     const rr_real t22 = t20 - t21*t8;
-    const rr_real t23 = t22/t12;
+    const rr_real t23 = t22*t12;
     const rr_real t24 = RR_R(0.20951196) - (t21*t14 + t23*t16);
-    const rr_real t25 = t24/t19;
+    const rr_real t25 = t24*t19;
     const rr_real t26 = t5 - (t21*t6 + t23*t11 + t25*t18);
     const rr_real t27 = RR_R(0.20951196) + p->rotor_inertia[3] - (t21*t20 + t23*t22 + t25*t24);
-    const rr_real result = RR_R(1.0)/(t6*(t6/t9) + t11*(t11/t12) + t18*(t18/t19) + t26*(t26/t27));
+    const rr_real result = RR_R(1.0)/(t6*(t6*t9) + t11*(t11*t12) + t18*(t18*t19) + t26*(t26/t27));
     if (!(result > RR_R(0.0) && result < RR_R(26000.0))) {
         return RR_SINGULAR;
     }

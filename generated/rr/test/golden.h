@@ -23,4 +23,16 @@ extern const double rr_golden_reflected_mass[RR_GOLDEN_CASES][1];
 extern const double rr_golden_reduced_model[RR_GOLDEN_CASES][3];
 extern const double rr_golden_chain[RR_GOLDEN_CASES][6];
 
+typedef struct {
+    rr_real q[4];
+    rr_real n[3];
+    rr_params p;
+    int part;
+    int clamped;
+    rr_real speed;
+    double force; /* right to 6 digits */
+} rr_golden_impact;
+
+extern const rr_golden_impact rr_golden_impacts[12];
+
 #endif

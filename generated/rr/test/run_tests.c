@@ -523,6 +523,103 @@ static void test_chain(void)
            name, "nothing written for bad inputs");
 }
 
+static void test_impacts(void)
+{
+    const rr_real bound = (rr_real)BOUND(0.002, 0.002);
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_impacts); ++k) {
+        const rr_golden_impact *const in = &rr_golden_impacts[k];
+        rr_region region;
+        rr_peak_force_t peak = {0, 0};
+        rr_peak_force_t again = {0, 0};
+        rr_safe_speed_t safe = {0, 0};
+        expect(rr_body_region(in->part, in->clamped, &region) == RR_OK, "rr_body_region", "status");
+        expect(rr_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak) == RR_OK,
+               "rr_peak_force", "status of a golden impact");
+        worst = fmax(worst, fabs((double)peak.force/in->force - 1.0));
+        expect(peak.time > 0, "rr_peak_force", "time of the peak");
+        expect(rr_safe_speed(in->q, in->n, peak.force, &region, &in->p, &safe) == RR_OK,
+               "rr_safe_speed", "status of a golden impact");
+        expect(rr_peak_force(in->q, in->n, safe.speed, &region, &in->p, &again) == RR_OK
+                   && is_same(again.force, safe.force),
+               "rr_safe_speed", "force at the speed found");
+        expect(safe.force <= peak.force && safe.speed <= in->speed, "rr_safe_speed", "is safe");
+    }
+    printf("%-40s error %.1e, bound %.1e\n", "rr_peak_force", worst, (double)bound);
+    expect(worst <= (double)bound, "rr_peak_force", "error within its bound");
+}
+
+static void test_bad_impacts(void)
+{
+    const rr_golden_impact in = rr_golden_impacts[0];
+    rr_region good;
+    rr_peak_force_t peak;
+    rr_safe_speed_t safe;
+    memset(&peak, 0xA5, sizeof peak);
+    memset(&safe, 0xA5, sizeof safe);
+    expect(rr_body_region(-1, 0, &good) == RR_OUT_OF_RANGE, "rr_body_region", "no such part");
+    expect(rr_body_region(12, 0, &good) == RR_OUT_OF_RANGE, "rr_body_region", "no such part");
+    expect(rr_body_region(0, 0, NULL) == RR_NULL_POINTER, "rr_body_region", "NULL");
+    expect(rr_body_region(0, 0, &good) == RR_OK, "rr_body_region", "status");
+    expect(rr_peak_force(in.q, in.n, 0, &good, &in.p, &peak) == RR_OUT_OF_RANGE,
+           "rr_peak_force", "speed or limit is zero");
+    expect(rr_safe_speed(in.q, in.n, 0, &good, &in.p, &safe) == RR_OUT_OF_RANGE,
+           "rr_safe_speed", "speed or limit is zero");
+    expect(rr_peak_force(in.q, in.n, -1, &good, &in.p, &peak) == RR_OUT_OF_RANGE,
+           "rr_peak_force", "speed or limit is negative");
+    expect(rr_safe_speed(in.q, in.n, -1, &good, &in.p, &safe) == RR_OUT_OF_RANGE,
+           "rr_safe_speed", "speed or limit is negative");
+    expect(rr_peak_force(in.q, in.n, (rr_real)NAN, &good, &in.p, &peak) == RR_NOT_FINITE,
+           "rr_peak_force", "speed or limit is not a number");
+    expect(rr_safe_speed(in.q, in.n, (rr_real)NAN, &good, &in.p, &safe) == RR_NOT_FINITE,
+           "rr_safe_speed", "speed or limit is not a number");
+    expect(rr_peak_force(in.q, in.n, 1, NULL, &in.p, &peak) == RR_NULL_POINTER,
+           "rr_peak_force", "region is NULL");
+    expect(rr_safe_speed(in.q, in.n, 1, NULL, &in.p, &safe) == RR_NULL_POINTER,
+           "rr_safe_speed", "region is NULL");
+
+    {
+        rr_region bad = good;
+        bad.stiffness = 0;
+    expect(rr_peak_force(in.q, in.n, 1, &bad, &in.p, &peak) == RR_OUT_OF_RANGE,
+               "rr_peak_force", "stiffness is 0");
+        expect(rr_safe_speed(in.q, in.n, 1, &bad, &in.p, &safe) == RR_OUT_OF_RANGE,
+               "rr_safe_speed", "stiffness is 0");
+
+    }
+    {
+        rr_region bad = good;
+        bad.damping = -1;
+    expect(rr_peak_force(in.q, in.n, 1, &bad, &in.p, &peak) == RR_OUT_OF_RANGE,
+               "rr_peak_force", "damping is -1");
+        expect(rr_safe_speed(in.q, in.n, 1, &bad, &in.p, &safe) == RR_OUT_OF_RANGE,
+               "rr_safe_speed", "damping is -1");
+
+    }
+    {
+        rr_region bad = good;
+        bad.effective_mass = 0;
+    expect(rr_peak_force(in.q, in.n, 1, &bad, &in.p, &peak) == RR_OUT_OF_RANGE,
+               "rr_peak_force", "effective_mass is 0");
+        expect(rr_safe_speed(in.q, in.n, 1, &bad, &in.p, &safe) == RR_OUT_OF_RANGE,
+               "rr_safe_speed", "effective_mass is 0");
+
+    }
+    {
+        rr_region bad = good;
+        bad.hertz_stiffness = (rr_real)INFINITY;
+    expect(rr_peak_force(in.q, in.n, 1, &bad, &in.p, &peak) == RR_NOT_FINITE,
+               "rr_peak_force", "hertz_stiffness is (rr_real)INFINITY");
+        expect(rr_safe_speed(in.q, in.n, 1, &bad, &in.p, &safe) == RR_NOT_FINITE,
+               "rr_safe_speed", "hertz_stiffness is (rr_real)INFINITY");
+
+    }
+    const rr_real nowhere[3] = {0, 0, 0};
+    expect(rr_peak_force(in.q, nowhere, 1, &good, &in.p, &peak) == RR_ZERO_DIRECTION,
+           "rr_peak_force", "n is zero");
+    expect(is_untouched(&peak, sizeof peak) && is_untouched(&safe, sizeof safe), "impacts", "nothing written for bad inputs");
+}
+
 static void test_common(void)
 {
     rr_params p;
@@ -530,10 +627,10 @@ static void test_common(void)
            "rr_default_params", "status");
     expect(rr_default_params(NULL) == RR_NULL_POINTER,
            "rr_default_params", "NULL");
-    for (int status = -1; status <= 6; ++status) {
+    for (int status = -1; status <= 9; ++status) {
         expect(strlen(rr_status_text(status)) > 0, "rr_status_text", "has a text");
     }
-    expect(strcmp(rr_status_text(6), rr_status_text(RR_OK)) != 0,
+    expect(strcmp(rr_status_text(9), rr_status_text(RR_OK)) != 0,
            "rr_status_text", "unknown status");
 }
 
@@ -548,6 +645,8 @@ int main(void)
     test_reflected_mass();
     test_reduced_model();
     test_chain();
+    test_impacts();
+    test_bad_impacts();
     printf(failures == 0 ? "all passed\n" : "%d failed\n", failures);
     return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

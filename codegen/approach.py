@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Velocities with which a robot arrives at an impact, also where its tip moves in a plane."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic import ImpactModel, Matrix, least_velocity
+from softimpact.symbolic.rigid import Array
+
+SEEN = 8
+"""Configurations at which the contact point's motions are looked at."""
+
+NOTHING = 1e-9
+"""Share of the largest motion that counts as none."""
+
+
+def directions_of_motion(model: ImpactModel) -> Array | None:
+    """Return orthonormal directions, as rows, in which motors move the contact point anywhere.
+
+    None if there are none, or if they depend on the configuration without being all three.
+    """
+    q = np.random.default_rng(2).uniform(-1, 1, (SEEN, model.robot.n))
+    columns = [motor_jacobian(model, x) for x in q]
+    rank = min(int(np.linalg.matrix_rank(J, 1e-6)) for J in columns)
+    directions, sizes, _ = np.linalg.svd(np.hstack(columns))
+    if rank == 0 or (rank < 3 and sizes[rank] > NOTHING * sizes[0]):
+        return None
+    return _along_axes(directions[:, :rank] @ directions[:, :rank].T)
+
+
+def motor_jacobian(model: ImpactModel, q: Array) -> Array:
+    """Return J with the columns of passive joints set to zero, 3×n."""
+    return np.asarray(np.array(model.jacobian(ca.DM(q))) * np.array(model.robot.actuated, float))
+
+
+def _along_axes(projector: Array) -> Array:
+    """Return a basis of what a projector leaves, along the base's axes as far as it can be."""
+    basis: list[Array] = []
+    for column in projector.T:
+        rest = column - sum((row * (row @ column) for row in basis), np.zeros(3))
+        if np.linalg.norm(rest) > NOTHING:
+            basis.append(np.round(rest / np.linalg.norm(rest), 12) + 0.0)
+    return np.array(basis)
+
+
+def approach_rates(model: ImpactModel, q: Matrix, n: Matrix, directions: Array) -> Matrix:
+    """Return the link velocities of least norm that move the contact point by 1 m/s along n.
+
+    Args:
+        model: whose motors move.
+        q: link angles, SX.
+        n: unit vector among ``directions``, SX.
+        directions: from ``directions_of_motion``.
+    """
+    motors = ca.sparsify(ca.DM(np.diag(np.array(model.robot.actuated, dtype=float))))
+    basis = ca.sparsify(ca.DM(directions))
+    J = ca.mtimes([basis, model.jacobian(q), motors])
+    return least_velocity(J, ca.mtimes(basis, n))
+
+
+def share_outside(n: Matrix, directions: Array) -> Matrix:
+    """Return the squared share of a unit vector that no motion reaches."""
+    rest = ca.DM.eye(3) - ca.DM(directions).T @ ca.DM(directions)
+    return ca.sumsqr(ca.mtimes(ca.sparsify(rest), n))

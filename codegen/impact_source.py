@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Peak forces and safe speeds of a package: their chain, its order and their golden results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from softimpact.symbolic import Robot
+
+from . import impact
+from .accuracy import rounded_up
+from .approach import directions_of_motion
+from .description import Parameter
+from .functions import (
+    coordinates_of,
+    impact_chain_of,
+    linear_model_of,
+    model_of,
+)
+from .impact_error import (
+    CASES,
+    FINER,
+    Impact,
+    chain_forces,
+    draw_impacts,
+    errors_of_order,
+    linear_forces,
+    regular_impacts,
+)
+from .manifest import FunctionRecord, ImpactRecord
+from .source import CSource
+
+LONGEST_CHAIN = 8
+"""Most masses of a generated chain; longer ones lose their last masses to rounding."""
+
+GOOD_ENOUGH = 0.01
+"""Error of a chain's peak force that 95 of 100 impacts must stay below."""
+
+GOLDEN_IMPACTS = 12
+"""Impacts in a package's own test."""
+
+ACCURACY = 1e-3
+"""Least bound stated of the integration's error."""
+
+
+@dataclass(frozen=True, eq=False)
+class ImpactSource:
+    """What the templates need for ``peak_force`` and ``safe_speed``.
+
+    Attributes:
+        chain: the internal function they start from.
+        record: their accuracy.
+        golden: impacts and the right peak forces [N].
+    """
+
+    chain: CSource
+    record: ImpactRecord
+    golden: tuple[tuple[Impact, float], ...]
+
+    @property
+    def order(self) -> int:
+        """Masses of the chain."""
+        return self.record.order
+
+    @property
+    def peak_force(self) -> str:
+        """Prototype without the semicolon."""
+        return self._declaration("peak_force", "speed")
+
+    @property
+    def safe_speed(self) -> str:
+        """Prototype without the semicolon."""
+        return self._declaration("safe_speed", "limit")
+
+    def _declaration(self, function: str, number: str) -> str:
+        prefix = self.chain.prefix
+        arguments = [
+            f"const {prefix}_real q[{self.chain.joints}]",
+            f"const {prefix}_real n[3]",
+            f"{prefix}_real {number}",
+            f"const {prefix}_region *region",
+            f"const {prefix}_params *p",
+            f"{prefix}_{function}_t *out",
+        ]
+        return f"int {prefix}_{function}(\n    " + ",\n    ".join(arguments) + ")"
+
+
+def longest_chain(robot: Robot) -> int:
+    """Return the most masses that a generated chain of a robot may have."""
+    return min(LONGEST_CHAIN, coordinates_of(robot))
+
+
+def impact_source(
+    prefix: str,
+    robot: Robot,
+    tip: str,
+    gravity: tuple[float, float, float],
+    parameters: Sequence[Parameter],
+    order: int | None,
+) -> ImpactSource | None:
+    """Return the impacts of a robot; None where there are none.
+
+    Args:
+        prefix: of the C names.
+        robot: any robot.
+        tip: contact frame.
+        gravity: as in ``generate_package``.
+        parameters: fields of the parameter struct.
+        order: masses of the chain; None takes the fewest that are good enough.
+    """
+    if robot.loops:
+        return None
+    linear = linear_model_of(robot, tip, gravity)
+    longest = impact_chain_of(robot, tip, gravity, longest_chain(robot))
+    directions = directions_of_motion(model_of(robot, tip, gravity))
+    if linear is None or longest is None or directions is None:
+        return None
+    drawn = draw_impacts(robot, parameters, directions, CASES, seed=3)
+    impacts = regular_impacts(linear, drawn)
+    right = linear_forces(linear, impacts)
+    for masses in [order] if order else range(1, longest_chain(robot) + 1):
+        forces = chain_forces(longest, parameters, impacts, masses)
+        errors = errors_of_order(forces / right - 1)
+        if errors[1] <= GOOD_ENOUGH:
+            break
+    chain = impact_chain_of(robot, tip, gravity, masses)
+    assert chain is not None
+    reference = chain_forces(chain, parameters, impacts, masses, finer=FINER)
+    narrow = chain_forces(chain, parameters, impacts, masses, np.float32)
+    record = ImpactRecord(
+        order=masses,
+        flops=chain.flops,
+        chain_error_mean=errors[0],
+        chain_error_usual=errors[1],
+        chain_error_worst=errors[2],
+        double_error=max(ACCURACY, rounded_up(float(abs(forces / reference - 1).max()))),
+        float_error=max(ACCURACY, rounded_up(float(abs(narrow / reference - 1).max()))),
+        steps=impact.STEPS,
+        trials=impact.TRIALS,
+    )
+    return ImpactSource(
+        chain=CSource(prefix, robot.n, parameters, chain, _no_record(chain.name)),
+        record=record,
+        golden=tuple(
+            (case, float(f"{force:.6g}"))
+            for case, force in zip(
+                impacts[:GOLDEN_IMPACTS], reference[:GOLDEN_IMPACTS].tolist(), strict=True
+            )
+        ),
+    )
+
+
+def _no_record(name: str) -> FunctionRecord:
+    """Return the record of a function whose errors only count in what is made of it."""
+    return FunctionRecord(name, 0, 0, 0.0, 0.0, 0.0)

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/*
+ * A 1 kHz control loop that never moves faster than a collision with a chest allows.
+ *
+ * The arm follows a joint trajectory. In every cycle the contact point's velocity tells what would
+ * be hit and how fast; panda_safe_speed tells how fast it may be, and the trajectory's clock slows
+ * down where the plan is faster. Uses nothing but the generated package, so that the loop's body
+ * runs on a microcontroller as it is.
+ */
+#include <math.h>
+#include <stdio.h>
+
+#include "panda.h"
+
+#define JOINTS PANDA_JOINTS
+#define CYCLE ((panda_real)0.001) /* s */
+#define PI ((panda_real)3.14159265358979)
+
+/* What the controller knows: its drives, and whom it may hit. */
+typedef struct {
+    panda_params drives;
+    panda_region body;
+    panda_real limit;      /* N */
+    panda_real last_speed; /* m/s, allowed while the direction is unknown or singular */
+} guard;
+
+/* The planned trajectory: there and back between two poses, at rest at both ends. */
+static void plan(panda_real time, panda_real q[JOINTS], panda_real rate[JOINTS])
+{
+    static const panda_real from[JOINTS] = {-0.9f, -0.4f, 0, -2.3f, 0, 1.9f, 0.8f};
+    static const panda_real to[JOINTS] = {0.9f, 0.3f, 0, -1.7f, 0, 2.2f, 0.8f};
+    const panda_real period = 2;
+    const panda_real angle = 2*PI*time/period;
+    const panda_real share = (1 - (panda_real)cos((double)angle))/2;
+    const panda_real share_rate = PI/period*(panda_real)sin((double)angle);
+    for (int i = 0; i < JOINTS; ++i) {
+        q[i] = from[i] + share*(to[i] - from[i]);
+        rate[i] = share_rate*(to[i] - from[i]);
+    }
+}
+
+/* Velocity of the contact point; returns its size [m/s]. */
+static panda_real tip_velocity(panda_real q[JOINTS], panda_real rate[JOINTS], panda_real velocity[3])
+{
+    panda_real J[3][JOINTS];
+    panda_real square = 0;
+    if (panda_jacobian(q, J) != PANDA_OK) {
+        return 0;
+    }
+    for (int k = 0; k < 3; ++k) {
+        velocity[k] = 0;
+        for (int i = 0; i < JOINTS; ++i) {
+            velocity[k] += J[k][i]*rate[i];
+        }
+        square += velocity[k]*velocity[k];
+    }
+    return (panda_real)sqrt((double)square);
+}
+
+/* Share of the planned velocity that is allowed now; *force is what it leads to [N]. */
+static panda_real allowed_share(guard *g, panda_real q[JOINTS], panda_real rate[JOINTS], panda_real *force)
+{
+    panda_real direction[3];
+    const panda_real planned = tip_velocity(q, rate, direction);
+    panda_safe_speed_t safe = {g->last_speed, 0};
+    *force = 0;
+    if (!(planned > (panda_real)1e-6)) {
+        return 1; /* as good as at rest */
+    }
+    if (panda_safe_speed(q, direction, g->limit, &g->body, &g->drives, &safe) == PANDA_OK) {
+        g->last_speed = safe.speed;
+    }
+    const panda_real share = planned > safe.speed ? safe.speed/planned : 1;
+    panda_peak_force_t peak;
+    if (panda_peak_force(q, direction, share*planned, &g->body, &g->drives, &peak) == PANDA_OK) {
+        *force = peak.force;
+    }
+    return share;
+}
+
+static int prepare(guard *g)
+{
+    if (panda_default_params(&g->drives) != PANDA_OK
+        || panda_body_region(PANDA_CHEST, 0, &g->body) != PANDA_OK) {
+        return 0;
+    }
+    for (int i = 0; i < JOINTS; ++i) {
+        g->drives.joint_stiffness[i] = 3000; /* N m/rad; yours */
+        g->drives.rotor_inertia[i] = (panda_real)0.3; /* kg m^2; yours */
+    }
+    g->limit = g->body.force_limit*(1 - (panda_real)PANDA_IMPACT_MARGIN);
+    g->last_speed = (panda_real)0.05;
+    return 1;
+}
+
+int main(void)
+{
+    guard g;
+    if (!prepare(&g)) {
+        return 2;
+    }
+    int cycles = 0;
+    int slowed = 0;
+    panda_real clock = 0;
+    panda_real highest = 0;
+    panda_real q[JOINTS];
+    panda_real rate[JOINTS];
+    puts("time [s]  plan [s]  share  peak force [N]");
+    while (clock < 2 && cycles < 60000) {
+        panda_real force;
+        plan(clock, q, rate);
+        const panda_real share = allowed_share(&g, q, rate, &force);
+        /* here q + share*rate*CYCLE would go to the drives */
+        highest = force > highest ? force : highest;
+        slowed += share < 1;
+        if (cycles % 250 == 0) {
+            printf("%8.3f  %8.3f  %5.2f  %6.1f\n", cycles*(double)CYCLE, (double)clock,
+                   (double)share, (double)force);
+        }
+        clock += share*CYCLE;
+        ++cycles;
+    }
+    printf("%d cycles, %d slowed down, highest force %.2f N, limit %.2f N\n", cycles, slowed,
+           (double)highest, (double)g.body.force_limit);
+    return highest <= g.body.force_limit ? 0 : 1;
+}

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Feeds panda any bits, or any numbers of a plausible size: whatever is PANDA_OK must be finite,
+ * whatever is not must have written nothing. For libFuzzer:
+ * clang -fsanitize=fuzzer,address,undefined -Iinclude fuzz/fuzz.c src/<all>.c -lm
+ */
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "panda.h"
+
+/* Everything that functions read, as plain numbers. */
+typedef struct {
+    panda_real q[7];
+    panda_real n[3];
+    panda_params p;
+    panda_real region[4];
+    panda_real number;
+} inputs;
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+/* Stops the fuzzer unless memory holds finite numbers, or is as it was. */
+static void check(int status, const void *memory, size_t size)
+{
+    for (size_t at = 0; at < size; at += sizeof(panda_real)) {
+        panda_real x;
+        unsigned char untouched[sizeof x];
+        memset(untouched, 0xA5, sizeof untouched);
+        memcpy(&x, (const unsigned char *)memory + at, sizeof x);
+        if (status == PANDA_OK ? !isfinite(x) : memcmp(&x, untouched, sizeof x) != 0) {
+            abort();
+        }
+    }
+}
+
+/* Bits as they are, or two bytes a number: -8 to 8, or its square for what should be positive. */
+static void decode(const uint8_t *data, size_t size, inputs *in)
+{
+    memset(in, 0, sizeof *in);
+    if (size > 0 && (data[0] & 1u) != 0u) {
+        memcpy(in, data + 1, size - 1 < sizeof *in ? size - 1 : sizeof *in);
+        return;
+    }
+    for (size_t i = 0; i < sizeof *in/sizeof(panda_real); ++i) {
+        const size_t at = 1 + 2*i;
+        const int low = at < size ? data[at] : 1;
+        const int high = at + 1 < size ? data[at + 1] : 144;
+        const panda_real x = (panda_real)(256*high + low - 32768)/(panda_real)4096;
+        const panda_real positive = x*x*x*x;
+        memcpy((unsigned char *)in + i*sizeof x, i < 10 ? &x : &positive, sizeof x);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    inputs in;
+    decode(data, size, &in);
+    {
+        panda_real M[7][7];
+        memset(&M, 0xA5, sizeof M);
+        const int status = panda_mass_matrix(in.q, M);
+        check(status, &M, sizeof M);
+    }
+    {
+        panda_real J[3][7];
+        memset(&J, 0xA5, sizeof J);
+        const int status = panda_jacobian(in.q, J);
+        check(status, &J, sizeof J);
+    }
+    {
+        panda_real M0[14][14];
+        memset(&M0, 0xA5, sizeof M0);
+        const int status = panda_generalised_mass_matrix(in.q, &in.p, M0);
+        check(status, &M0, sizeof M0);
+    }
+    {
+        panda_real K0[14][14];
+        memset(&K0, 0xA5, sizeof K0);
+        const int status = panda_stiffness_matrix(in.q, &in.p, K0);
+        check(status, &K0, sizeof K0);
+    }
+    {
+        panda_real J_c[14];
+        memset(&J_c, 0xA5, sizeof J_c);
+        const int status = panda_contact_jacobian(in.q, in.n, J_c);
+        check(status, &J_c, sizeof J_c);
+    }
+    {
+        panda_real m_c;
+        memset(&m_c, 0xA5, sizeof m_c);
+        const int status = panda_reflected_mass(in.q, in.n, &m_c);
+        check(status, &m_c, sizeof m_c);
+    }
+    {
+        panda_reduced_model_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_reduced_model(in.q, in.n, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        panda_chain_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_chain(in.q, in.n, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        panda_osim_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_osim(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        panda_giaf_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_giaf(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        panda_real giaf;
+        memset(&giaf, 0xA5, sizeof giaf);
+        const int status = panda_directional_giaf(in.q, in.n, &in.p, &giaf);
+        check(status, &giaf, sizeof giaf);
+    }
+    {
+        panda_absorption_extremes_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_absorption_extremes(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    panda_region region;
+    if (panda_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != PANDA_OK) {
+        return 0;
+    }
+    if (size > 0 && (data[0] & 4u) != 0u) {
+        region.stiffness = in.region[0];
+        region.damping = in.region[1];
+        region.effective_mass = in.region[2];
+        region.hertz_stiffness = in.region[3];
+    }
+    {
+        panda_peak_force_t out;
+        memset(&out, 0xA5, sizeof out);
+        check(panda_peak_force(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    {
+        panda_safe_speed_t out;
+        memset(&out, 0xA5, sizeof out);
+        check(panda_safe_speed(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    return 0;
+}

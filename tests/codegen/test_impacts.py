@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Peak forces and safe speeds in C: right, on the safe side, and bounded."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from compiled_packages import KINDS, Generated, parameter
+
+from softimpact.codegen import impact
+from softimpact.codegen.functions import is_elastic, parameters_of
+from softimpact.codegen.impact_error import Impact, draw_impacts
+from softimpact.codegen.manifest import ImpactRecord
+from softimpact.codegen.samples import Sample
+from softimpact.simulate import Approach, simulate_impact
+from softimpact.symbolic import REGIONS, Contact, Drives, ImpactModel, body_region
+from softimpact.symbolic.rigid import Array
+
+OK, NULL_POINTER, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR, UNRESOLVED = range(7)
+SPACE, PLANE = np.eye(3), np.eye(3)[:2]
+PARTS = list(REGIONS)
+
+
+@dataclass(frozen=True, eq=False)
+class Impacts:
+    """``peak_force`` and ``safe_speed`` of a compiled package."""
+
+    package: Generated
+    real: str
+
+    @cached_property
+    def library(self) -> ctypes.CDLL:
+        """The compiled package."""
+        return self.package.load(self.real).library
+
+    def region(self, name: str, clamped: bool) -> Any:
+        """Return a region's struct."""
+        region = region_type(self.real)()
+        entry = getattr(self.library, f"{self.package.manifest.name}_body_region")
+        assert entry(PARTS.index(name), int(clamped), ctypes.byref(region)) == OK
+        return region
+
+    def call(self, function: str, sample: Sample, number: float, region: Any) -> tuple[int, Array]:
+        """Return the status and the two numbers written, NaN if none were."""
+        real, kind = KINDS[self.real]
+        out = np.full(2, np.nan, dtype=kind)
+        vectors = [np.array(v, dtype=kind) for v in (sample.q, sample.n)]
+        p = np.array(sample.parameters, dtype=kind).ravel()
+        entry = getattr(self.library, f"{self.package.manifest.name}_{function}")
+        pointers = [ctypes.c_void_p(v.ctypes.data) for v in (*vectors, p, out)]
+        place = ctypes.byref(region)
+        status = entry(*pointers[:2], real(number), place, *pointers[2:])
+        return status, out.astype(float)
+
+    def peak_force(self, case: Impact) -> tuple[int, Array]:
+        """Return status, peak force [N] and its time [s]."""
+        region = self.region(case.region.name, case.clamped)
+        return self.call("peak_force", case.sample, case.speed, region)
+
+    def safe_speed(self, case: Impact, limit: float) -> tuple[int, Array]:
+        """Return status, safe speed [m/s] and its force [N]."""
+        region = self.region(case.region.name, case.clamped)
+        return self.call("safe_speed", case.sample, limit, region)
+
+
+def region_type(real: str) -> type[ctypes.Structure]:
+    """Return the struct of a region."""
+    names = "stiffness damping effective_mass hertz_stiffness quasi_static_limit force_limit"
+    fields = [(name, KINDS[real][0]) for name in names.split()]
+    return type("Region", (ctypes.Structure,), {"_fields_": [*fields, ("clamped", ctypes.c_int)]})
+
+
+def record_of(package: Generated) -> ImpactRecord:
+    """Return what a package states of its impacts."""
+    assert package.manifest.impact
+    return package.manifest.impact
+
+
+def sundials(package: Generated, case: Impact, tolerance: float = 1e-9) -> tuple[float, float]:
+    """Return the first contact's peak force of the same chain, and its time."""
+    robot, sample = package.robot, case.sample
+    elastic = is_elastic(robot)
+    springs = parameter(package, sample, "joint_stiffness") if elastic else np.zeros(robot.n)
+    drives = Drives(
+        ca.DM(parameter(package, sample, "rotor_inertia")),
+        ca.DM(springs),
+        (elastic,) * robot.n,
+        ca.DM(parameter(package, sample, "position_gain") * np.array(robot.actuated)),
+    )
+    model = ImpactModel(robot, package.tip, drives, package.manifest.gravity)
+    approach = Approach(np.array(sample.q), np.array(sample.n), case.speed)
+    contact, order = Contact(case.region, case.clamped), record_of(package).order
+    end = "grounded" if order == model.size else None
+    found = simulate_impact(
+        model, approach, contact, "chain", order=order, end=end, tolerance=tolerance
+    )
+    return found.first_contact, found.time_of_first_contact_peak
+
+
+def impacts(package: Generated, count: int, seed: int) -> list[Impact]:
+    """Return random impacts."""
+    directions = PLANE if package.manifest.name == "rr" else SPACE
+    return draw_impacts(package.robot, parameters_of(package.robot), directions, count, seed)
+
+
+@pytest.mark.parametrize(("robot", "count"), [("panda", 90), ("rr", 40)])
+def test_peak_force_and_safe_speed_agree_with_sundials(
+    package: Callable[[str], Generated], robot: str, count: int
+) -> None:
+    check_against_sundials(package(robot), count, seed=21)
+
+
+@pytest.mark.slow
+def test_many_peak_forces_agree_with_sundials(package: Callable[[str], Generated]) -> None:
+    check_against_sundials(package("panda"), 600, seed=22)
+
+
+def check_against_sundials(package: Generated, count: int, seed: int) -> None:
+    """Compare random impacts of both builds; 0.1 % and the safe side are the design's numbers."""
+    double, single = (Impacts(package, real) for real in ("double", "float"))
+    record, compared = record_of(package), 0
+    for case in impacts(package, count, seed):
+        status, (force, time) = double.peak_force(case)
+        if status == SINGULAR:
+            continue
+        assert status == OK, case
+        right, when = sundials(package, case)
+        assert force == pytest.approx(right, rel=1e-3), case
+        assert time == pytest.approx(when, rel=0.1, abs=1e-4), case
+        status, (narrow, _) = single.peak_force(case)
+        assert status == OK
+        assert narrow == pytest.approx(right, rel=record.float_error + 2e-4), case
+        status, (speed, reached) = double.safe_speed(case, right)
+        assert status == OK
+        assert reached <= right
+        if speed < (1 - 2e-3) * case.speed:  # the peak jumps below the limit
+            faster = replace(case, speed=1.001 * speed)
+            assert double.peak_force(faster)[1][0] > right, case
+        else:
+            assert sundials(package, replace(case, speed=speed))[0] <= right * (1 + 1e-6), case
+        compared += 1
+    assert compared > 0.9 * count
+
+
+@pytest.mark.parametrize("real", ["double", "float"])
+@pytest.mark.parametrize("limit", [5.0, 65.0, 280.0, 1000.0])
+def test_force_at_the_safe_speed_is_just_below_the_limit(
+    package: Callable[[str], Generated], real: str, limit: float
+) -> None:
+    generated = package("panda")
+    compiled, found = Impacts(generated, real), 0
+    for case in impacts(generated, 60, seed=5):
+        status, (speed, force) = compiled.safe_speed(case, limit)
+        if status == SINGULAR:
+            continue
+        assert status == OK, case
+        assert force <= limit
+        again = replace(case, speed=speed)
+        assert compiled.peak_force(again)[1][0] == pytest.approx(force, rel=1e-6)
+        if force < (1 - 1e-3) * limit:
+            faster = replace(case, speed=speed * (1 + 4 * impact.NEAR))
+            assert compiled.peak_force(faster)[1][0] > (1 - 1e-3) * limit, case
+        found += 1
+    assert found > 50
+
+
+def test_force_grows_with_speed_between_a_linear_and_a_hertz_contact(
+    package: Callable[[str], Generated],
+) -> None:
+    compiled = Impacts(package("panda"), "double")
+    sample = impacts(compiled.package, 8, seed=2)[1].sample
+    for clamped in (False, True):
+        region = compiled.region("chest", clamped)
+        (fast, time), (slow, _) = (
+            compiled.call("peak_force", sample, speed, region)[1] for speed in (0.5, 0.25)
+        )
+        assert 0 < time < 0.1
+        assert 2 <= fast / slow <= 2 * 2**0.2
+
+
+def test_regions_are_those_of_the_model(package: Callable[[str], Generated]) -> None:
+    compiled = Impacts(package("rr"), "double")
+    for name in REGIONS:
+        ours, theirs = compiled.region(name, clamped=True), body_region(name)
+        assert ours.clamped == 1
+        assert ours.stiffness == theirs.stiffness
+        assert ours.damping == theirs.damping
+        assert ours.effective_mass == theirs.effective_mass
+        assert ours.force_limit == theirs.force_limit
+        assert ours.quasi_static_limit == theirs.quasi_static_limit
+        assert ours.hertz_stiffness == Contact(theirs).hertz_stiffness
+
+
+@pytest.mark.parametrize("function", ["peak_force", "safe_speed"])
+def test_bad_impacts_return_a_status_and_write_nothing(
+    package: Callable[[str], Generated], function: str
+) -> None:
+    generated = package("panda")
+    compiled = Impacts(generated, "double")
+    case = impacts(generated, 1, seed=3)[0]
+    good = compiled.region("head", clamped=False)
+    nan = float("nan")
+    assert compiled.call(function, case.sample, 0.5, good)[0] == OK
+
+    def region(**changes: float) -> Any:
+        changed = compiled.region("head", clamped=False)
+        for field, value in changes.items():
+            setattr(changed, field, value)
+        return changed
+
+    cases = [
+        (case.sample, 0.0, good, OUT_OF_RANGE),
+        (case.sample, -1.0, good, OUT_OF_RANGE),
+        (case.sample, nan, good, NOT_FINITE),
+        (replace(case.sample, n=(0.0, 0.0, 0.0)), 1.0, good, ZERO_DIRECTION),
+        (replace(case.sample, q=(nan,) * 7), 1.0, good, NOT_FINITE),
+        (case.sample, 1.0, region(stiffness=0), OUT_OF_RANGE),
+        (case.sample, 1.0, region(damping=-1), OUT_OF_RANGE),
+        (case.sample, 1.0, region(effective_mass=0), OUT_OF_RANGE),
+        (case.sample, 1.0, region(hertz_stiffness=nan), NOT_FINITE),
+    ]
+    for sample, number, body, expected in cases:
+        status, out = compiled.call(function, sample, number, body)
+        assert status == expected
+        assert np.isnan(out).all()
+    clamped = region(effective_mass=0, clamped=1)
+    assert compiled.call(function, case.sample, 0.5, clamped)[0] == OK
+    undamped = region(damping=0)
+    assert compiled.call(function, case.sample, 0.5, undamped)[0] == OK
+
+
+def test_impacts_out_of_the_plane_of_motion_are_singular(
+    package: Callable[[str], Generated],
+) -> None:
+    compiled = Impacts(package("rr"), "double")
+    case = impacts(compiled.package, 1, seed=3)[0]
+    tilted = replace(case, sample=replace(case.sample, n=(*case.sample.n[:2], 0.1)))
+    assert compiled.peak_force(case)[0] == OK
+    assert compiled.peak_force(tilted)[0] == SINGULAR
+
+
+@pytest.mark.parametrize("real", ["double", "float"])
+@pytest.mark.parametrize("robot", ["panda", "rr"])
+def test_any_bits_give_finite_impacts_or_a_status(
+    package: Callable[[str], Generated], robot: str, real: str
+) -> None:
+    generated = package(robot)
+    compiled = Impacts(generated, real)
+    n, fields = generated.robot.n, len(parameters_of(generated.robot))
+    kind, bits = (np.float64, np.uint64) if real == "double" else (np.float32, np.uint32)
+    random = np.random.default_rng(12)
+    seen = set()
+    for k in range(600):
+        count = n + 3 + fields * n + 7
+        numbers = random.integers(0, np.iinfo(bits).max, count, dtype=bits).view(kind)
+        numbers = np.where(random.random(count) < 0.95, abs(numbers), numbers)
+        numbers = np.where(np.isfinite(numbers), numbers, 1).astype(float)
+        if k % 2:  # of a size that lets impacts begin
+            numbers = np.exp(np.clip(np.log(abs(numbers) + 1e-30) / (5 + k % 40), -20, 20))
+        if robot == "rr":
+            numbers[n + 2] = 0
+        q, direction, rest = np.split(numbers, [n, n + 3])
+        parameters = rest[: fields * n].reshape(-1, n)
+        sample = Sample(tuple(q), tuple(direction), tuple(map(tuple, parameters)))
+        region = compiled.region("chest", clamped=bool(k % 3))
+        names = ("stiffness", "damping", "effective_mass", "hertz_stiffness")
+        for name, value in zip(names, rest[fields * n : fields * n + 4], strict=True):
+            setattr(region, name, value)
+        for function in ("peak_force", "safe_speed"):
+            status, out = compiled.call(function, sample, rest[-1], region)
+            assert np.isfinite(out).all() if status == OK else np.isnan(out).all()
+            assert status != OK or (out > 0).all()
+            seen.add(status)
+    assert {OK, SINGULAR} <= seen
+
+
+def test_impact_that_outlasts_its_steps_is_unresolved(
+    package: Callable[[str], Generated],
+) -> None:
+    compiled = Impacts(package("panda"), "double")
+    case = impacts(compiled.package, 2, seed=3)[1]
+    soft = compiled.region("abdomen", clamped=True)
+    soft.stiffness = 1e-3  # the fastest mode sets the step, the body the time
+    assert compiled.call("peak_force", case.sample, 0.5, soft)[0] == UNRESOLVED
+    assert compiled.call("safe_speed", case.sample, 50.0, soft)[0] == UNRESOLVED

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Other people's checkers on the generated C; ``docs/verification.md`` lists them."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from compiled_packages import Generated, run, tool
+
+pytestmark = pytest.mark.slow
+PAGE = Path(__file__).parents[2] / "docs/verification.md"
+FUZZED = 100_000
+"""Executions in each run of the tests; more by hand."""
+
+
+@pytest.mark.parametrize("real", ["double", "float"])
+def test_gccs_analyzer_finds_nothing(
+    package: Callable[[str], Generated], real: str, tmp_path: Path
+) -> None:
+    generated = package("panda")
+    for source in generated.folder.glob("src/*.c"):
+        flags = [*generated.flags(real), "-O2", "-fanalyzer"]
+        run(tool("gcc"), *flags, "-c", source, "-o", tmp_path / "x.o")
+
+
+@pytest.mark.parametrize("level", ["-O0", "-O2", "-O3"])
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_own_test_passes_at_every_level(
+    package: Callable[[str], Generated], compiler: str, level: str, tmp_path: Path
+) -> None:
+    generated = package("panda")
+    sources = [*generated.folder.glob("src/*.c"), *generated.folder.glob("test/*.c")]
+    for real in ("double", "float"):
+        binary = tmp_path / real
+        run(tool(compiler), *generated.flags(real), level, *sources, "-o", binary, "-lm")
+        assert run(binary).endswith("all passed\n")
+
+
+@pytest.mark.parametrize("real", ["double", "float"])
+def test_valgrind_finds_nothing(
+    package: Callable[[str], Generated], real: str, tmp_path: Path
+) -> None:
+    if shutil.which("valgrind") is None:
+        pytest.skip("needs valgrind")
+    generated = package("panda")
+    sources = [*generated.folder.glob("src/*.c"), *generated.folder.glob("test/*.c")]
+    binary = tmp_path / "test"
+    run(tool("gcc"), *generated.flags(real), "-g", *sources, "-o", binary, "-lm")
+    said = run("valgrind", "--error-exitcode=3", "--track-origins=yes", binary)
+    assert "ERROR SUMMARY: 0 errors" in said
+    assert re.search(r"total heap usage: [12] allocs", said)  # printf's own
+
+
+@pytest.mark.parametrize("real", ["double", "float"])
+@pytest.mark.parametrize("robot", ["panda", "rr"])
+def test_fuzzer_finds_nothing(
+    package: Callable[[str], Generated], robot: str, real: str, tmp_path: Path
+) -> None:
+    generated = package(robot)
+    probe = tmp_path / "probe.c"
+    probe.write_text("int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n);\n"
+                     "int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n)"
+                     "{ return d == 0 && n > 0; }\n")  # fmt: skip
+    with_fuzzer = [tool("clang"), "-fsanitize=fuzzer"]
+    command = [*with_fuzzer, probe, "-o", tmp_path / "probe"]
+    if subprocess.run(command, capture_output=True, check=False).returncode != 0:
+        pytest.skip("needs clang's libFuzzer")
+    sources = [*generated.folder.glob("src/*.c"), generated.folder / "fuzz/fuzz.c"]
+    checks = ["-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all", "-g"]
+    binary = tmp_path / "fuzz"
+    run("clang", *generated.flags(real), "-O2", *checks, *sources, "-o", binary, "-lm")
+    said = run(binary, f"-runs={FUZZED}", "-seed=1", "-max_len=400", "-len_control=0")
+    assert f"Done {FUZZED} runs" in said
+
+
+def test_every_loop_has_a_bound(package: Callable[[str], Generated]) -> None:
+    for source in package("panda").folder.glob("src/*.[ch]"):
+        text = source.read_text()
+        assert not re.search(r"\b(goto|malloc|calloc|realloc|free|alloca|setjmp)\b", text)
+        endless = re.findall(r"for \([^;)]*;\s*;|while \(1\)|do \{", text)
+        assert len(endless) == text.count("if (step == 30) {\n                return 0;"), source
+
+
+def test_page_lists_the_checks() -> None:
+    page = PAGE.read_text()
+    for name in re.findall(r"def (test_\w+)", Path(__file__).read_text()):
+        assert f"`{name}`" in page or name == "test_page_lists_the_checks", name
