@@ -91,6 +91,8 @@ class CFunction:
         parameters: names of the struct's fields it reads.
         guards: what tells singular and open configurations apart.
         open_ended: whether some results may not be finite, which its callers look at.
+        divides: whether divisions stay divisions; for results that cannot afford the rounding of
+            a reciprocal.
     """
 
     name: str
@@ -101,13 +103,15 @@ class CFunction:
     parameters: tuple[str, ...] = ()
     guards: tuple[Guard, ...] = ()
     open_ended: bool = False
+    divides: bool = False
 
     @cached_property
     def graph(self) -> Graph:
         """The outputs' compared entries, then the guards."""
         values = [ca.vertcat(*[o.entry(place) for place in o.places]) for o in self.outputs]
         guards = [guard.value for guard in self.guards]
-        return with_reciprocals(graph_of(self.symbols, [*values, *guards]))
+        graph = graph_of(self.symbols, [*values, *guards])
+        return graph if self.divides else with_reciprocals(graph)
 
     @cached_property
     def flops(self) -> int:

@@ -342,4 +342,5 @@ class _Builder:
         )
         guards = (self._in_space(real.inertia), self._in_space(free.inertia))
         summary = "Directions of least and greatest absorption, base axes (GIAF Eq. 29)."
-        return self._function("absorption_extremes", summary, outputs, guards)
+        extremes = self._function("absorption_extremes", summary, outputs, guards)
+        return replace(extremes, divides=True)  # directions magnify rounding

@@ -13,6 +13,7 @@ from compiled_packages import Generated, run
 from cross_compiled import build, calls, count, flags, link, run_image
 
 pytestmark = pytest.mark.embedded
+EXAMPLE = Path(__file__).parents[2] / "examples/embedded/main.c"
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -37,6 +38,12 @@ def test_own_test_passes_on_the_core(
     generated = package(robot)
     said = emulate(generated, core, real, [generated.folder / "test/run_tests.c"], tmp_path)
     assert said.endswith("all passed\n")
+
+
+def test_control_loop_runs_on_the_core(package: Callable[[str], Generated], tmp_path: Path) -> None:
+    said = emulate(package("panda"), "m7", "float", [EXAMPLE], tmp_path)
+    force, limit = map(float, re.findall(r"force ([\d.]+) N, limit ([\d.]+) N", said)[0])
+    assert 0.995 * limit < force < limit
 
 
 COSTS = {

@@ -23,7 +23,8 @@ from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import REGIONS, Contact, Drives, ImpactModel, body_region
 from softimpact.symbolic.rigid import Array
 
-OK, NULL_POINTER, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR, UNRESOLVED = range(7)
+OK, NULL_POINTER, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR = range(6)
+UNRESOLVED = 8
 SPACE, PLANE = np.eye(3), np.eye(3)[:2]
 PARTS = list(REGIONS)
 

@@ -151,7 +151,8 @@ static void prepare_steps(panda_impact *impact, const panda_real *squared, const
     for (int i = 0; i < impact->modes; ++i) {
         panda_real h2 = impact->step*impact->step;
         panda_real theta2 = squared[i]*h2;
-        const panda_real lean = polynomial(theta2, PANDA_R(0.16666666666666666), PANDA_R(-0.008333333333333333), PANDA_R(0.0001984126984126984), PANDA_R(0.0));
+        const panda_real lean = polynomial(theta2, PANDA_R(0.16666666666666666),
+            PANDA_R(-0.008333333333333333), PANDA_R(0.0001984126984126984), PANDA_R(0.0));
         impact->start[i] = velocity[i]*impact->step*(PANDA_R(1.0) - theta2*lean);
         impact->start_edge[i] = weight[i]*h2*lean;
         panda_real alpha = polynomial(theta2, PANDA_R(0.08333333333333333), PANDA_R(-0.002777777777777778),

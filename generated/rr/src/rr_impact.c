@@ -151,7 +151,8 @@ static void prepare_steps(rr_impact *impact, const rr_real *squared, const rr_re
     for (int i = 0; i < impact->modes; ++i) {
         rr_real h2 = impact->step*impact->step;
         rr_real theta2 = squared[i]*h2;
-        const rr_real lean = polynomial(theta2, RR_R(0.16666666666666666), RR_R(-0.008333333333333333), RR_R(0.0001984126984126984), RR_R(0.0));
+        const rr_real lean = polynomial(theta2, RR_R(0.16666666666666666),
+            RR_R(-0.008333333333333333), RR_R(0.0001984126984126984), RR_R(0.0));
         impact->start[i] = velocity[i]*impact->step*(RR_R(1.0) - theta2*lean);
         impact->start_edge[i] = weight[i]*h2*lean;
         rr_real alpha = polynomial(theta2, RR_R(0.08333333333333333), RR_R(-0.002777777777777778),

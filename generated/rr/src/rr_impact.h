@@ -13,40 +13,30 @@ typedef struct {
     rr_real mass[4]; /* kg; the contact force acts on the first */
     rr_real stiffness[4]; /* N/m; to the next, last to ground */
     rr_real velocity[4]; /* m/s; at first touch, for an approach of 1 m/s */
-} rr_impact_chain_t;
-
-/* Chain of 4 masses as it arrives at an impact; it may end before its last. */
+} rr_impact_chain_t; /* Chain of 4 masses as it arrives at an impact; it may end before its last. */
 int rr_impact_chain(
     const rr_real q[4],
     const rr_real n[3],
     const rr_params *p,
-    rr_impact_chain_t *out);
-
-/* A mode's step h: 2 - 2 cos(omega h), and what the force at the node does. */
+    rr_impact_chain_t *out); /* A mode's step h: 2 - 2 cos(omega h), and what the force at the node does. */
 typedef struct {
     rr_real kappa, middle;
-} rr_mode_step;
-
-/*
+} rr_mode_step; /*
  * Robot and body as modes that only meet in the contact force, ready to be stepped. All numbers
  * are for an approach of 1 m/s; spacing doubles from one level to the next.
  */
 typedef struct {
     int modes;
     rr_real stiffness, damping, skin; /* k_h, c_h and k_f */
-    rr_real mobility;                 /* of the contact, 1/kg */
-    rr_real step;                                       /* at level 0, s */
-    rr_real start[RR_MODES];                        /* displacement at the first node */
-    rr_real start_edge[RR_MODES];                   /* share of the force there */
+    rr_real mobility; /* of the contact, 1/kg */
+    rr_real step; /* at level 0, s */
+    rr_real start[RR_MODES]; /* displacement at the first node */
+    rr_real start_edge[RR_MODES]; /* share of the force there */
     rr_mode_step step_of[RR_LEVELS + 1][RR_MODES];
-    rr_real edge[RR_LEVELS + 1][RR_MODES];      /* what forces at both sides do */
-} rr_impact;
-
-/* Prepares the impacts of a configuration; checks everything but the speed. */
+    rr_real edge[RR_LEVELS + 1][RR_MODES]; /* what forces at both sides do */
+} rr_impact; /* Prepares the impacts of a configuration; checks everything but the speed. */
 int rr_impact_prepare(const rr_real q[4], const rr_real n[3],
-    const rr_region *region, const rr_params *p, rr_impact *impact);
-
-/* Integrates one impact. */
+    const rr_region *region, const rr_params *p, rr_impact *impact); /* Integrates one impact. */
 int rr_impact_run(const rr_impact *impact, rr_real speed, rr_peak_force_t *out);
 
 #endif
