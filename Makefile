@@ -8,7 +8,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 # switch on the long parts: make test PYTEST="--slow --embedded"
 PYTEST ?=
 
-.PHONY: demo test lint format bench generated clean
+.PHONY: demo test lint format bench bench-c generated clean
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
@@ -27,6 +27,10 @@ format: $(VENV)/installed-test
 
 bench: $(VENV)/installed-test
 	$(BIN)/python -m benchmarks
+
+# instructions, stack and code size on emulated Cortex-M; needs arm-none-eabi-gcc and QEMU
+bench-c: $(VENV)/installed-test
+	$(BIN)/python benchmarks/embedded/run.py --out docs/embedded.md
 
 generated: $(VENV)/installed
 	for robot in panda rr rmin; do $(BIN)/softimpact generate $$robot --out generated/$$robot || exit 1; done
