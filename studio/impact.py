@@ -11,11 +11,13 @@ import numpy as np
 
 from softimpact.simulate import (
     Approach,
+    Controller,
     Fidelity,
     PeakDefinition,
     largest_safe_speed,
     simulate_impact,
 )
+from softimpact.simulate.controller import Reference
 from softimpact.symbolic import Contact, InvalidValue, body_region
 from softimpact.symbolic.rigid import Array
 
@@ -36,6 +38,8 @@ class TypedImpact:
     peak: str = "first_contact"
     safe_speed: bool = False
     order: int = 3
+    pid: str | None = None
+    reference: str = "moving"
 
 
 def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
@@ -50,12 +54,22 @@ def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
     scene = situation(where)
     velocity = None if how.joint_velocity is None else _per_speed(scene, how.joint_velocity)
     approach = Approach(scene.q, scene.direction, how.speed, velocity)
-    history = simulate_impact(scene.model, approach, contact, fidelity, order=how.order)
+    controller = _controller(how)
+    history = simulate_impact(
+        scene.model, approach, contact, fidelity, order=how.order, controller=controller
+    )
     peak, limit = history.peak(definition), contact.region.force_limit
     safe_speed = None
     if how.safe_speed:
         safe_speed = largest_safe_speed(
-            scene.model, approach, contact, limit, fidelity, definition, order=how.order
+            scene.model,
+            approach,
+            contact,
+            limit,
+            fidelity,
+            definition,
+            order=how.order,
+            controller=controller,
         )
     return {
         "robot": scene.model.robot.name,
@@ -63,6 +77,7 @@ def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
         "q": scene.q,
         "direction": scene.direction,
         "model": fidelity,
+        "controller": controller,
         "region": how.region,
         "clamped": how.clamped,
         "speed": how.speed,
@@ -79,6 +94,14 @@ def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
         "time": history.time,
         "force": history.force,
     }
+
+
+def _controller(how: TypedImpact) -> Controller | None:
+    reference: Reference = values.one_of("reference of the motors", how.reference, Reference)
+    if how.pid is None:
+        return None
+    proportional, derivative, integral = values.vector("pid", how.pid, 3)
+    return Controller(proportional, derivative, integral, reference)
 
 
 def print_impact(result: Mapping[str, Any]) -> None:

@@ -26,6 +26,17 @@ Clamped = Annotated[
 Peak = Annotated[
     str, typer.Option(help="first_contact (largest force until separation) or first_peak.")
 ]
+Pid = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LIST",
+        help="[k_p, k_d, k_i] of MSM's computed-torque controller (rad/s², rad/s, rad/s³), which "
+        "reacts after 20 ms; for chain, linearised and full.",
+    ),
+]
+Reference = Annotated[
+    str, typer.Option(help="Of the controller after first touch: moving (on) or held.")
+]
 SafeSpeed = Annotated[
     bool, typer.Option("--safe-speed", help="Find the largest speed within the region's limit.")
 ]
@@ -42,6 +53,8 @@ def simulate(
     clamped: Clamped = True,
     joint_velocity: JointVelocity = None,
     peak: Peak = "first_contact",
+    pid: Pid = None,
+    reference: Reference = "moving",
     safe_speed: SafeSpeed = False,
     joint_stiffness: o.JointStiffness = None,
     rotor_inertia: o.RotorInertia = None,
@@ -62,7 +75,9 @@ def simulate(
         joint_stiffness, rotor_inertia, position_gain, computed_torque_gain, gear_ratio
     )
     where = Typed(model, tip, q, direction, given, gravity, motor_angles)
-    how = TypedImpact(region, speed, fidelity, clamped, joint_velocity, peak, safe_speed, order)
+    how = TypedImpact(
+        region, speed, fidelity, clamped, joint_velocity, peak, safe_speed, order, pid, reference
+    )
     result = impact(where, how)
     if json:
         print_json(result)

@@ -10,7 +10,8 @@ import pytest
 import scipy.integrate
 from command_line import refusal, run, run_json
 
-from softimpact.symbolic import REGIONS
+from softimpact.simulate import Approach, Controller, simulate_impact
+from softimpact.symbolic import REGIONS, Contact, body_region, impact_model, load_robot
 
 Q = "[0.2, 0.3, -0.4, -1.8, 0.1, 2, 0.5]"
 WHERE = ("panda", "--q", Q, "--direction", "[0, 1, 0]", "--joint-stiffness", "1e4")
@@ -144,3 +145,29 @@ def test_two_masses_need_a_spring() -> None:
 def test_robot_that_cannot_move_that_way() -> None:
     where = ("rr", "--q", "[0, 0, 1, 0]", "--direction", "[0, 0, 1]")
     assert "cannot move" in refusal("simulate", *where, "--region", "chest", "--speed", "1")
+
+
+RR = ("simulate", "rr", "--q", "[0, 0, 0, 0]", "--direction", "[0, 1, 0]", "--region", "head")
+
+
+def test_controller_is_msms() -> None:
+    """Scenario a with the printed gains; the reference moves on, or is held."""
+    arriving = (*RR, "--speed", 1, "--joint-velocity", "[1, 0, 0, 0]", "--model", "full")
+    pid = ("--pid", "[6050, 121, 1.25e5]")
+    moving = run_json(*arriving, *pid)
+    held = run_json(*arriving, *pid, "--reference", "held")
+    model = impact_model(load_robot("rr"))
+    approach = Approach(np.zeros(4), np.array([0.0, 1.0, 0.0]), 1.0, np.array([1.0, 0, 0, 0]))
+    contact, controller = Contact(body_region("head")), Controller(6050, 121, 1.25e5)
+    expected = simulate_impact(model, approach, contact, "full", controller=controller)
+    assert moving["peak_force"] == pytest.approx(expected.first_contact, rel=1e-6)
+    assert moving["controller"]["reference"] == "moving"
+    assert held["peak_force"] != pytest.approx(moving["peak_force"], rel=1e-2)
+
+
+def test_controllers_that_cannot_be_are_refused() -> None:
+    arriving = (*RR, "--speed", 1)
+    assert "pid" in refusal(*arriving, "--pid", "[6050, 121]")
+    assert "proportional" in refusal(*arriving, "--pid", "[-1, 121, 0]")
+    assert "moving, held" in refusal(*arriving, "--pid", "[1, 1, 1]", "--reference", "lost")
+    refusal(*arriving, "--pid", "[1, 1, 1]", "--model", "one_mass")
