@@ -25,14 +25,25 @@ class ForeignFolder(SoftImpactError):
         )
 
 
+class FolderNotWritable(SoftImpactError):
+    """The operating system refuses the output folder."""
+
+    def __init__(self, folder: Path, reason: str) -> None:
+        self.folder, self.reason = folder, reason
+        super().__init__(f"{folder}: cannot be written ({reason}); choose another --out")
+
+
 def require_replaceable(folder: Path, generator: str) -> None:
-    """Raise if results could not be written: ForeignFolder, or OSError from the system.
+    """Raise ForeignFolder or FolderNotWritable if results could not be written.
 
     Called before long work, so that it is not lost for want of a place.
     """
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent):
-        pass
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent):
+            pass
+    except OSError as error:
+        raise FolderNotWritable(folder, error.strerror or str(error)) from error
     if not folder.exists():
         return
     if not folder.is_dir() or (any(folder.iterdir()) and not _is_ours(folder, generator)):

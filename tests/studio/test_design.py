@@ -136,7 +136,9 @@ def test_bad_input_is_refused_before_the_search(tmp_path):
     assert (foreign / "thesis.tex").read_text() == "irreplaceable"
     blocked = tmp_path / "file"
     blocked.write_text("")
-    assert "file" in refusal("design", study, "--out", blocked / "out")
+    assert f"{blocked / 'out'}: cannot be written" in refusal(
+        "design", study, "--out", blocked / "out"
+    )
     assert "table, free, both" in refusal("design", study, "--mode", "quick")
     assert "chest" in refusal("design", study, "--region", "elbow")
     assert "speed" in refusal("design", study, "--speed", "-1")
