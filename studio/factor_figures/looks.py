@@ -6,9 +6,15 @@ from __future__ import annotations
 from typing import Any
 
 from softimpact.studio.factor_study import FactorStudy
-from softimpact.studio.figures.style import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILLION
-
-PURPLE = "#CC79A7"
+from softimpact.studio.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+)
 
 SERIES: tuple[tuple[str, str], ...] = (
     (BLUE, "o"),

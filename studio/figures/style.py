@@ -17,7 +17,7 @@ from softimpact.studio.design_report import DesignReport, limit_kind
 
 # Okabe and Ito's colours, told apart by the colour-blind too
 BLACK, BLUE, ORANGE = "#000000", "#0072B2", "#E69F00"
-GREEN, VERMILLION, SKY = "#009E73", "#D55E00", "#56B4E9"
+GREEN, VERMILLION, SKY, PURPLE = "#009E73", "#D55E00", "#56B4E9", "#CC79A7"
 
 BEFORE, SPRINGS, BOTH, LIMIT = ORANGE, GREEN, BLUE, VERMILLION
 """Nominal stiffness, springs designed, springs and posture designed, the region's force limit."""

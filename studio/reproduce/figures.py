@@ -9,9 +9,20 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+
+from softimpact.studio.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+)
 
 from .compute import COMPARED, SPEEDS, Point, Results
 from .ladder import LADDER, REGIONS
@@ -26,6 +37,7 @@ MODEL_COLOURS = {"full": "C0", "two_mass": "C3", "chain_controlled": "C2"}
 STIFFNESS_AXIS = "joint stiffness $k_s$ [N·m/rad]"
 
 STYLE = {
+    "axes.prop_cycle": cycler(color=[BLUE, ORANGE, GREEN, VERMILLION, SKY, PURPLE, BLACK]),
     "font.size": 9.0,
     "axes.grid": True,
     "grid.alpha": 0.3,
