@@ -8,7 +8,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from .study import Study
 from .timing import Timing, impact_timing
 
 MODES: tuple[Mode, ...] = ("table", "free")
+
+LAGS_BEHIND = 1.003
+"""Force over the best found from which on a free search is given another start."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,6 +141,10 @@ def design(
                 outcomes[outcome.name, outcome.mode] = outcome
                 if on_outcome is not None:
                     on_outcome(outcome)
+        again = _laggards(study, poses, outcomes) if set(MODES) <= set(modes) else []
+        for outcome in _run(program, again, bounds, numbers, pool):
+            key = outcome.name, outcome.mode
+            outcomes[key] = _better(outcomes[key], outcome)
     solved = [outcome for outcome in outcomes.values() if outcome.solved]
     if not solved:
         raise SolverFailure(list(outcomes.values()))
@@ -181,6 +188,33 @@ def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None
     points = tuple((candidate.q, each) for each in springs)
     fallbacks = ((study.task_pose.q, study.upper),) if mode == "free" else ()
     return Start(candidate.pose.name, mode, points, fallbacks)
+
+
+def _laggards(
+    study: Study, poses: Sequence[Candidate], outcomes: dict[tuple[str, Mode], Outcome]
+) -> list[Start]:
+    """Return another start, with the stiffest joints, for free searches that end above the best.
+
+    Where the springs of a given posture were not sought, they have begun there already.
+    """
+    found = {name: outcome for (name, mode), outcome in outcomes.items() if mode == "free"}
+    best = min((outcome.force for outcome in found.values() if outcome.solved), default=np.inf)
+    return [
+        Start(pose.pose.name, "free", ((pose.q, study.upper),))
+        for pose in poses
+        if (outcome := found.get(pose.pose.name)) and outcome.force > LAGS_BEHIND * best
+    ]
+
+
+def _better(first: Outcome, second: Outcome) -> Outcome:
+    """Return the preferred of two outcomes of one start, with the effort of both."""
+    best = min(first, second, key=preference)
+    return replace(
+        best,
+        iterations=first.iterations + second.iterations,
+        attempts=first.attempts + second.attempts,
+        seconds=first.seconds + second.seconds,
+    )
 
 
 def _workers(starts: int) -> Executor:
