@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from softimpact.symbolic.contact import HERTZ_EXPONENT, Contact
+from softimpact.symbolic.contact import Contact, hertz_force
 from softimpact.symbolic.matrices import Matrix
 
 
@@ -134,8 +134,7 @@ class Press:
 def press(robot: Mechanism, body: Body, kind: BodyKind) -> Press:
     """Return how a robot presses on a body (MSM §3.1)."""
     depth = robot.displacement - body.node
-    # the same as Contact.force; a power has a derivative at δ = 0, a square root has not
-    force = body.hertz_stiffness * ca.fmax(depth, 0) ** HERTZ_EXPONENT
+    force = hertz_force(body.hertz_stiffness, depth)
     imbalance = force - body.stiffness * (body.node - body.position)
     approach = robot.speed - body.velocity
     if kind.damped:  # c_h(ẋ_0 − ẋ_h) = f_c − k_h(x_0 − x_h)

@@ -34,4 +34,9 @@ class Contact:
 
     def force(self, depth: Matrix) -> Matrix:
         """Return f_c = k_f δ₊^1.5 [N] for a penetration δ [m] of the skin."""
-        return self.hertz_stiffness * ca.fmax(depth, 0) ** HERTZ_EXPONENT
+        return hertz_force(self.hertz_stiffness, depth)
+
+
+def hertz_force(stiffness: Matrix, depth: Matrix) -> Matrix:
+    """Return k_f δ₊^1.5 [N]; as a power, which unlike a square root has a slope at δ = 0."""
+    return stiffness * ca.fmax(depth, 0) ** HERTZ_EXPONENT

@@ -32,8 +32,13 @@ def tool(name: str) -> str:
     """Return a program's path; without it skip, or fail where nothing may be skipped."""
     path = shutil.which(name)
     if path is None:
-        (pytest.fail if os.environ.get("CI") else pytest.skip)(f"needs {name}")
+        missing(name)
     return str(path)
+
+
+def missing(what: str) -> None:
+    """Skip a test for want of something, or fail where nothing may be skipped."""
+    (pytest.fail if os.environ.get("CI") else pytest.skip)(f"needs {what}")
 
 
 def run(*command: str | Path, ok: bool = True) -> str:

@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from compiled_packages import Generated, run, tool
+from compiled_packages import Generated, missing, run, tool
 
 pytestmark = pytest.mark.slow
 PAGE = Path(__file__).parents[2] / "docs/verification.md"
@@ -45,13 +44,12 @@ def test_own_test_passes_at_every_level(
 def test_valgrind_finds_nothing(
     package: Callable[[str], Generated], real: str, tmp_path: Path
 ) -> None:
-    if shutil.which("valgrind") is None:
-        pytest.skip("needs valgrind")
+    valgrind = tool("valgrind")
     generated = package("panda")
     sources = [*generated.folder.glob("src/*.c"), *generated.folder.glob("test/*.c")]
     binary = tmp_path / "test"
     run(tool("gcc"), *generated.flags(real), "-g", *sources, "-o", binary, "-lm")
-    said = run("valgrind", "--error-exitcode=3", "--track-origins=yes", binary)
+    said = run(valgrind, "--error-exitcode=3", "--track-origins=yes", binary)
     assert "ERROR SUMMARY: 0 errors" in said
     assert re.search(r"total heap usage: [12] allocs", said)  # printf's own
 
@@ -69,7 +67,7 @@ def test_fuzzer_finds_nothing(
     with_fuzzer = [tool("clang"), "-fsanitize=fuzzer"]
     command = [*with_fuzzer, probe, "-o", tmp_path / "probe"]
     if subprocess.run(command, capture_output=True, check=False).returncode != 0:
-        pytest.skip("needs clang's libFuzzer")
+        missing("clang's libFuzzer")
     sources = [*generated.folder.glob("src/*.c"), generated.folder / "fuzz/fuzz.c"]
     checks = ["-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all", "-g"]
     binary = tmp_path / "fuzz"
