@@ -163,7 +163,7 @@ def _reject_unsupported(model: mujoco.MjModel, path: Path) -> None:
         if kind not in KINDS:
             free = kind == int(mujoco.mjtJoint.mjJNT_FREE)
             advice = (
-                "at the root of the robot load it with floating=True (softimpact factors --floating)"
+                "at the root load the robot with floating=True (softimpact factors --floating)"
                 if free
                 else "write it as three hinges"
             )
