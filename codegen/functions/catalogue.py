@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which functions a robot's package has."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic import ImpactModel, Robot
+
+from ..description import CFunction
+from .dynamics import (
+    contact_jacobian,
+    generalised_mass_matrix,
+    jacobian,
+    mass_matrix,
+    stiffness_matrix,
+)
+from .impact_factors import absorption_extremes, directional_factor, impact_factors, osim
+from .reductions import chain, reduced_model, reflected_mass
+from .symbols import coordinates_of, symbols_of
+
+
+def functions_of(
+    robot: Robot, tip: str, gravity: tuple[float, float, float], chain_order: int
+) -> tuple[CFunction, ...]:
+    """Return all functions of a robot's package.
+
+    Those of the operational space inertia are left out where the contact point cannot move in all
+    three directions at any configuration, and two masses where there is one coordinate.
+    """
+    s = symbols_of(robot, tip, gravity)
+    functions = [
+        mass_matrix(s),
+        jacobian(s),
+        generalised_mass_matrix(s),
+        stiffness_matrix(s),
+        contact_jacobian(s),
+        reflected_mass(s),
+    ]
+    if coordinates_of(robot) > 1:
+        functions.append(reduced_model(s))
+    functions.append(chain(s, chain_order))
+    if moves_in_space(s.model):
+        functions += [osim(s), impact_factors(s), directional_factor(s), absorption_extremes(s)]
+    return tuple(functions)
+
+
+def moves_in_space(model: ImpactModel) -> bool:
+    """Whether the contact point can move in all directions somewhere."""
+    q = np.random.default_rng(1).uniform(-1, 1, model.robot.n)
+    return bool(np.linalg.matrix_rank(np.array(model.jacobian(ca.DM(q))), 1e-6) == 3)
