@@ -16,10 +16,11 @@ from softimpact.symbolic.impact_model import WEIGHTLESS
 from .accuracy import accuracy, golden_results, is_regular
 from .configuration import Configuration, has_configuration
 from .configuration_source import configuration_source
-from .description import CFunction, Parameter
+from .description import CFunction
 from .files import replace_package, require_own, sha256
-from .functions import functions_of, parameters_of
+from .functions import functions_of, symbols_of
 from .impact_source import impact_source, longest_chain
+from .inputs import POSITIVE, Parameter, parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .render import MEASURED_SAMPLES, Default, Package, render
 from .samples import Sample, draw_samples
@@ -77,7 +78,8 @@ def generate_package(
     parameters = parameters_of(robot)
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
     measured = draw_samples(robot, parameters, MEASURED_SAMPLES, seed=2)
-    functions = functions_of(robot, frame, gravity, chain_order)
+    symbols = symbols_of(robot, frame, gravity, parameters)
+    functions = functions_of(symbols, chain_order)
     golden = _regular(functions, golden, frame)
     tables = {function.name: golden_results(function, golden) for function in functions}
     sources = []
@@ -101,7 +103,7 @@ def generate_package(
         samples=tuple(golden),
         tables=tables,
         configuration=configuration,
-        impact=impact_source(prefix, robot, frame, gravity, parameters, impact_order),
+        impact=impact_source(prefix, symbols, impact_order),
     )
     files = render(package)
     manifest = _manifest(package, {path: sha256(text) for path, text in files.items()})
@@ -166,7 +168,7 @@ def _defaults(
     defaults = []
     for parameter in parameters:
         values = known[parameter.name]
-        usable = values is not None and (not parameter.positive or min(values) > 0)
+        usable = values is not None and (parameter.range is not POSITIVE or min(values) > 0)
         defaults.append(Default(parameter, tuple(values) if usable and values else None))
     return tuple(defaults)
 

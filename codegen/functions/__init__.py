@@ -4,15 +4,14 @@
 from .arrival import impact_chain_of, linear_model_of
 from .catalogue import functions_of
 from .reductions import CHAIN_ENDS
-from .symbols import coordinates_of, is_elastic, model_of, parameters_of
+from .symbols import Symbols, coordinates_of, symbols_of
 
 __all__ = [
     "CHAIN_ENDS",
+    "Symbols",
     "coordinates_of",
     "functions_of",
     "impact_chain_of",
-    "is_elastic",
     "linear_model_of",
-    "model_of",
-    "parameters_of",
+    "symbols_of",
 ]

@@ -7,30 +7,27 @@ from dataclasses import replace
 
 import casadi as ca
 
-from softimpact.symbolic import Matrix, Robot
+from softimpact.symbolic import Matrix
 
 from ..approach import approach_rates, directions_of_motion
 from ..description import CFunction, Output
 from .guards import arriving
-from .symbols import function_over, symbols_of
+from .symbols import Symbols, function_over
 
 
-def impact_chain_of(
-    robot: Robot, tip: str, gravity: tuple[float, float, float], order: int
-) -> CFunction | None:
+def impact_chain_of(s: Symbols, order: int) -> CFunction | None:
     """Return what a package's impacts start from: masses, springs and velocities of a chain.
 
     None if motors cannot move the contact point along n alone, or only in directions that depend
     on the configuration.
     """
-    s = symbols_of(robot, tip, gravity)
     directions = directions_of_motion(s.model)
     if directions is None:
         return None
     chain = s.model.chain(s.q, s.n, order, reorthogonalise="once")
     mass: Matrix = ca.vertcat(*chain.mass)
     rates = approach_rates(s.model, s.q, s.n, directions)
-    motors = chain.displacement[list(range(robot.n)), :]
+    motors = chain.displacement[list(range(s.robot.n)), :]
     velocity = ca.mtimes(motors.T, rates)
     outputs = (
         Output("mass", mass, "kg", "the contact force acts on the first"),
@@ -43,20 +40,17 @@ def impact_chain_of(
     return replace(built, open_ended=True)
 
 
-def linear_model_of(
-    robot: Robot, tip: str, gravity: tuple[float, float, float]
-) -> CFunction | None:
+def linear_model_of(s: Symbols) -> CFunction | None:
     """Return M0, K0, J_c and all velocities, by which chains are judged.
 
     None as ``impact_chain_of``.
     """
-    s = symbols_of(robot, tip, gravity)
     directions = directions_of_motion(s.model)
     if directions is None:
         return None
     linear = s.model.linear(s.q, s.n)
     rates = approach_rates(s.model, s.q, s.n, directions)
-    velocity = ca.vertcat(rates, ca.SX(s.model.size - robot.n, 1))
+    velocity = ca.vertcat(rates, ca.SX(s.model.size - s.robot.n, 1))
     outputs = (
         Output("M0", ca.densify(linear.mass.matrix), "kg m^2", ""),
         Output("K0", ca.densify(linear.stiffness), "N m/rad", ""),

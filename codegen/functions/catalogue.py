@@ -6,7 +6,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, Robot
+from softimpact.symbolic import ImpactModel
 
 from ..description import CFunction
 from .dynamics import (
@@ -18,18 +18,15 @@ from .dynamics import (
 )
 from .impact_factors import absorption_extremes, directional_factor, impact_factors, osim
 from .reductions import chain, reduced_model, reflected_mass
-from .symbols import coordinates_of, symbols_of
+from .symbols import Symbols, coordinates_of
 
 
-def functions_of(
-    robot: Robot, tip: str, gravity: tuple[float, float, float], chain_order: int
-) -> tuple[CFunction, ...]:
+def functions_of(s: Symbols, chain_order: int) -> tuple[CFunction, ...]:
     """Return all functions of a robot's package.
 
     Those of the operational space inertia are left out where the contact point cannot move in all
     three directions at any configuration, and two masses where there is one coordinate.
     """
-    s = symbols_of(robot, tip, gravity)
     functions = [
         mass_matrix(s),
         jacobian(s),
@@ -38,7 +35,7 @@ def functions_of(
         contact_jacobian(s),
         reflected_mass(s),
     ]
-    if coordinates_of(robot) > 1:
+    if coordinates_of(s.robot) > 1:
         functions.append(reduced_model(s))
     functions.append(chain(s, chain_order))
     if moves_in_space(s.model):

@@ -31,7 +31,7 @@ def osim(s: Symbols) -> CFunction:
 
 def impact_factors(s: Symbols) -> CFunction:
     """Return GIAF and GIIF in the axes in which they take the fewest operations."""
-    robot = s.model.robot
+    robot = s.robot
     path = robot.ancestors(robot.frame(s.model.tip).joint)
     candidates = [_impact_factors_in(s, axes) for axes in (-1, *reversed(path))]
     return min(candidates, key=lambda function: function.flops)
@@ -41,8 +41,8 @@ def _impact_factors_in(s: Symbols, axes: int) -> CFunction:
     real, free = s.model.mobility(s.q, axes), s.model.free_mobility(s.q, axes)
     absorption, increment = "absorption factor (GIAF Eq. 28)", "increment factor (GIAF Eq. 27)"
     outputs = (
-        Output("giaf", giaf(free, real), "dimensionless", absorption, share=True),
-        Output("giif", giif(free, real), "dimensionless", increment, share=True),
+        Output("giaf", giaf(free, real), "dimensionless", absorption, scale=1.0),
+        Output("giif", giif(free, real), "dimensionless", increment, scale=1.0),
     )
     guards = _in_space(s, real.inertia, free.inertia)
     return function_over(s, "giaf", "Generalised impact factors.", outputs, guards)
@@ -53,7 +53,7 @@ def directional_factor(s: Symbols) -> CFunction:
     real, free = s.model.mobility(s.q), s.model.free_mobility(s.q)
     value = directional_giaf(free, real, s.n)
     guards = _in_space(s, real.inertia, free.inertia)
-    output = Output("giaf", value, "dimensionless", "1 if rotors do not count", share=True)
+    output = Output("giaf", value, "dimensionless", "1 if rotors do not count", scale=1.0)
     summary = "Share of the inertia along n that is not the rotors' (GIAF Eq. 29)."
     return function_over(s, "directional_giaf", summary, (output,), guards)
 
@@ -64,8 +64,8 @@ def absorption_extremes(s: Symbols) -> CFunction:
     found = extreme_directional_giaf(free, real)
     one_of_many = "unit vector; where two values meet, one of many"
     outputs = (
-        Output("least", found.least, "dimensionless", "smallest value", share=True),
-        Output("greatest", found.greatest, "dimensionless", "largest value", share=True),
+        Output("least", found.least, "dimensionless", "smallest value", scale=1.0),
+        Output("greatest", found.greatest, "dimensionless", "largest value", scale=1.0),
         Output("least_direction", found.least_direction, "dimensionless", one_of_many),
         Output("greatest_direction", found.greatest_direction, "dimensionless", "the same for it"),
     )
@@ -76,4 +76,4 @@ def absorption_extremes(s: Symbols) -> CFunction:
 
 
 def _in_space(s: Symbols, *inertias: Matrix) -> tuple[Guard, ...]:
-    return tuple(movable_in_space(s.model.robot, inertia) for inertia in inertias)
+    return tuple(movable_in_space(s.robot, inertia) for inertia in inertias)

@@ -18,7 +18,7 @@ def reflected_mass(s: Symbols) -> CFunction:
     m_c = s.model.reflected_mass(s.q, s.n)
     output = Output("m_c", m_c, "kg", "mass felt at the contact point")
     summary = "Mass m_c that the contact point feels along n (MSM Eq. 36)."
-    guards = (movable(s.model.robot, m_c),)
+    guards = (movable(s.robot, m_c),)
     return function_over(s, "reflected_mass", summary, (output,), guards)
 
 
@@ -31,7 +31,7 @@ def reduced_model(s: Symbols) -> CFunction:
         Output("m_a", reduced.m_a, "kg", "mass on the actuators' side"),
     )
     summary = "Two masses and a spring that stand for the robot along n (MSM Eq. 36-38)."
-    guards = (movable(s.model.robot, reduced.m_c),)
+    guards = (movable(s.robot, reduced.m_c),)
     return function_over(s, "reduced_model", summary, outputs, guards)
 
 
@@ -39,7 +39,7 @@ def chain(s: Symbols, order: int) -> CFunction:
     """Return the masses and springs of a chain."""
     found = s.model.chain(s.q, s.n, order)
     mass, k = list(found.mass), list(found.stiffness)
-    guards = [movable(s.model.robot, mass[0])]
+    guards = [movable(s.robot, mass[0])]
     for i in range(1, order):  # how much of the pull of mass i goes on to the next
         own = (k[i - 1] + k[i - 2] if i > 1 else k[i - 1]) ** 2 / mass[i - 1]
         guards.append(Guard(k[i - 1] ** 2 / (mass[i] * own), CHAIN_ENDS))

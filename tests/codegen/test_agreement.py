@@ -13,7 +13,7 @@ import pytest
 from compiled_packages import Generated, Library, parameter, run, tool
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.functions import is_elastic, parameters_of
+from softimpact.codegen.inputs import is_elastic, parameters_of
 from softimpact.codegen.manifest import FunctionRecord
 from softimpact.codegen.samples import Sample, draw_samples
 from softimpact.symbolic import (
@@ -84,7 +84,7 @@ def assert_agrees(library: Library, samples: list[Sample]) -> int:
             for output, ours, theirs in zip(
                 function.outputs, found, expected[function.name], strict=True
             ):
-                scale = 1.0 if output.share else abs(theirs).max()
+                scale = output.scale or abs(theirs).max()
                 error = abs(ours.ravel() - theirs.ravel()).max() / scale
                 assert error <= bound, (function.name, output.name, sample)
             compared += 1
