@@ -17,6 +17,8 @@ from .dynamics import (
     stiffness_matrix,
 )
 from .impact_factors import absorption_extremes, directional_factor, impact_factors, osim
+from .joints import joint_impulse, rotor_influence, single_joint
+from .measures import force_measure, impact_measure, manipulability
 from .reductions import chain, reduced_model, reflected_mass
 from .symbols import Symbols, coordinates_of
 
@@ -25,7 +27,8 @@ def functions_of(s: Symbols, chain_order: int) -> tuple[CFunction, ...]:
     """Return all functions of a robot's package.
 
     Those of the operational space inertia are left out where the contact point cannot move in all
-    three directions at any configuration, and two masses where there is one coordinate.
+    three directions at any configuration, those with a result for each joint where joints follow
+    from others through a loop, and two masses where there is one coordinate.
     """
     functions = [
         mass_matrix(s),
@@ -40,6 +43,11 @@ def functions_of(s: Symbols, chain_order: int) -> tuple[CFunction, ...]:
     functions.append(chain(s, chain_order))
     if moves_in_space(s.model):
         functions += [osim(s), impact_factors(s), directional_factor(s), absorption_extremes(s)]
+        functions += [manipulability(s), force_measure(s), impact_measure(s)]
+        if not s.robot.loops:
+            functions += [rotor_influence(s), single_joint(s)]
+    if not s.robot.loops:
+        functions.append(joint_impulse(s))
     return tuple(functions)
 
 
