@@ -16,6 +16,7 @@ from .functions import Symbols, coordinates_of, impact_chain_of, linear_model_of
 from .impact_error import (
     CASES,
     FINER,
+    GAIN,
     Impact,
     chain_forces,
     draw_impacts,
@@ -59,6 +60,12 @@ class ImpactSource:
         return self.record.order
 
     @property
+    def held(self) -> bool | None:
+        """Whether a controller holds a motor; None if the parameters at run time tell."""
+        (gains,) = [p.frozen for p in self.chain.parameters if p.name == GAIN]
+        return None if gains is None else any(gain > 0 for gain in gains)
+
+    @property
     def peak_force(self) -> str:
         """Prototype without the semicolon."""
         return self._declaration("peak_force", "speed")
@@ -75,7 +82,7 @@ class ImpactSource:
             f"const {prefix}_real n[3]",
             f"{prefix}_real {number}",
             f"const {prefix}_region *region",
-            f"const {prefix}_params *p",
+            *([f"const {prefix}_params *p"] if self.chain.has_struct else []),
             f"{prefix}_{function}_t *out",
         ]
         return f"int {prefix}_{function}(\n    " + ",\n    ".join(arguments) + ")"

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from softimpact.symbolic import Robot
 
@@ -80,8 +81,33 @@ SCALARS = (
 """Arguments of their own, which some functions take between n and the parameters."""
 
 
-def parameters_of(robot: Robot) -> tuple[Parameter, ...]:
-    """Return the fields of a robot's parameter struct."""
+PAYLOAD = (
+    Parameter("payload_mass", "kg", "point mass held at the contact point's frame", NOT_NEGATIVE),
+    Parameter("payload_com", "m", "its place from the contact point, tip's axes", ANY, (3,)),
+)
+"""Parameters of robots that carry something."""
+
+
+def parameters_of(robot: Robot, *, payload: bool = False) -> tuple[Parameter, ...]:
+    """Return the parameters of a robot's package, none of them frozen.
+
+    Args:
+        robot: any robot.
+        payload: whether it may carry something.
+    """
+    return (*_drives_of(robot), *(PAYLOAD if payload else ()))
+
+
+def freeze(
+    parameters: Sequence[Parameter], values: Mapping[str, Sequence[float]]
+) -> tuple[Parameter, ...]:
+    """Return the parameters with some of them fixed to numbers, given by name."""
+    return tuple(
+        replace(p, frozen=tuple(values[p.name])) if p.name in values else p for p in parameters
+    )
+
+
+def _drives_of(robot: Robot) -> tuple[Parameter, ...]:
     elastic, joints = is_elastic(robot), (robot.n,)
     rotors = "rotor inertia, reflected to the joint" + ("" if elastic else "; may be 0")
     inertia = POSITIVE if elastic else NOT_NEGATIVE

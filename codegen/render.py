@@ -15,6 +15,7 @@ from softimpact.symbolic.contact import HERTZ_STIFFNESS
 
 from . import impact, sine
 from .configuration_source import ConfigurationSource
+from .defaults import Default
 from .functions import CHAIN_ENDS, coordinates_of
 from .impact_error import FINER
 from .impact_source import ImpactSource
@@ -27,14 +28,6 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 MEASURED_SAMPLES = 16384
 """Inputs over which float errors are measured."""
-
-
-@dataclass(frozen=True)
-class Default:
-    """Default values of a parameter; None where none are known."""
-
-    parameter: Parameter
-    values: tuple[float, ...] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +88,12 @@ class Package:
         """Return the fields with a sample's values."""
         pairs = zip(self.parameters, sample.parameters, strict=True)
         return [(p, values) for p, values in pairs if p.frozen is None]
+
+    @property
+    def shown(self) -> CSource:
+        """Return the function of the README's example."""
+        name = "reduced_model" if self.has("reduced_model") else "reflected_mass"
+        return next(source for source in self.functions if source.function.name == name)
 
     def has(self, function: str) -> bool:
         """Whether the package has a function of this short name."""

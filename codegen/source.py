@@ -43,6 +43,11 @@ class CSource:
         return f"{self.prefix}_{self.function.name}"
 
     @property
+    def has_struct(self) -> bool:
+        """Whether the package has a parameter struct: not if all parameters are frozen."""
+        return any(p.frozen is None for p in self.parameters)
+
+    @property
     def struct(self) -> str | None:
         """Type of the struct it writes; None if it has one output."""
         return f"{self.name}_t" if len(self.function.outputs) > 1 else None

@@ -37,7 +37,7 @@ class Symbols:
 
     @property
     def robot(self) -> Robot:
-        """Return the rigid robot."""
+        """Return the rigid robot with its payload."""
         return self.model.robot
 
 
@@ -53,7 +53,7 @@ def symbols_of(
         robot: any robot.
         tip: contact frame.
         gravity: as in ``generate_package``.
-        parameters: of the package, see ``parameters_of`` and ``frozen``.
+        parameters: of the package, see ``parameters_of`` and ``freeze``.
     """
     n = robot.n
     q, direction = ca.SX.sym("q", n), ca.SX.sym("n", 3)
@@ -69,6 +69,8 @@ def symbols_of(
         (is_elastic(robot),) * n,
         values["position_gain"] * motors,
     )
+    if "payload_mass" in values:
+        robot = robot.with_payload(tip, values["payload_mass"], values["payload_com"])
     model = ImpactModel(robot, tip, drives, gravity)
     return Symbols(
         model, q, direction, tuple(parameters), values, (q, direction, *symbols.values())
@@ -83,7 +85,7 @@ def function_over(
     guards: tuple[Guard, ...] = (),
 ) -> CFunction:
     """Return a function with the arguments that its outputs depend on."""
-    read = {symbol.name() for output in outputs for symbol in ca.symvar(output.value)}
+    read = {symbol.name() for output in outputs for symbol in ca.symvar(ca.SX(output.value))}
 
     def reads(vector: Matrix) -> bool:
         return any(vector[i].name() in read for i in range(vector.numel()))
