@@ -13,7 +13,7 @@ import softimpact
 from softimpact.symbolic import REGIONS, Robot, closed_chain
 from softimpact.symbolic.contact import HERTZ_STIFFNESS
 
-from . import impact, sine
+from . import impact, sine, tridiagonal
 from .configuration_source import ConfigurationSource
 from .description import Parameter
 from .functions import CHAIN_ENDS, coordinates_of, is_elastic
@@ -113,6 +113,7 @@ def render(package: Package) -> dict[str, str]:
         "version": softimpact.__version__,
         "sine": sine,
         "impact": impact,
+        "tridiagonal": tridiagonal,
         "finer": int(FINER),
         "chain_ends": CHAIN_ENDS,
         "regions": list(REGIONS.values()),
