@@ -7,6 +7,7 @@ BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 # switch on the long parts: make test PYTEST="--slow --embedded"
 PYTEST ?=
+ROBOTS := $(basename $(notdir $(wildcard robots/*.xml)))
 
 .PHONY: demo test lint format bench bench-c generated clean
 
@@ -33,7 +34,7 @@ bench-c: $(VENV)/installed-test
 	$(BIN)/python benchmarks/embedded/run.py --out docs/embedded.md
 
 generated: $(VENV)/installed
-	for robot in panda rr rmin; do $(BIN)/softimpact generate $$robot --out generated/$$robot || exit 1; done
+	for robot in $(ROBOTS); do $(BIN)/softimpact generate $$robot --out generated/$$robot || exit 1; done
 
 clean:
 	rm -rf $(VENV) build dist results

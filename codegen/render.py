@@ -13,7 +13,7 @@ import softimpact
 from softimpact.symbolic import REGIONS, Robot, closed_chain
 from softimpact.symbolic.contact import HERTZ_STIFFNESS
 
-from . import impact, sine
+from . import impact, sine, tridiagonal
 from .configuration_source import ConfigurationSource
 from .defaults import Default
 from .functions import CHAIN_ENDS, coordinates_of
@@ -123,6 +123,7 @@ def render(package: Package) -> dict[str, str]:
         "scalars": SCALARS,
         "sine": sine,
         "impact": impact,
+        "tridiagonal": tridiagonal,
         "finer": int(FINER),
         "chain_ends": CHAIN_ENDS,
         "regions": list(REGIONS.values()),

@@ -20,6 +20,7 @@ from softimpact.codegen import generate_package
 from softimpact.codegen.inputs import parameters_of
 from softimpact.codegen.package import c_name
 from softimpact.codegen.samples import draw_samples
+from softimpact.robots import built_in_robots
 from softimpact.symbolic import (
     FrameNotFound,
     ImpactModel,
@@ -33,7 +34,7 @@ ROOT = Path(__file__).parents[2]
 FLOAT_CALLS = {"sinf", "cosf", "sqrtf", "fmaxf", "powf", "logf", "memcpy", "memset"}
 
 
-@pytest.mark.parametrize("name", ["panda", "rr", "rmin"])
+@pytest.mark.parametrize("name", built_in_robots())
 def test_committed_packages_are_current(package: Callable[[str], Generated], name: str) -> None:
     committed, fresh = ROOT / "generated" / name, package(name).folder
     names = {p.relative_to(fresh) for p in fresh.rglob("*") if p.is_file()}
