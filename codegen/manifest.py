@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Literal
 
+from .costs import Costs
+
 GENERATOR = "softimpact.codegen"
 
 MANIFEST = "manifest.json"
@@ -83,6 +85,7 @@ class Manifest:
         chain_order: masses of the chain.
         functions: all functions.
         impact: of peak forces and safe speeds, None where the robot has none.
+        costs: measured on a Cortex-M, None where they were not.
         files: SHA-256 of each file by path.
     """
 
@@ -98,6 +101,7 @@ class Manifest:
     chain_order: int
     functions: tuple[FunctionRecord, ...]
     impact: ImpactRecord | None
+    costs: Costs | None
     files: Mapping[str, str]
 
     def to_json(self) -> str:

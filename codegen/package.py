@@ -16,6 +16,7 @@ from softimpact.symbolic.impact_model import WEIGHTLESS
 from .accuracy import accuracy, golden_results, is_regular
 from .configuration import Configuration, has_configuration
 from .configuration_source import configuration_source
+from .costs import stored_costs
 from .description import CFunction, Parameter
 from .files import replace_package, require_own, sha256
 from .functions import functions_of, parameters_of
@@ -188,5 +189,6 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         chain_order=package.chain_order,
         functions=tuple(records),
         impact=package.impact.record if package.impact else None,
+        costs=stored_costs(package.prefix, hashes),
         files=hashes,
     )
