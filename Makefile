@@ -8,8 +8,10 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 # switch on the long parts: make test PYTEST="--slow --embedded"
 PYTEST ?=
 ROBOTS := $(basename $(notdir $(wildcard robots/*.xml)))
+# of make fuzz, a build: some 20 minutes for a robot with seven joints
+EXECUTIONS ?= 10000000
 
-.PHONY: demo test lint format bench bench-c generated clean
+.PHONY: demo test lint format bench bench-c fuzz generated clean
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
@@ -29,9 +31,15 @@ format: $(VENV)/installed-test
 bench: $(VENV)/installed-test
 	$(BIN)/python -m benchmarks
 
-# instructions, stack and code size on emulated Cortex-M; needs arm-none-eabi-gcc and QEMU
+# instructions, stack and code size on emulated Cortex-M, written to codegen/costs, docs/embedded.md
+# and the packages themselves; needs arm-none-eabi-gcc and QEMU
 bench-c: $(VENV)/installed-test
-	$(BIN)/python benchmarks/embedded/run.py --out docs/embedded.md
+	$(BIN)/python benchmarks/embedded/run.py
+	$(MAKE) generated
+
+# libFuzzer on every package, float and double; needs clang
+fuzz: $(VENV)/installed-test
+	FUZZ_EXECUTIONS=$(EXECUTIONS) $(BIN)/pytest -n 2 --slow tests/codegen/test_verification.py -k fuzzer $(PYTEST)
 
 generated: $(VENV)/installed
 	for robot in $(ROBOTS); do $(BIN)/softimpact generate $$robot --out generated/$$robot || exit 1; done

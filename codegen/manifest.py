@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Literal
 
+from .costs import Costs
+
 GENERATOR = "softimpact.codegen"
 
 MANIFEST = "manifest.json"
@@ -85,6 +87,7 @@ class Manifest:
         frozen: parameters that are built in, and their numbers.
         functions: all functions.
         impact: of peak forces and safe speeds, None where the robot has none.
+        costs: measured on a Cortex-M, None where they were not.
         files: SHA-256 of each file by path.
     """
 
@@ -102,6 +105,7 @@ class Manifest:
     frozen: Mapping[str, tuple[float, ...]]
     functions: tuple[FunctionRecord, ...]
     impact: ImpactRecord | None
+    costs: Costs | None
     files: Mapping[str, str]
 
     def to_json(self) -> str:

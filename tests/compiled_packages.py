@@ -26,6 +26,9 @@ WARNINGS = [
     *("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow"),
     *("-Wmissing-prototypes", "-Wstrict-prototypes", "-Wfloat-equal", "-Wundef", "-Werror"),
 ]
+COMMITTED = sorted(path.name for path in (Path(__file__).parents[1] / "generated").iterdir())
+"""Names of the built-in robots whose packages are in the repository."""
+
 KINDS = {"double": (ctypes.c_double, np.float64), "float": (ctypes.c_float, np.float32)}
 
 
