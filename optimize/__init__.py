@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Design problems: which joint stiffness and which posture hurt least."""
 
-from .co_design import Design, Gains, PoseResult, SolverFailure, design
+from .co_design import Design, Gains, PoseResult, design
 from .poses import Candidate, candidates
-from .solve import Mode, Outcome
+from .solve import Mode, Outcome, SolverFailure
 from .study import Pose, Study, load_study
 
 __all__ = [

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -170,6 +171,22 @@ def preference(outcome: Outcome) -> tuple[bool, bool, float]:
     """Sort key: solved before feasible before the rest; then by force, or by violation."""
     feasible = outcome.violation <= FEASIBLE
     return not outcome.solved, not feasible, outcome.force if feasible else outcome.violation
+
+
+class SolverFailure(Exception):
+    """No start of a study was solved; carries the best feasible point found, if any."""
+
+    exit_code = 3
+
+    def __init__(self, outcomes: Sequence[Outcome]) -> None:
+        self.outcomes = tuple(outcomes)
+        self.best = min(outcomes, key=preference)
+        statuses = sorted({outcome.status for outcome in outcomes})
+        super().__init__(
+            f"none of {len(outcomes)} starts was solved (Ipopt: {', '.join(statuses)}); "
+            f"the best point, from {self.best.name}, has a peak force of {self.best.force:.1f} N "
+            f"and violates a constraint by {self.best.violation:.2g}"
+        )
 
 
 def _constraint_bounds(program: Program, mode: Mode) -> tuple[Array, Array]:
