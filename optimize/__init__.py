@@ -2,6 +2,8 @@
 """Design problems: which joint stiffness and which posture hurt least."""
 
 from .co_design import Design, Gains, PoseResult, design
+from .front import Front, ParetoPoint
+from .pareto import Pareto, pareto
 from .poses import Candidate, candidates
 from .solve import Mode, Outcome, SolverFailure
 from .study import Pose, Study, load_study
@@ -9,9 +11,12 @@ from .study import Pose, Study, load_study
 __all__ = [
     "Candidate",
     "Design",
+    "Front",
     "Gains",
     "Mode",
     "Outcome",
+    "Pareto",
+    "ParetoPoint",
     "Pose",
     "PoseResult",
     "SolverFailure",
@@ -19,4 +24,5 @@ __all__ = [
     "candidates",
     "design",
     "load_study",
+    "pareto",
 ]

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, as_completed
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from .poses import Candidate
 from .problem import Problem, prepare
 from .repair import accurate_springs, largest_deflection
-from .solve import Mode, Outcome, SolverFailure, Start, preference, solve
+from .solve import Mode, Outcome, SolverFailure, Start, better, solve
 from .study import Study
 from .timing import Timing
 from .workers import workers
@@ -116,7 +116,7 @@ def design(
         again = _laggards(study, poses, outcomes) if set(MODES) <= set(modes) else []
         for outcome in _run(problem, again, pool):
             key = outcome.name, outcome.mode
-            outcomes[key] = _better(outcomes[key], outcome)
+            outcomes[key] = better(outcomes[key], outcome)
     solved = [outcome for outcome in outcomes.values() if outcome.solved]
     if not solved:
         raise SolverFailure(list(outcomes.values()))
@@ -165,17 +165,6 @@ def _laggards(
         for pose in poses
         if (outcome := found.get(pose.pose.name)) and outcome.force > LAGS_BEHIND * best
     ]
-
-
-def _better(first: Outcome, second: Outcome) -> Outcome:
-    """Return the preferred of two outcomes of one start, with the effort of both."""
-    best = min(first, second, key=preference)
-    return replace(
-        best,
-        iterations=first.iterations + second.iterations,
-        attempts=first.attempts + second.attempts,
-        seconds=first.seconds + second.seconds,
-    )
 
 
 def _run(problem: Problem, starts: Sequence[Start], pool: Executor) -> Iterator[Outcome]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
@@ -156,14 +156,11 @@ def _search(program: Program, start: Start, bounds: Bounds, parameters: Array) -
         if any(outcome.solved for outcome in found):
             break
         found.append(_attempt(program, start, *point, bounds, parameters))
-    best = min(found, key=preference)
-    return Outcome(
-        **{
-            **vars(best),
-            "iterations": sum(outcome.iterations for outcome in found),
-            "attempts": len(found),
-            "seconds": time.perf_counter() - begin,
-        }
+    return replace(
+        min(found, key=preference),
+        iterations=sum(outcome.iterations for outcome in found),
+        attempts=len(found),
+        seconds=time.perf_counter() - begin,
     )
 
 
@@ -171,6 +168,17 @@ def preference(outcome: Outcome) -> tuple[bool, bool, float]:
     """Sort key: solved before feasible before the rest; then by force, or by violation."""
     feasible = outcome.violation <= FEASIBLE
     return not outcome.solved, not feasible, outcome.force if feasible else outcome.violation
+
+
+def better(first: Outcome, second: Outcome) -> Outcome:
+    """Return the preferred of two outcomes of one start, with the effort of both."""
+    best = min(first, second, key=preference)
+    return replace(
+        best,
+        iterations=first.iterations + second.iterations,
+        attempts=first.attempts + second.attempts,
+        seconds=first.seconds + second.seconds,
+    )
 
 
 class SolverFailure(Exception):
