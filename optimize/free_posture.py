@@ -5,6 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
+from softimpact.symbolic.rigid import Array
+
 from .front import WORTH
 from .levels import NO_BOUND
 from .searches import Searches
@@ -34,11 +38,35 @@ def softest_design(searches: Searches, ends: dict[str, Stiffest]) -> Outcome:
     return best[0]
 
 
+def first_forces(
+    searches: Searches, levels: Sequence[Level], accurate: tuple[str, Stiffest], soft: Outcome
+) -> Array:
+    """Return the forces found at each level from the two ends of the front, NaN for none [N].
+
+    Args:
+        searches: where they run.
+        levels: the stiffest first.
+        accurate: the most accurate design, with the name of its pose.
+        soft: the design of least force.
+    """
+    (name, end), tasks = accurate, []
+    for i, level in enumerate(levels):
+        for q, springs, bound in (
+            (end.q, end.springs, end.deflection),
+            (soft.q, soft.springs, levels[-1].bound),
+        ):
+            springs = rescaled(springs, bound, level.bound, searches.problem.bounds)
+            tasks.append((i, Start(name, "free", ((q, springs),))))
+    best: dict[int, Outcome] = {}
+    _improve(searches, "levels", levels, tasks, best)
+    return np.array([best[i].force if best[i].solved else np.nan for i in range(len(levels))])
+
+
 def free_outcomes(
     searches: Searches,
     levels: Sequence[Level],
     held: Sequence[Sequence[Outcome | None]],
-    most_accurate: Start,
+    accurate: tuple[str, Stiffest],
 ) -> list[Outcome | None]:
     """Return the best found at each level.
 
@@ -49,10 +77,11 @@ def free_outcomes(
         searches: where they run.
         levels: the stiffest first.
         held: what was found for each held posture at each level.
-        most_accurate: where to start at the first level.
+        accurate: the most accurate design, with the name of its pose.
     """
+    name, end = accurate
     best: dict[int, Outcome] = {}
-    first = [(0, most_accurate), *_from_held(held)]
+    first = [(0, Start(name, "free", ((end.q, end.springs),))), *_from_held(held)]
     changed = _improve(searches, "free posture", levels, first, best)
     for _ in levels:
         tasks = _from_neighbours(searches, levels, best, changed)

@@ -6,8 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from softimpact.symbolic.rigid import Array
-
 from .repair import largest_deflection
 from .solve import Outcome
 from .study import Study
@@ -54,10 +52,10 @@ class Front:
         return tuple(o for o in self.outcomes if o is not None and not o.solved)
 
 
-def front(study: Study, levels: Array, outcomes: Sequence[Outcome | None]) -> Front:
+def front(study: Study, levels: Sequence[float], outcomes: Sequence[Outcome | None]) -> Front:
     """Return the front of what was found at each level [m]."""
     points = [
-        ParetoPoint(float(level), largest_deflection(study, found.q, found.springs), found)
+        ParetoPoint(level, largest_deflection(study, found.q, found.springs), found)
         for level, found in zip(levels, outcomes, strict=True)
         if found is not None and found.solved
     ]

@@ -12,15 +12,17 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
+import numpy as np
+
 from softimpact.symbolic.rigid import Array
 
-from .free_posture import free_outcomes, softest_design
+from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
-from .levels import level_bounds
+from .levels import even_bounds, level_range
 from .problem import Problem, prepare
 from .repair import largest_deflection
 from .searches import Progress, Searches
-from .solve import Outcome, SolverFailure, Start, preference
+from .solve import Outcome, SolverFailure, preference
 from .stiffest import Stiffest, stiffest
 from .study import Study
 from .sweep import Level, sweep
@@ -101,25 +103,39 @@ def pareto(
     """
     problem = prepare(study)
     ends = {pose.pose.name: stiffest(study, pose.q, "table") for pose in problem.poses}
-    least, start = _most_accurate(study, ends)
+    accurate = _most_accurate(study, ends)
     with workers(max(len(ends), study.levels.points), executor) as pool:
         searches = Searches(problem, pool, on_progress or (lambda *_: None))
         soft = softest_design(searches, ends)
-        bounds = level_bounds(study, least, largest_deflection(study, soft.q, soft.springs))
-        levels = [Level(float(bound), problem.numbers(float(bound))) for bound in bounds]
+        levels = _levels(searches, accurate, soft)
         held = _held(searches, ends, levels)
-        free = free_outcomes(searches, levels, list(held.values()), start)
+        free = free_outcomes(searches, levels, list(held.values()), accurate)
     if not any(outcome.solved for outcome in free if outcome is not None):
         raise SolverFailure([outcome for outcome in free if outcome is not None])
-    return _fronts(problem, bounds, held, free)
+    return _fronts(problem, [level.bound for level in levels], held, free)
 
 
-def _most_accurate(study: Study, ends: dict[str, Stiffest]) -> tuple[float, Start]:
-    """Least deflection that springs and posture can reach [m], and where."""
+def _most_accurate(study: Study, ends: dict[str, Stiffest]) -> tuple[str, Stiffest]:
+    """Return the most accurate design of all, with the name of the pose that led to it."""
     found = {name: stiffest(study, end.q, "free") for name, end in ends.items()}
-    name = min(found, key=lambda name: found[name].deflection)
-    best = found[name]
-    return best.deflection, Start(name, "free", ((best.q, best.springs),))
+    return min(found.items(), key=lambda item: item[1].deflection)
+
+
+def _levels(searches: Searches, accurate: tuple[str, Stiffest], soft: Outcome) -> list[Level]:
+    """Return levels, evenly spaced along a first front, and the study's own bound."""
+    problem = searches.problem
+    study = problem.study
+
+    def placed(bounds: Array) -> list[Level]:
+        return [Level(float(bound), problem.numbers(float(bound))) for bound in bounds]
+
+    ideal = largest_deflection(study, soft.q, soft.springs)
+    lower, upper = level_range(study, accurate[1].deflection, ideal)
+    bounds = np.unique(np.geomspace(lower, upper, study.levels.points))
+    bounds = even_bounds(bounds, first_forces(searches, placed(bounds), accurate, soft))
+    if lower < study.max_deflection < upper:
+        bounds = np.union1d(bounds, study.max_deflection)
+    return placed(bounds)
 
 
 def _held(
@@ -138,14 +154,16 @@ def _held(
     return found
 
 
-def _fronts(problem: Problem, bounds: Array, held: dict[str, Outcomes], free: Outcomes) -> Pareto:
+def _fronts(
+    problem: Problem, bounds: Sequence[float], held: dict[str, Outcomes], free: Outcomes
+) -> Pareto:
     study = problem.study
     given = [_least(column) for column in zip(*held.values(), strict=True)]
     if study.exact:  # a held posture that holds the task exactly is one that a free one may take
         free = [_least(pair) for pair in zip(free, given, strict=True)]
     return Pareto(
         study=study,
-        levels=bounds,
+        levels=np.array(bounds),
         free=front(study, bounds, free),
         given=front(study, bounds, given),
         held={name: front(study, bounds, outcomes) for name, outcomes in held.items()},
