@@ -3,7 +3,7 @@
 
 from .co_design import Design, Gains, PoseResult, design
 from .front import Front, ParetoPoint
-from .pareto import Pareto, pareto
+from .pareto import Pareto, pareto_fronts
 from .poses import Candidate, candidates
 from .solve import Mode, Outcome, SolverFailure
 from .study import Pose, Study, load_study
@@ -24,5 +24,5 @@ __all__ = [
     "candidates",
     "design",
     "load_study",
-    "pareto",
+    "pareto_fronts",
 ]

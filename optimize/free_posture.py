@@ -49,14 +49,14 @@ def first_forces(
         accurate: the most accurate design, with the name of its pose.
         soft: the design of least force.
     """
-    (name, end), tasks = accurate, []
+    name, end = accurate
+    limits = searches.problem.bounds
+    tasks: list[Task] = []
     for i, level in enumerate(levels):
-        for q, springs, bound in (
-            (end.q, end.springs, end.deflection),
-            (soft.q, soft.springs, levels[-1].bound),
-        ):
-            springs = rescaled(springs, bound, level.bound, searches.problem.bounds)
-            tasks.append((i, Start(name, "free", ((q, springs),))))
+        stiffer = rescaled(end.springs, end.deflection, level.bound, limits)
+        softer = rescaled(soft.springs, levels[-1].bound, level.bound, limits)
+        tasks.append((i, Start(name, "free", ((end.q, stiffer),))))
+        tasks.append((i, Start(soft.name, "free", ((soft.q, softer),))))
     best: dict[int, Outcome] = {}
     _improve(searches, "levels", levels, tasks, best)
     return np.array([best[i].force if best[i].solved else np.nan for i in range(len(levels))])

@@ -18,7 +18,7 @@ from softimpact.symbolic.rigid import Array
 
 from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
-from .levels import even_bounds, level_range
+from .levels import ROOM, even_bounds, level_range
 from .problem import Problem, prepare
 from .repair import largest_deflection
 from .searches import Progress, Searches
@@ -86,7 +86,7 @@ class Pareto:
         return sum(o.attempts for front in fronts for o in front.outcomes if o is not None)
 
 
-def pareto(
+def pareto_fronts(
     study: Study, executor: Executor | None = None, on_progress: Progress | None = None
 ) -> Pareto:
     """Find the least peak force at every accuracy.
@@ -107,7 +107,7 @@ def pareto(
     with workers(max(len(ends), study.levels.points), executor) as pool:
         searches = Searches(problem, pool, on_progress or (lambda *_: None))
         soft = softest_design(searches, ends)
-        levels = _levels(searches, accurate, soft)
+        levels = _levels(searches, accurate, ends[study.task_pose.name], soft)
         held = _held(searches, ends, levels)
         free = free_outcomes(searches, levels, list(held.values()), accurate)
     if not any(outcome.solved for outcome in free if outcome is not None):
@@ -121,8 +121,13 @@ def _most_accurate(study: Study, ends: dict[str, Stiffest]) -> tuple[str, Stiffe
     return min(found.items(), key=lambda item: item[1].deflection)
 
 
-def _levels(searches: Searches, accurate: tuple[str, Stiffest], soft: Outcome) -> list[Level]:
-    """Return levels, evenly spaced along a first front, and the study's own bound."""
+def _levels(
+    searches: Searches, accurate: tuple[str, Stiffest], task: Stiffest, soft: Outcome
+) -> list[Level]:
+    """Return levels that are evenly spaced along a first front.
+
+    The study's own bound and the most accurate design of the task's pose are added.
+    """
     problem = searches.problem
     study = problem.study
 
@@ -133,9 +138,8 @@ def _levels(searches: Searches, accurate: tuple[str, Stiffest], soft: Outcome) -
     lower, upper = level_range(study, accurate[1].deflection, ideal)
     bounds = np.unique(np.geomspace(lower, upper, study.levels.points))
     bounds = even_bounds(bounds, first_forces(searches, placed(bounds), accurate, soft))
-    if lower < study.max_deflection < upper:
-        bounds = np.union1d(bounds, study.max_deflection)
-    return placed(bounds)
+    more = (study.max_deflection, ROOM * task.deflection)
+    return placed(np.union1d(bounds, [bound for bound in more if lower < bound < upper]))
 
 
 def _held(

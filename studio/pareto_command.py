@@ -57,7 +57,7 @@ def pareto(
 
 def _search(study: Study) -> ParetoReport:
     """Find the fronts and check them, with a progress bar on stderr."""
-    from softimpact.optimize import pareto as search
+    from softimpact.optimize import pareto_fronts
 
     from .pareto_report import pareto_report
     from .progress import progress_bar
@@ -68,7 +68,7 @@ def _search(study: Study) -> ParetoReport:
         def advance(what: str, done: int, total: int) -> None:
             progress.update(task, description=what, completed=done, total=total)
 
-        return pareto_report(search(study, on_progress=advance), advance)
+        return pareto_report(pareto_fronts(study, on_progress=advance), advance)
 
 
 def _write(report: ParetoReport, record: dict[str, Any], folder: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import log2
+from math import log
 
 from softimpact.optimize import ParetoPoint
 
@@ -103,15 +103,16 @@ def _trade_off(report: ParetoReport) -> list[str]:
     if len(points) > 1:
         a, b = max(pairwise(points), key=lambda pair: _slope(*pair))
         lines.append(
-            f"It pays most between {MM * a.deflection:.3g} and {MM * b.deflection:.3g} mm: twice "
-            f"the deflection saves {_slope(a, b):.1f} N there."
+            f"It pays most from {MM * a.deflection:.3g} to {MM * b.deflection:.3g} mm: "
+            f"{a.force - b.force:.1f} N for {100 * (b.deflection / a.deflection - 1):.0f} % more "
+            "deflection."
         )
     return lines
 
 
 def _slope(a: ParetoPoint, b: ParetoPoint) -> float:
-    """Force that twice the deflection saves between two points [N]."""
-    return (a.force - b.force) / log2(b.deflection / a.deflection)
+    """Force saved between two points, by the logarithm of the deflection [N]."""
+    return (a.force - b.force) / log(b.deflection / a.deflection)
 
 
 def _posture(report: ParetoReport) -> list[str]:
@@ -129,7 +130,7 @@ def _posture(report: ParetoReport) -> list[str]:
     return [
         f"Posture: freeing it saves up to {100 * max(most, 0.0):.1f} % of the force of {name} (at "
         f"{MM * at:.3g} mm), and reaches {MM * free[0].point.deflection:.3g} mm; {name} reaches "
-        f"{MM * task[0].point.deflection:.3g} mm here."
+        f"{MM * task[0].point.deflection:.3g} mm."
     ]
 
 
