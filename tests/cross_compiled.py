@@ -26,11 +26,15 @@ LINUX = ("aarch64", "riscv64")
 """Processors whose Linux programs QEMU runs on this one."""
 
 
+def used(package: Generated, real: str) -> list[str]:
+    """Return how a package is used: its number type and headers, those of its test included."""
+    include = [f"-I{package.folder / folder}" for folder in ("include", "test")]
+    return [f"-D{package.manifest.name.upper()}_USE_{real.upper()}=1", *include]
+
+
 def flags(package: Generated, real: str) -> list[str]:
     """Return what every cross compiler is told."""
-    use = f"-D{package.manifest.name.upper()}_USE_{real.upper()}=1"
-    include = [f"-I{package.folder / folder}" for folder in ("include", "test")]
-    return ["-std=c99", *OPTIMISE, *WARNINGS, use, *include]
+    return ["-std=c99", *OPTIMISE, *WARNINGS, *used(package, real)]
 
 
 def machine(core: str) -> list[str]:

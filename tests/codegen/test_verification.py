@@ -88,7 +88,13 @@ def test_every_loop_has_a_bound(package: Callable[[str], Generated], robot: str)
 
 def test_page_lists_the_checks() -> None:
     page = PAGE.read_text()
-    for file in ("test_verification.py", "test_static_analysis.py", "test_linux_targets.py"):
+    for file in (
+        "test_verification.py",
+        "test_static_analysis.py",
+        "test_linux_targets.py",
+        "test_value_analysis.py",
+        "test_costs.py",
+    ):
         for name in re.findall(r"def (test_\w+)", (Path(__file__).parent / file).read_text()):
             listed = f"`{name}`" in page or f"`{file}`" in page
             assert listed or name == "test_page_lists_the_checks", name
