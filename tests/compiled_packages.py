@@ -16,7 +16,7 @@ import pytest
 
 from softimpact.codegen.description import CFunction
 from softimpact.codegen.functions import functions_of, symbols_of
-from softimpact.codegen.inputs import SCALARS, parameters_of
+from softimpact.codegen.inputs import SCALARS, Parameter, freeze, parameters_of
 from softimpact.codegen.manifest import Manifest
 from softimpact.codegen.samples import Sample
 from softimpact.symbolic import Robot
@@ -71,8 +71,15 @@ class Generated:
     def functions(self) -> tuple[CFunction, ...]:
         """What the package computes."""
         m = self.manifest
-        symbols = symbols_of(self.robot, self.tip, m.gravity, parameters_of(self.robot))
+        symbols = symbols_of(self.robot, self.tip, m.gravity, self.parameters)
         return functions_of(symbols, m.chain_order)
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """All parameters, frozen ones too."""
+        m = self.manifest
+        payload = "payload_mass" in (*m.parameters, *m.frozen)
+        return freeze(parameters_of(self.robot, payload=payload), m.frozen)
 
     def run_own_test(self, compiler: str, real: str, out: Path) -> str:
         """Compile the package's own test without a warning, run it and return what it says."""
@@ -104,7 +111,9 @@ class Library:
         out = np.full(sum(sizes), np.nan, dtype=kind)
         scalars = dict(zip(SCALARS, sample.scalars, strict=True))
         vectors = [np.array(sample.q, dtype=kind), np.array(sample.n, dtype=kind)]
-        vectors.append(np.concatenate(sample.parameters).astype(kind))
+        pairs = zip(self.package.parameters, sample.parameters, strict=True)
+        fields = [values for p, values in pairs if p.frozen is None]
+        vectors.append(np.concatenate([(), *fields]).astype(kind))
         q, n, p = (ctypes.c_void_p(vector.ctypes.data) for vector in vectors)
         entry = getattr(self.library, f"{self.package.manifest.name}_{function.name}")
         status = entry(
@@ -121,5 +130,5 @@ class Library:
 
 def parameter(package: Generated, sample: Sample, name: str) -> Array:
     """Return a sample's values of one field of the parameter struct."""
-    names = [p.name for p in parameters_of(package.robot)]
+    names = [p.name for p in package.parameters]
     return np.array(sample.parameters[names.index(name)])
