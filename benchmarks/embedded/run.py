@@ -28,6 +28,7 @@ CLOCK = 480e6
 
 INTERNAL = {
     "panda_impact_chain": "chain of an impact",
+    "panda_impact_modes": "its modes and their steps",
     "panda_impact": "integration",
     "panda_common": "sines, defaults, texts",
 }
