@@ -81,6 +81,8 @@ class Manifest:
         coordinates: number of generalised coordinates.
         gravity: whose curvature enters K0 [m/s²]; zero leaves it out.
         chain_order: masses of the chain.
+        parameters: fields of the parameter struct.
+        frozen: parameters that are built in, and their numbers.
         functions: all functions.
         impact: of peak forces and safe speeds, None where the robot has none.
         files: SHA-256 of each file by path.
@@ -96,6 +98,8 @@ class Manifest:
     coordinates: int
     gravity: tuple[float, ...]
     chain_order: int
+    parameters: tuple[str, ...]
+    frozen: Mapping[str, tuple[float, ...]]
     functions: tuple[FunctionRecord, ...]
     impact: ImpactRecord | None
     files: Mapping[str, str]

@@ -13,21 +13,33 @@ import pytest
 from compiled_packages import Generated, Library, parameter, run, tool
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.functions import is_elastic, parameters_of
+from softimpact.codegen.description import CFunction, Output
+from softimpact.codegen.inputs import SCALARS, is_elastic, parameters_of
 from softimpact.codegen.manifest import FunctionRecord
 from softimpact.codegen.samples import Sample, draw_samples
 from softimpact.symbolic import (
     Drives,
     ImpactModel,
     directional_giaf,
+    dynamic_impact_measure,
     extreme_directional_giaf,
+    force_measure,
     giaf,
+    giaf_by_gear,
+    giaf_by_rotor,
     giif,
+    joint_impulse,
+    manipulability,
+    single_joint_giaf,
 )
+from softimpact.symbolic.ellipsoids import impact_matrix
 from softimpact.symbolic.rigid import Array
 
 ROBOTS = ["panda", "rr", "ur5", "baxter", "gantry", "rmin"]
-ON_THREE_AXES = ("osim", "giaf", "directional_giaf", "absorption_extremes")
+ON_THREE_AXES = (
+    *("osim", "giaf", "directional_giaf", "absorption_extremes"),
+    *("force_measure", "impact_measure", "rotor_influence", "single_joint_giaf"),
+)
 OK, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR = 0, 2, 3, 4, 5
 
 
@@ -62,8 +74,39 @@ def oracle(package: Generated, sample: Sample) -> dict[str, list[Array]]:
         "osim": [real.inertia, free.inertia],
         "giaf": [giaf(free, real), giif(free, real)],
         "directional_giaf": [directional_giaf(free, real, n)],
+        **shape_and_joints(model, q, n, sample),
     }
     return {name: [np.array(ca.DM(v)) for v in outputs] for name, outputs in values.items()}
+
+
+def shape_and_joints(
+    model: ImpactModel, q: ca.DM, n: ca.DM, sample: Sample
+) -> dict[str, list[ca.DM]]:
+    """Return what has a value for the arm alone or for each joint."""
+    J, H = model.jacobian(q), model.rotor_mass_matrix(q)
+    values = {
+        "manipulability": [manipulability(J), J @ J.T],
+        "force_measure": [force_measure(J)],
+        "impact_measure": [dynamic_impact_measure(H, J), impact_matrix(H, J)],
+    }
+    if model.robot.loops:
+        return values
+    M, rotors = model.mass_matrix(q), model.drives.rotors
+    impulse = joint_impulse(M, rotors, J, n, *sample.scalars)
+    return values | {
+        "rotor_influence": [giaf_by_rotor(M, rotors, J), giaf_by_gear(M, rotors, J)],
+        "single_joint_giaf": [single_joint_giaf(M, rotors, J)],
+        "joint_impulse": list(vars(impulse).values()),
+    }
+
+
+def scale_of(function: CFunction, output: Output, sample: Sample, right: Array) -> float:
+    """Return what an output's error is stated over."""
+    if output.scale is None:
+        return float(abs(right).max())
+    n = ca.DM(sample.n) / ca.norm_2(ca.DM(sample.n))
+    scale = ca.Function("scale", function.symbols, [ca.SX(output.scale)])
+    return float(scale(sample.q, n, *sample.parameters, *sample.scalars))
 
 
 def assert_agrees(library: Library, samples: list[Sample]) -> int:
@@ -84,7 +127,7 @@ def assert_agrees(library: Library, samples: list[Sample]) -> int:
             for output, ours, theirs in zip(
                 function.outputs, found, expected[function.name], strict=True
             ):
-                scale = 1.0 if output.share else abs(theirs).max()
+                scale = scale_of(function, output, sample, theirs)
                 error = abs(ours.ravel() - theirs.ravel()).max() / scale
                 assert error <= bound, (function.name, output.name, sample)
             compared += 1
@@ -204,7 +247,7 @@ def test_directions_without_motion_are_singular(
         sample = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=1)[0]
         for function in generated.functions:
             status, outputs = library.call(function, replace(sample, n=(0.0, 0.0, 1.0)))
-            mass = function.name in ("reflected_mass", "reduced_model", "chain")
+            mass = function.name in ("reflected_mass", "reduced_model", "chain", "joint_impulse")
             assert status == (SINGULAR if mass else OK)
             assert all(np.isnan(output).all() == mass for output in outputs)
 
@@ -225,6 +268,46 @@ def test_stretched_arm_has_no_operational_space_inertia(
             assert library.call(function, straight)[0] == SINGULAR
 
 
+def test_manipulability_vanishes_where_an_arm_is_stretched(
+    package: Callable[[str], Generated],
+) -> None:
+    generated = package("ur5_wrist")
+    elbow = generated.robot.joint_names.index("elbow_joint")
+    bent = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=1)[0]
+    angles = (1e-6, 2e-6, 0.0)
+    (function,) = [f for f in generated.functions if f.name == "manipulability"]
+    found = []
+    for angle in angles:
+        sample = replace(bent, q=tuple(angle if i == elbow else x for i, x in enumerate(bent.q)))
+        status, (omega_m, _) = generated.load("double").call(function, sample)
+        assert status == OK
+        found.append(float(omega_m))
+    assert found[1] == pytest.approx(2 * found[0], rel=1e-5)  # det(J J') would leave six digits
+    assert 0 <= found[2] < 1e-15
+
+
+def test_scalars_outside_their_range_are_refused(package: Callable[[str], Generated]) -> None:
+    generated = package("rr")
+    library = generated.load("float")
+    good = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=2)[0]
+    (impulse,) = [f for f in generated.functions if f.name == "joint_impulse"]
+    nan, inf = float("nan"), float("inf")
+    cases = [
+        ((0.5, 0.0, 0.0), OK),
+        ((0.5, 1.0, 1.0), OK),
+        ((0.0, 0.0, 0.0), OUT_OF_RANGE),
+        ((0.5, 1.5, 0.0), OUT_OF_RANGE),
+        ((0.5, 0.0, -1.0), OUT_OF_RANGE),
+        ((inf, 0.0, 0.0), NOT_FINITE),
+        ((0.5, nan, 0.0), NOT_FINITE),
+        ((3e38, 1.0, 0.0), SINGULAR),  # the impulse is too large for a float
+    ]
+    for scalars, expected in cases:
+        status, outputs = library.call(impulse, replace(good, scalars=scalars))
+        assert status == expected, scalars
+        assert all(np.isfinite(output).all() == (expected == OK) for output in outputs)
+
+
 @pytest.mark.parametrize("real", ["double", "float"])
 @pytest.mark.parametrize("robot", ["panda", "gantry"])
 def test_any_bits_give_finite_results_or_a_status(
@@ -237,11 +320,13 @@ def test_any_bits_give_finite_results_or_a_status(
     random = np.random.default_rng(11)
     answered = 0
     for _ in range(300):
-        numbers = random.integers(0, np.iinfo(bits).max, n + 3 + fields * n, dtype=bits).view(kind)
+        count = n + 3 + len(SCALARS) + fields * n
+        numbers = random.integers(0, np.iinfo(bits).max, count, dtype=bits).view(kind)
         numbers = np.where(random.random(numbers.size) < 0.9, abs(numbers), numbers)
         numbers = np.where(np.isfinite(numbers), numbers, 1).astype(float)
-        q, direction, parameters = np.split(numbers, [n, n + 3])
-        sample = Sample(tuple(q), tuple(direction), tuple(map(tuple, parameters.reshape(-1, n))))
+        q, direction, scalars, rest = np.split(numbers, [n, n + 3, n + 3 + len(SCALARS)])
+        parameters = tuple(map(tuple, rest.reshape(-1, n)))
+        sample = Sample(tuple(q), tuple(direction), parameters, tuple(scalars))
         for function in generated.functions:
             status, outputs = library.call(function, sample)
             for output in outputs:

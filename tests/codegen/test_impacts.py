@@ -17,8 +17,8 @@ import pytest
 from compiled_packages import KINDS, Generated, parameter
 
 from softimpact.codegen import impact
-from softimpact.codegen.functions import is_elastic, parameters_of
 from softimpact.codegen.impact_error import Impact, draw_impacts
+from softimpact.codegen.inputs import is_elastic, parameters_of
 from softimpact.codegen.manifest import ImpactRecord
 from softimpact.codegen.samples import Sample
 from softimpact.simulate import Approach, simulate_impact
