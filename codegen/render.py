@@ -145,7 +145,7 @@ def render(package: Package) -> dict[str, str]:
         "LICENSE": "LICENSE",
     }
     if package.impact:
-        for part in ("impact.h", "impact.c", "peak_force.c", "safe_speed.c"):
+        for part in ("impact.h", "impact_modes.c", "impact.c", "peak_force.c", "safe_speed.c"):
             files[f"src/{name}_{part}"] = part
     rendered = {
         path: environment.get_template(f"{template}.jinja").render(context)

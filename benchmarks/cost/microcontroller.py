@@ -10,11 +10,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from build import run, write_c
 from compiled_packages import Generated
 from cross_compiled import GCC, Call, build, calls, count, flags
 from expressions import QUANTITIES, Quantities
 from page import Table
+
+from build import run, write_c
 
 CORES = {"m4": "Cortex-M4F", "m7": "Cortex-M7"}
 BY_HAND = " by hand"
