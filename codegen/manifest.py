@@ -83,6 +83,7 @@ class Manifest:
         chain_order: masses of the chain.
         parameters: fields of the parameter struct.
         frozen: parameters that are built in, and their numbers.
+        floating: whether a function sets the base free.
         functions: all functions.
         impact: of peak forces and safe speeds, None where the robot has none.
         files: SHA-256 of each file by path.
@@ -100,6 +101,7 @@ class Manifest:
     chain_order: int
     parameters: tuple[str, ...]
     frozen: Mapping[str, tuple[float, ...]]
+    floating: bool
     functions: tuple[FunctionRecord, ...]
     impact: ImpactRecord | None
     files: Mapping[str, str]
