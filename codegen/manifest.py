@@ -85,6 +85,7 @@ class Manifest:
         chain_order: masses of the chain.
         parameters: fields of the parameter struct.
         frozen: parameters that are built in, and their numbers.
+        floating: whether a function sets the base free.
         functions: all functions.
         impact: of peak forces and safe speeds, None where the robot has none.
         costs: measured on a Cortex-M, None where they were not.
@@ -103,6 +104,7 @@ class Manifest:
     chain_order: int
     parameters: tuple[str, ...]
     frozen: Mapping[str, tuple[float, ...]]
+    floating: bool
     functions: tuple[FunctionRecord, ...]
     impact: ImpactRecord | None
     costs: Costs | None

@@ -45,6 +45,7 @@ def generate_package(
     impact_order: int | None = None,
     payload: Payload | None = None,
     freeze: Collection[str] = (),
+    floating: bool = False,
 ) -> Manifest:
     """Write a C99 package that computes a robot's impact model.
 
@@ -65,12 +66,14 @@ def generate_package(
             defaults. Not for closed chains.
         freeze: names of parameters whose defaults are built in instead of read at run time, or
             ``{"all"}``.
+        floating: adds the impact mitigation of the robot with its base set free.
 
     Returns:
         What was generated, as in the package's ``manifest.json``.
 
     Raises:
         FrameNotFound: the robot has no such tip.
+        MasslessBase: the base that is to be set free has no mass.
         InvalidValue: an argument outside its meaning, a tip that cannot move, or a parameter to
             be frozen whose numbers are not known.
         UnknownName: a parameter to be frozen that the package does not have.
@@ -83,7 +86,9 @@ def generate_package(
     frame = robot.frame(tip or robot.tip or "").name
     if gravity is None:
         gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
-    _check(robot, real, gravity, {"chain_order": chain_order, "impact_order": impact_order})
+    _check(
+        robot, real, gravity, {"chain_order": chain_order, "impact_order": impact_order}, floating
+    )
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot, payload=payload is not None)
     defaults = defaults_of(robot, parameters, drives_, payload)
@@ -91,7 +96,7 @@ def generate_package(
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
     measured = draw_samples(robot, parameters, MEASURED_SAMPLES, seed=2)
     symbols = symbols_of(robot, frame, gravity, parameters)
-    functions = functions_of(symbols, chain_order)
+    functions = functions_of(symbols, chain_order, floating=floating)
     golden = _regular(functions, golden, frame)
     tables = {function.name: golden_results(function, golden) for function in functions}
     sources = []
@@ -115,6 +120,7 @@ def generate_package(
         samples=tuple(golden),
         tables=tables,
         configuration=configuration,
+        floating=floating,
         impact=impact_source(prefix, symbols, impact_order),
     )
     files = render(package)
@@ -130,12 +136,18 @@ def c_name(name: str) -> str:
 
 
 def _check(
-    robot: Robot, real: str, gravity: Sequence[float], orders: Mapping[str, int | None]
+    robot: Robot,
+    real: str,
+    gravity: Sequence[float],
+    orders: Mapping[str, int | None],
+    floating: bool,
 ) -> None:
     if real not in ("double", "float"):
         raise InvalidValue("real", f"must be 'double' or 'float', not '{real}'")
     if len(gravity) != 3 or not np.isfinite(gravity).all():
         raise InvalidValue("gravity", "needs three finite numbers [x, y, z]")
+    if floating and robot.loops:
+        raise InvalidValue("floating", "closed chains have no such function; leave it out")
     longest = longest_chain(robot)
     for field, order in orders.items():
         if order is not None and not 1 <= order <= longest:
@@ -179,6 +191,7 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         chain_order=package.chain_order,
         parameters=tuple(p.name for p in package.fields),
         frozen={p.name: p.frozen for p in package.parameters if p.frozen is not None},
+        floating=package.floating,
         functions=tuple(records),
         impact=package.impact.record if package.impact else None,
         costs=stored_costs(package.prefix, hashes),

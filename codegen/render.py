@@ -50,6 +50,7 @@ class Package:
         tables: golden results of each function by its short name.
         configuration: where a closed chain's motors decide the rest; None if they do not.
         impact: peak forces and safe speeds; None where the robot has none.
+        floating: whether a function sets the base free.
     """
 
     prefix: str
@@ -65,6 +66,7 @@ class Package:
     tables: Mapping[str, Sequence[Sequence[float]]]
     configuration: ConfigurationSource | None = None
     impact: ImpactSource | None = None
+    floating: bool = False
 
     @property
     def elastic(self) -> bool:

@@ -32,6 +32,14 @@ def generate(
     gear_ratio: o.GearRatio = None,
     gravity: o.Gravity = None,
     order: o.Order = 3,
+    floating: Annotated[
+        bool,
+        typer.Option(
+            "--floating",
+            help="Add the impact mitigation of the robot with its base set free; q holds all "
+            "joints of the file.",
+        ),
+    ] = False,
     payload: Annotated[
         bool,
         typer.Option(
@@ -66,11 +74,11 @@ def generate(
     from softimpact.codegen.manifest import Real
 
     from .output import print_json
-    from .situation import TypedDrives, drives_of, gravity_of, robot_to_tip
+    from .situation import TypedDrives, drives_of, gravity_of, robot_to_tip, whole_robot
     from .values import one_of
 
     number: Real = one_of("number type", real, Real)
-    robot = robot_to_tip(model, tip)
+    robot = whole_robot(model, tip) if floating else robot_to_tip(model, tip)
     given = TypedDrives(joint_stiffness, rotor_inertia, position_gain, None, gear_ratio)
     manifest = generate_package(
         robot,
@@ -80,6 +88,7 @@ def generate(
         drives_=drives_of(robot, given),
         gravity=None if gravity is None else gravity_of(gravity),
         chain_order=order,
+        floating=floating,
         payload=_payload(payload, payload_mass, payload_com),
         freeze=[] if freeze is None else [name.strip() for name in freeze.split(",")],
     )

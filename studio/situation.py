@@ -84,14 +84,20 @@ def situation(typed: Typed) -> Situation:
 
 def free_situation(typed: Typed) -> Situation:
     """Return the situation of a robot on a free base; its q begins with the base's six zeros."""
-    robot = load_robot(typed.model, typed.tip, floating=True)
-    if robot.tip is None:
-        raise _no_tip(typed.model, robot)
+    robot = whole_robot(typed.model, typed.tip)
     free = floating_robot(robot)
     q = robot.vector("q", values.vector("q", typed.q))
     direction = unit_direction(values.vector("direction", typed.direction, 3))
     model = floating_model(free, drives_=drives_of(robot, typed.drives))
     return Situation(model, np.array(free.coordinates(q)).ravel(), direction)
+
+
+def whole_robot(name: str, tip: str | None) -> Robot:
+    """Return a robot with all its joints and a base whose mass counts; raises SoftImpactError."""
+    robot = load_robot(name, tip, floating=True)
+    if robot.tip is None:
+        raise _no_tip(name, robot)
+    return robot
 
 
 def robot_to_tip(name: str, tip: str | None) -> Robot:

@@ -72,7 +72,7 @@ class Generated:
         """What the package computes."""
         m = self.manifest
         symbols = symbols_of(self.robot, self.tip, m.gravity, self.parameters)
-        return functions_of(symbols, m.chain_order)
+        return functions_of(symbols, m.chain_order, floating=m.floating)
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:

@@ -20,11 +20,14 @@ from softimpact.symbolic import (
     directional_giaf,
     dynamic_impact_measure,
     extreme_directional_giaf,
+    floating_model,
+    floating_robot,
     force_measure,
     giaf,
     giaf_by_gear,
     giaf_by_rotor,
     giif,
+    impact_mitigation,
     joint_impulse,
     manipulability,
     single_joint_giaf,
@@ -67,6 +70,7 @@ def oracle(package: Generated, sample: Sample) -> dict[str, list[Array]]:
         "giaf": [giaf(free, real), giif(free, real)],
         "directional_giaf": [directional_giaf(free, real, n)],
         **shape_and_joints(model, q, n, sample),
+        **base_set_free(package, model, q),
     }
     return {name: [np.array(ca.DM(v)) for v in outputs] for name, outputs in values.items()}
 
@@ -104,6 +108,19 @@ def shape_and_joints(
         "single_joint_giaf": [single_joint_giaf(M, rotors, J)],
         "joint_impulse": list(vars(impulse).values()),
     }
+
+
+def base_set_free(package: Generated, model: ImpactModel, q: ca.DM) -> dict[str, list[ca.DM]]:
+    """Return the impact mitigation of the robot on a floating base."""
+    if not package.manifest.floating:
+        return {}
+    free = floating_robot(model.robot)
+    whole = floating_model(free, model.tip, drives_=model.drives)
+    x = free.coordinates(q)
+    found = impact_mitigation(whole.rotor_mass_matrix(x), whole.jacobian(x))
+    absorption = giaf(whole.free_mobility(x), whole.mobility(x))
+    inertias = [found.real.inertia, found.locked.inertia]
+    return {"impact_mitigation": [found.factor, found.matrix, absorption, *inertias]}
 
 
 def scale_of(function: CFunction, output: Output, sample: Sample, right: Array) -> float:

@@ -19,16 +19,22 @@ from .dynamics import (
 from .impact_factors import absorption_extremes, directional_factor, impact_factors, osim
 from .joints import joint_impulse, rotor_influence, single_joint
 from .measures import force_measure, impact_measure, manipulability
+from .mitigation import impact_mitigation
 from .reductions import chain, reduced_model, reflected_mass
 from .symbols import Symbols, coordinates_of
 
 
-def functions_of(s: Symbols, chain_order: int) -> tuple[CFunction, ...]:
+def functions_of(s: Symbols, chain_order: int, *, floating: bool = False) -> tuple[CFunction, ...]:
     """Return all functions of a robot's package.
 
     Those of the operational space inertia are left out where the contact point cannot move in all
     three directions at any configuration, those with a result for each joint where joints follow
     from others through a loop, and two masses where there is one coordinate.
+
+    Args:
+        s: symbols of the package.
+        chain_order: masses of the chain.
+        floating: whether there is a function for the robot with its base set free.
     """
     functions = [
         mass_matrix(s),
@@ -48,6 +54,8 @@ def functions_of(s: Symbols, chain_order: int) -> tuple[CFunction, ...]:
             functions += [rotor_influence(s), single_joint(s)]
     if not s.robot.loops:
         functions.append(joint_impulse(s))
+    if floating:
+        functions.append(impact_mitigation(s))
     return tuple(functions)
 
 
