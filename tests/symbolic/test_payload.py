@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A payload against Pinocchio, which gets it as one more inertia of the last link."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from oracles import Pinocchio, assert_near
+from random_robots import robots, seeds
+
+from softimpact.symbolic import FrameNotFound, bias_torques, load_robot, mass_matrix
+from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot import Robot
+
+GRAVITY = (0.3, -0.2, -9.81)
+
+
+def with_mass(robot: Robot, frame: str, mass: float, com: Array) -> Pinocchio:
+    oracle = Pinocchio.of_robot(robot)
+    held = oracle.model.frames[oracle.model.getFrameId(frame, pin.FrameType.BODY)]
+    load = pin.Inertia(mass, com, np.zeros((3, 3)))
+    oracle.model.appendBodyToJoint(held.parentJoint, load, held.placement)
+    oracle.data = oracle.model.createData()
+    return oracle
+
+
+@settings(max_examples=20)
+@given(robots(max_joints=5), seeds, st.floats(0, 20))
+def test_any_robot(robot: Robot, seed: int, mass: float) -> None:
+    random = np.random.default_rng(seed)
+    com, q, v = random.normal(size=3), random.uniform(-2, 2, robot.n), random.normal(size=robot.n)
+    loaded, oracle = robot.with_payload("tip", mass, tuple(com)), with_mass(robot, "tip", mass, com)
+    assert_near(mass_matrix(loaded, ca.DM(q)), oracle.mass_matrix(q))
+    assert_near(
+        bias_torques(loaded, ca.DM(q), ca.DM(v), GRAVITY), oracle.bias(q, v, np.array(GRAVITY))
+    )
+
+
+def test_symbols_stand_for_any_payload() -> None:
+    panda = load_robot("panda")
+    mass, com, q = ca.SX.sym("m"), ca.SX.sym("c", 3), ca.SX.sym("q", 7)
+    M = ca.Function(
+        "M", [q, mass, com], [mass_matrix(panda.with_payload("hand_tcp", mass, com), q)]
+    )
+    for seed in range(3):
+        random = np.random.default_rng(seed)
+        m, c, x = random.uniform(0, 8), random.normal(size=3) / 10, random.uniform(-1, 1, 7)
+        assert_near(M(x, m, c), with_mass(panda, "hand_tcp", m, c).mass_matrix(x))
+
+
+def test_unknown_frame() -> None:
+    with pytest.raises(FrameNotFound, match=r"'palm'.*hand_tcp"):
+        load_robot("panda").with_payload("palm", 1.0)
