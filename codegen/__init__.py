@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """CasADi expressions to portable C99 packages."""
 
+from .defaults import Payload
 from .errors import ForeignFiles, OutputNotWritable, UnsupportedOperation
 from .manifest import FunctionRecord, Manifest
 from .package import generate_package
@@ -10,6 +11,7 @@ __all__ = [
     "FunctionRecord",
     "Manifest",
     "OutputNotWritable",
+    "Payload",
     "UnsupportedOperation",
     "generate_package",
 ]

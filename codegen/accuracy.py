@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .description import CFunction, Output
+from .description import CFunction
 from .evaluate import evaluate_exactly, evaluate_rounded
 from .exact import DIGITS
 from .samples import Sample, as_columns
@@ -30,13 +30,21 @@ constants have more digits than those printed."""
 
 
 def golden_results(function: CFunction, samples: Sequence[Sample]) -> list[list[float]]:
-    """Return the compared entries of all outputs for each sample, right to the last bit."""
+    """Return for each sample the compared entries of each output and their scale.
+
+    All are right to the last bit.
+    """
     results = []
     for sample in samples:
         arguments: list[Sequence[float | Decimal]] = [sample.q, _exact_unit(sample.n)]
-        arguments += sample.parameters
+        arguments += [*sample.parameters, *((x,) for x in sample.scalars)]
         values = evaluate_exactly(function.graph, arguments)[: len(function.outputs)]
-        results.append([entry for output in values for entry in output])
+        own = iter(evaluate_exactly(function.scales, arguments))
+        row: list[float] = []
+        for output, entries in zip(function.outputs, values, strict=True):
+            scale = max(map(abs, entries)) if output.scale is None else next(own)[0]
+            row += [*entries, scale]
+        results.append(row)
     return results
 
 
@@ -75,9 +83,10 @@ def accuracy(function: CFunction, samples: Sequence[Sample]) -> Accuracy:
     reference, regular = _evaluate(function, samples, np.float64)
     narrow, still_regular = _evaluate(function, samples, np.float32)
     both = regular & still_regular
+    scales = _scales(function, samples, reference)
     errors = [
-        _error(output, got[:, both], wide[:, both])
-        for output, wide, got in zip(function.outputs, reference, narrow, strict=True)
+        _error(got[:, both], wide[:, both], scale[both])
+        for wide, got, scale in zip(reference, narrow, scales, strict=True)
     ]
     ordered = np.sort(np.max(errors, axis=0))
     epsilon = float(np.finfo(np.float32).eps)
@@ -91,10 +100,30 @@ def accuracy(function: CFunction, samples: Sequence[Sample]) -> Accuracy:
     )
 
 
-def _error(output: Output, found: NDArray[Any], right: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Error of each sample's entries over the largest of them, or absolute for shares of 1."""
-    scale: Any = 1.0 if output.share else abs(right).max(axis=0)
+def _error(
+    found: NDArray[Any], right: NDArray[np.float64], scale: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Error of each sample's entries over their scale."""
     return np.asarray(abs(found.astype(float) - right).max(axis=0) / np.where(scale > 0, scale, 1))
+
+
+def _scales(
+    function: CFunction, samples: Sequence[Sample], values: Sequence[NDArray[np.float64]]
+) -> list[NDArray[np.float64]]:
+    """Return what the errors of each output are stated over, for each sample."""
+    own = iter(evaluate_rounded(function.scales, _arguments(samples, np.float64), np.float64))
+    return [
+        abs(value).max(axis=0) if output.scale is None else next(own)[0]
+        for output, value in zip(function.outputs, values, strict=True)
+    ]
+
+
+def _arguments(
+    samples: Sequence[Sample], kind: type[np.floating[Any]]
+) -> list[NDArray[np.float64]]:
+    """Return all inputs with unit directions as C computes them."""
+    q, n, *others = as_columns(samples)
+    return [q, rounded_unit(n, kind), *others]
 
 
 def rounded_up(value: float) -> float:
@@ -107,9 +136,7 @@ def _evaluate(
     function: CFunction, samples: Sequence[Sample], kind: type[np.floating[Any]]
 ) -> tuple[list[NDArray[Any]], NDArray[np.bool_]]:
     """Return all outputs, and for which samples all guards hold."""
-    q, n, *parameters = as_columns(samples)
-    arguments = [q, rounded_unit(n, kind), *parameters]
-    values = evaluate_rounded(function.graph, arguments, kind)
+    values = evaluate_rounded(function.graph, _arguments(samples, kind), kind)
     regular = np.ones(len(samples), dtype=bool)
     outputs = len(function.outputs)
     for guard, (value,) in zip(function.guards, values[outputs:], strict=True):

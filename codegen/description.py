@@ -12,17 +12,8 @@ import numpy as np
 from softimpact.symbolic import Matrix
 
 from .graph import Graph, graph_of
+from .inputs import Parameter
 from .reciprocals import with_reciprocals
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A field of the parameter struct, with one entry a joint."""
-
-    name: str
-    unit: str
-    meaning: str
-    positive: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +26,7 @@ class Output:
         unit: of its entries.
         meaning: in words.
         symmetric: whether a square matrix is.
-        share: whether it is a share of 1, whose error counts absolutely.
+        scale: what its errors are stated over: a number or an SX; None is its largest entry.
     """
 
     name: str
@@ -43,7 +34,7 @@ class Output:
     unit: str
     meaning: str
     symmetric: bool = False
-    share: bool = False
+    scale: Matrix | None = None
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -87,8 +78,10 @@ class CFunction:
         name: without the package's prefix.
         summary: one line for the header.
         outputs: one is an argument of its own, several share a struct.
+        symbols: of all inputs of the package: q, n, the parameters, the scalars.
         direction: whether it takes the direction of impact n.
-        parameters: names of the struct's fields it reads.
+        parameters: fields of the parameter struct that it reads.
+        scalars: that it takes.
         guards: what tells singular and open configurations apart.
         open_ended: whether some results may not be finite, which its callers look at.
         divides: whether divisions stay divisions; for results that cannot afford the rounding of
@@ -100,7 +93,8 @@ class CFunction:
     outputs: tuple[Output, ...]
     symbols: tuple[Matrix, ...] = field(repr=False)
     direction: bool = False
-    parameters: tuple[str, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    scalars: tuple[Parameter, ...] = ()
     guards: tuple[Guard, ...] = ()
     open_ended: bool = False
     divides: bool = False
@@ -112,6 +106,12 @@ class CFunction:
         guards = [guard.value for guard in self.guards]
         graph = graph_of(self.symbols, [*values, *guards])
         return graph if self.divides else with_reciprocals(graph)
+
+    @cached_property
+    def scales(self) -> Graph:
+        """What errors are stated over, of each output that has a scale of its own."""
+        own = [ca.SX(o.scale) for o in self.outputs if o.scale is not None]
+        return graph_of(self.symbols, own) if own else Graph((), ())
 
     @cached_property
     def flops(self) -> int:

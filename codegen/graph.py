@@ -85,16 +85,16 @@ class Graph:
 
 
 def graph_of(inputs: Sequence[Matrix], expressions: Sequence[Matrix]) -> Graph:
-    """Return the graph of SX expressions over SX inputs; it rounds as CasADi does.
+    """Return the graph of expressions over SX inputs; it rounds as CasADi does.
 
     Args:
         inputs: vectors of symbols.
-        expressions: dense or sparse; structural zeros become the constant 0.
+        expressions: SX or DM, dense or sparse; structural zeros become the constant 0.
 
     Raises:
         UnsupportedOperation: an expression holds an operation that the generator does not know.
     """
-    dense = [ca.densify(expression) for expression in expressions]
+    dense = [ca.densify(ca.SX(expression)) for expression in expressions]
     function = ca.Function("graph", list(inputs), ca.cse(dense))
     builder = _GraphBuilder([expression.numel() for expression in dense])
     for k in range(function.n_instructions()):

@@ -6,6 +6,8 @@ quadratic between nodes each mode's step is exact, however fast the mode is: a l
 own coefficients. Forces are implicit; with u = √δ of the skin they follow from a cubic. The node
 x_0 between skin and body is a backward difference (order 3), which no damping makes unstable.
 
+Modes so fast that they stand, bent by the force of the moment, are a spring beside the body's.
+
 The first nodes are ``2**LEVELS`` times closer, as the force starts like t^1.5 or with a jump c_h v;
 then spacing doubles. Everything is computed for an approach of 1 m/s: speed only scales the skin.
 """
@@ -16,40 +18,39 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Numbers = NDArray[np.floating[Any]]
+from .tridiagonal import Numbers, eigen_rows
 
 LEVELS = 3
 """How often spacing doubles after the first nodes."""
 
-FIRST_NODES = 3
-"""Nodes after the first at the closest spacing; two follow at each spacing but the last."""
+FIRST_NODES, NODES = 1, 2
+"""Nodes after the first at the closest spacing, and at each of the others but the last."""
 
-CONTACT_STEP = 0.16
-"""Most radians of the contact's own vibration in a step."""
+CONTACT_STEP = 0.24
+"""Most radians in a step of the vibration of the contact point, held by body and robot."""
 
 MODE_STEP = 2.5
 """Most radians of the fastest mode in a step."""
 
+STANDS = 3e-5
+"""Share of the displacement below which a mode's own motion counts as none."""
+
 STEPS = 1024
 """Most nodes of an impact."""
 
-NEWTON, CLOSE = 12, 1e-3
+NEWTON, CLOSE = 32, 3e-3
 """Most iterations for a force, and the relative change after which the next would be nothing."""
 
-QL, APART = 30, 1e-6
-"""Most QL steps for a mode's frequency, and the coupling over frequencies that counts as none."""
-
 TRIALS = 16
-"""Most impacts integrated for one safe speed; three or so do."""
+"""Most impacts integrated for one safe speed; two or three do."""
 
-AIM, NEAR = 0.9994, 3e-4
+AIM, NEAR = 0.9993, 2.9e-4
 """Share of the limit at which a safe speed aims, and how near it must come."""
 
-GUESS, POWER = 0.8, 1.002
-"""First guess of a safe speed over that of the masses at the contact alone, and the power of the
-energy's ratio by which it is corrected; both save trials, neither changes what is found."""
+GUESS, SLOW = 1.05, 1.5
+"""First guess of a safe speed over that of its simple model, and the squared frequency, over the
+contact's, at which a mode counts half there; both save trials, neither changes what is found."""
 
 LINEAR = (1 / 6, -1 / 120, 1 / 5040)
 """(θ − sin θ)/θ³ over θ²: what a force that grows linearly does to a mode in a step."""
@@ -95,13 +96,20 @@ class Peak:
 
 
 def modes_of_chain(mass: Numbers, stiffness: Numbers, velocity: Numbers) -> Modes:
-    """Return the modes of a chain; ``stiffness[-1]`` holds the last mass to ground."""
+    """Return the modes of a chain; ``stiffness[-1]`` holds the last mass to ground.
+
+    Masses are taken from the last, as numbers mostly grow towards the contact.
+    """
     root = np.sqrt(mass)
     before = np.concatenate([stiffness[:1] * 0, stiffness[:-1]])
-    off = np.diag(-stiffness[:-1] / (root[:-1] * root[1:]), -1)
-    squared_frequency, shapes = np.linalg.eigh(np.diag((before + stiffness) / mass) + off)
-    at_contact = shapes[0] / root[0]
-    return Modes(squared_frequency, at_contact**2, at_contact * (shapes.T @ (root * velocity)))
+    off = -stiffness[:-1] / (root[:-1] * root[1:])
+    at_contact = np.zeros_like(mass)
+    at_contact[0] = 1 / root[0]
+    rows = np.array([at_contact, root * velocity])[:, ::-1]
+    squared_frequency, (shape, rate) = eigen_rows(
+        ((before + stiffness) / mass)[::-1], off[::-1], rows
+    )
+    return Modes(squared_frequency, shape * shape, shape * rate)
 
 
 def peak_force(modes: Modes, speed: float, body: Body, finer: float = 1.0) -> Peak:
@@ -116,9 +124,9 @@ def peak_force(modes: Modes, speed: float, body: Body, finer: float = 1.0) -> Pe
     run = _Run(modes, speed, body, finer)
     run.first_node()
     for level in range(LEVELS + 1):
-        for i in range({0: FIRST_NODES, LEVELS: int(STEPS * finer)}.get(level, 2)):
-            doubles = level < LEVELS and i == {0: FIRST_NODES}.get(level, 2) - 1
-            if not run.node(doubles):
+        nodes = {0: FIRST_NODES, LEVELS: int(STEPS * finer)}.get(level, NODES)
+        for left in reversed(range(nodes)):
+            if not run.node(doubles=level < LEVELS and left == 0):
                 return Peak(float(run.best) * speed, run.nodes)
     return Peak(float("nan"), run.nodes)
 
@@ -134,12 +142,25 @@ class _Run:
         self.squared = np.append(modes.squared_frequency, [0.0 for _ in free]).astype(self.real)
         self.k_h, self.c_h = self.real(body.stiffness), self.real(body.damping)
         self.skin = self.real(body.hertz_stiffness * np.sqrt(speed))
-        h2 = CONTACT_STEP**2 / (self.k_h * self.w.sum())
+        rate2 = self.k_h * self.w.sum() + (self.v * self.v * np.maximum(self.squared, 0)).sum()
+        h2 = CONTACT_STEP**2 / rate2
+        self.compliance = self.real(0)
+        if finer == 1:
+            self._let_stand()
         fastest = max(self.squared.max(), 0.0)
         h2 = min(h2, MODE_STEP**2 / fastest) if fastest > 0 else h2
         self.h = self.real(np.sqrt(h2) / finer / 2**LEVELS)
         self.theta2 = self.squared * self.h * self.h
         self.alpha = _polynomial(QUADRATIC, self.theta2)
+
+    def _let_stand(self) -> None:
+        """Turn modes without a motion of their own into a spring."""
+        contact = self.k_h * self.w.sum()
+        energy = self.v * self.v / np.maximum(self.squared, contact)
+        stands = self.w * contact * contact < STANDS * self.w.sum() * self.squared**2
+        stands &= self.v * self.v < STANDS * STANDS * energy.max() * self.squared
+        self.compliance = self.real((self.w[stands] / self.squared[stands]).sum())
+        self.w, self.v, self.squared = self.w[~stands], self.v[~stands], self.squared[~stands]
 
     def first_node(self) -> None:
         """Take the first step, over which the force is about linear."""
@@ -148,12 +169,15 @@ class _Run:
         y = self.v * h * (1 - self.theta2 * lean)
         hold = 1 / (self.k_h + self.c_h / h)
         force = self.w * h * h * lean
-        u = self._root(y.sum(), force.sum() + hold, self.real(np.sqrt(y.sum())))
+        soft = force.sum() + self.compliance + hold
+        light = np.sqrt(y.sum())
+        guess = light / np.sqrt(np.sqrt(1 + soft * self.skin * light))
+        u = self._root(y.sum(), soft, self.real(guess))
         f = self.skin * u**3
         self.edge = self.w * h * h * self.alpha
         self.g = y - force * f + self.edge * f
         self.d = self.g.copy()
-        self.f, self.u, self.s = [f, zero], [u, zero], [f * hold, zero, zero]
+        self.f, self.u, self.s = [f, zero, zero], [u, zero, zero], [f * hold, zero, zero]
         self.past, self.nodes, self.best = 1, 1, f
 
     def node(self, doubles: bool) -> bool:
@@ -164,34 +188,41 @@ class _Run:
         before = self.d
         self.d = self.d - kappa * self.g - gamma * self.f[0]
         self.g = self.g + self.d
-        b = BACKWARD[self.past >= 3]
+        even = self.past >= 3
+        b = BACKWARD[even]
         rate = self.c_h / self.h
         hold = 1 / (self.k_h + self.real(b[0]) * rate)
         memory = rate * sum(self.real(w) * s for w, s in zip(b[1:], self.s, strict=True))
-        guess = max(2 * self.u[0] - self.u[1], self.u[0] / 2)
-        u = self._root(self.g.sum() - memory * hold, self.edge.sum() + hold, guess)
+        line = 2 * self.u[0] - self.u[1]
+        guess = line + (self.u[0] - 2 * self.u[1] + self.u[2]) if even else line
+        soft = self.edge.sum() + self.compliance + hold
+        u = self._root(self.g.sum() - memory * hold, soft, max(guess, self.u[0] / 2))
         f = self.skin * u**3
         self.nodes += 1
-        self._see(f)
+        self._see(f, even)
         if not f > 0:
             return False
         new = (f + memory) * hold
         if doubles:
             self._double(before, psi, f)
-            self.f, self.u, self.s = [f, self.f[1]], [u, self.u[1]], [new, *self.s[1:]]
+            self.f, self.u, self.s = [f, *self.f[1:]], [u, *self.u[1:]], [new, *self.s[1:]]
             self.past = 2
         else:
-            self.f, self.u, self.s = [f, self.f[0]], [u, self.u[0]], [new, *self.s[:2]]
+            self.f, self.u, self.s = [f, *self.f[:2]], [u, *self.u[:2]], [new, *self.s[:2]]
             self.past += 1
         return True
 
-    def _see(self, f: Any) -> None:
-        """Note a node, and the top of the parabola through the last three."""
-        here, last = self.f
-        top = here
-        if here >= last and here > f:
-            top = here + (f - last) ** 2 / (8 * (2 * here - f - last))
-        self.best = max(self.best, f, top)
+    def _see(self, f: Any, even: bool) -> None:
+        """Note the top of the cubic through the last four nodes, or of a parabola at first."""
+        here, last, second = self.f
+        if not (here >= last and here > f):
+            return
+        third = f - 3 * here + 3 * last - second if even else self.real(0)
+        bend, lean = (f - here) + (last - here), (f - last) / 2 - third / 6
+        x = -lean / bend
+        x = x - (lean + x * (bend + x * third / 2)) / (bend + x * third)
+        x = x if -1 < x < 1 else self.real(0)
+        self.best = max(self.best, here, here + x * (lean + x * (bend / 2 + x * third / 6)))
 
     def _double(self, before: Numbers, psi: Numbers, f: Any) -> None:
         self.alpha = self.alpha / 4 + psi * psi / 16

@@ -17,11 +17,13 @@ from softimpact.symbolic.contact import HERTZ_STIFFNESS
 from softimpact.symbolic.rigid import Array
 
 from .accuracy import is_regular, rounded_unit, rounded_up
-from .description import CFunction, Parameter
+from .description import CFunction
 from .evaluate import evaluate_rounded
 from .functions import CHAIN_ENDS
-from .impact import Body, Modes, Numbers, modes_of_chain, peak_force
+from .impact import Body, Modes, modes_of_chain, peak_force
+from .inputs import Parameter
 from .samples import Sample, as_columns, draw_samples
+from .tridiagonal import Numbers
 
 CASES = 128
 """Random impacts that a chain is judged by."""
@@ -96,7 +98,7 @@ def _within(n: Sequence[float], directions: Array) -> tuple[float, ...]:
 def _released(sample: Sample, parameters: Sequence[Parameter]) -> Sample:
     zeros = (0.0,) * len(sample.q)
     pairs = zip(parameters, sample.parameters, strict=True)
-    values = tuple(zeros if p.name == GAIN else v for p, v in pairs)
+    values = tuple(zeros if p.name == GAIN and p.frozen is None else v for p, v in pairs)
     return replace(sample, parameters=values)
 
 
@@ -138,7 +140,8 @@ def chain_forces(
 ) -> Array:
     """Return the peak forces [N] of the first ``order`` masses of a chain, as C computes them."""
     mass, stiffness, velocity = _values(chain, impacts, kind)
-    coordinates = chain.symbols[0].numel() * (2 if "joint_stiffness" in chain.parameters else 1)
+    elastic = any(p.name == "joint_stiffness" for p in parameters)
+    coordinates = chain.symbols[0].numel() * (2 if elastic else 1)
     forces = []
     for k, impact in enumerate(impacts):
         m, springs, v = mass[:order, k], stiffness[:order, k].copy(), velocity[:order, k]

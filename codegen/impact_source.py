@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,16 +12,11 @@ from softimpact.symbolic import Robot
 from . import impact
 from .accuracy import rounded_up
 from .approach import directions_of_motion
-from .description import Parameter
-from .functions import (
-    coordinates_of,
-    impact_chain_of,
-    linear_model_of,
-    model_of,
-)
+from .functions import Symbols, coordinates_of, impact_chain_of, linear_model_of
 from .impact_error import (
     CASES,
     FINER,
+    GAIN,
     Impact,
     chain_forces,
     draw_impacts,
@@ -66,6 +60,12 @@ class ImpactSource:
         return self.record.order
 
     @property
+    def held(self) -> bool | None:
+        """Whether a controller holds a motor; None if the parameters at run time tell."""
+        (gains,) = [p.frozen for p in self.chain.parameters if p.name == GAIN]
+        return None if gains is None else any(gain > 0 for gain in gains)
+
+    @property
     def peak_force(self) -> str:
         """Prototype without the semicolon."""
         return self._declaration("peak_force", "speed")
@@ -82,7 +82,7 @@ class ImpactSource:
             f"const {prefix}_real n[3]",
             f"{prefix}_real {number}",
             f"const {prefix}_region *region",
-            f"const {prefix}_params *p",
+            *([f"const {prefix}_params *p"] if self.chain.has_struct else []),
             f"{prefix}_{function}_t *out",
         ]
         return f"int {prefix}_{function}(\n    " + ",\n    ".join(arguments) + ")"
@@ -93,29 +93,20 @@ def longest_chain(robot: Robot) -> int:
     return min(LONGEST_CHAIN, coordinates_of(robot))
 
 
-def impact_source(
-    prefix: str,
-    robot: Robot,
-    tip: str,
-    gravity: tuple[float, float, float],
-    parameters: Sequence[Parameter],
-    order: int | None,
-) -> ImpactSource | None:
+def impact_source(prefix: str, symbols: Symbols, order: int | None) -> ImpactSource | None:
     """Return the impacts of a robot; None where there are none.
 
     Args:
         prefix: of the C names.
-        robot: any robot.
-        tip: contact frame.
-        gravity: as in ``generate_package``.
-        parameters: fields of the parameter struct.
+        symbols: of the robot's package.
         order: masses of the chain; None takes the fewest that are good enough.
     """
+    robot, parameters = symbols.robot, symbols.parameters
     if robot.loops:
         return None
-    linear = linear_model_of(robot, tip, gravity)
-    longest = impact_chain_of(robot, tip, gravity, longest_chain(robot))
-    directions = directions_of_motion(model_of(robot, tip, gravity))
+    linear = linear_model_of(symbols)
+    longest = impact_chain_of(symbols, longest_chain(robot))
+    directions = directions_of_motion(symbols.model)
     if linear is None or longest is None or directions is None:
         return None
     drawn = draw_impacts(robot, parameters, directions, CASES, seed=3)
@@ -126,7 +117,7 @@ def impact_source(
         errors = errors_of_order(forces / right - 1)
         if errors[1] <= GOOD_ENOUGH:
             break
-    chain = impact_chain_of(robot, tip, gravity, masses)
+    chain = impact_chain_of(symbols, masses)
     assert chain is not None
     reference = chain_forces(chain, parameters, impacts, masses, finer=FINER)
     narrow = chain_forces(chain, parameters, impacts, masses, np.float32)

@@ -83,6 +83,8 @@ class Manifest:
         coordinates: number of generalised coordinates.
         gravity: whose curvature enters K0 [m/s²]; zero leaves it out.
         chain_order: masses of the chain.
+        parameters: fields of the parameter struct.
+        frozen: parameters that are built in, and their numbers.
         functions: all functions.
         impact: of peak forces and safe speeds, None where the robot has none.
         costs: measured on a Cortex-M, None where they were not.
@@ -99,6 +101,8 @@ class Manifest:
     coordinates: int
     gravity: tuple[float, ...]
     chain_order: int
+    parameters: tuple[str, ...]
+    frozen: Mapping[str, tuple[float, ...]]
     functions: tuple[FunctionRecord, ...]
     impact: ImpactRecord | None
     costs: Costs | None

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,12 +17,14 @@ from .accuracy import accuracy, golden_results, is_regular
 from .configuration import Configuration, has_configuration
 from .configuration_source import configuration_source
 from .costs import stored_costs
-from .description import CFunction, Parameter
+from .defaults import Payload, defaults_of, frozen_parameters
+from .description import CFunction
 from .files import replace_package, require_own, sha256
-from .functions import functions_of, parameters_of
+from .functions import functions_of, symbols_of
 from .impact_source import impact_source, longest_chain
+from .inputs import parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
-from .render import MEASURED_SAMPLES, Default, Package, render
+from .render import MEASURED_SAMPLES, Package, render
 from .samples import Sample, draw_samples
 from .source import CSource
 
@@ -41,6 +43,8 @@ def generate_package(
     gravity: tuple[float, float, float] | None = None,
     chain_order: int = 3,
     impact_order: int | None = None,
+    payload: Payload | None = None,
+    freeze: Collection[str] = (),
 ) -> Manifest:
     """Write a C99 package that computes a robot's impact model.
 
@@ -57,13 +61,19 @@ def generate_package(
         chain_order: number of masses of the chain.
         impact_order: the same of the chain behind peak forces and safe speeds; None takes the
             fewest that are right for most impacts.
+        payload: adds the parameters of a point mass that the robot carries; its numbers are their
+            defaults. Not for closed chains.
+        freeze: names of parameters whose defaults are built in instead of read at run time, or
+            ``{"all"}``.
 
     Returns:
         What was generated, as in the package's ``manifest.json``.
 
     Raises:
         FrameNotFound: the robot has no such tip.
-        InvalidValue: an argument outside its meaning, or a tip that cannot move.
+        InvalidValue: an argument outside its meaning, a tip that cannot move, or a parameter to
+            be frozen whose numbers are not known.
+        UnknownName: a parameter to be frozen that the package does not have.
         NoEquilibrium: a closed chain that rests nowhere near home.
         ForeignFiles: the folder holds files that the generator did not write.
         OutputNotWritable: the operating system refuses.
@@ -75,10 +85,13 @@ def generate_package(
         gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
     _check(robot, real, gravity, {"chain_order": chain_order, "impact_order": impact_order})
     prefix = c_name(name or robot.name)
-    parameters = parameters_of(robot)
+    parameters = parameters_of(robot, payload=payload is not None)
+    defaults = defaults_of(robot, parameters, drives_, payload)
+    parameters = frozen_parameters(defaults, freeze)
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
     measured = draw_samples(robot, parameters, MEASURED_SAMPLES, seed=2)
-    functions = functions_of(robot, frame, gravity, chain_order)
+    symbols = symbols_of(robot, frame, gravity, parameters)
+    functions = functions_of(symbols, chain_order)
     golden = _regular(functions, golden, frame)
     tables = {function.name: golden_results(function, golden) for function in functions}
     sources = []
@@ -97,12 +110,12 @@ def generate_package(
         gravity=gravity,
         chain_order=chain_order,
         parameters=parameters,
-        defaults=_defaults(robot, parameters, drives_),
+        defaults=tuple(d for d in defaults if d.parameter in parameters),
         functions=tuple(sources),
         samples=tuple(golden),
         tables=tables,
         configuration=configuration,
-        impact=impact_source(prefix, robot, frame, gravity, parameters, impact_order),
+        impact=impact_source(prefix, symbols, impact_order),
     )
     files = render(package)
     manifest = _manifest(package, {path: sha256(text) for path, text in files.items()})
@@ -149,29 +162,6 @@ def _record(prefix: str, function: CFunction, measured: Sequence[Sample]) -> Fun
     )
 
 
-def _defaults(
-    robot: Robot, parameters: Sequence[Parameter], drives_: Drives | None
-) -> tuple[Default, ...]:
-    """Return the numbers known of each parameter; None where the caller must set them."""
-    known: dict[str, Sequence[float] | None] = {
-        "joint_stiffness": None,
-        "rotor_inertia": robot.armature.tolist(),
-        "position_gain": [0.0] * robot.n,
-    }
-    if drives_ is not None:
-        known = {
-            "joint_stiffness": np.array(drives_.springs).ravel().tolist(),
-            "rotor_inertia": np.array(drives_.rotors).ravel().tolist(),
-            "position_gain": np.array(drives_.gains).ravel().tolist(),
-        }
-    defaults = []
-    for parameter in parameters:
-        values = known[parameter.name]
-        usable = values is not None and (not parameter.positive or min(values) > 0)
-        defaults.append(Default(parameter, tuple(values) if usable and values else None))
-    return tuple(defaults)
-
-
 def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
     records = [source.record for source in package.functions]
     if package.configuration:
@@ -187,6 +177,8 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         coordinates=package.coordinates,
         gravity=package.gravity,
         chain_order=package.chain_order,
+        parameters=tuple(p.name for p in package.fields),
+        frozen={p.name: p.frozen for p in package.parameters if p.frozen is not None},
         functions=tuple(records),
         impact=package.impact.record if package.impact else None,
         costs=stored_costs(package.prefix, hashes),

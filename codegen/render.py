@@ -13,14 +13,15 @@ import softimpact
 from softimpact.symbolic import REGIONS, Robot, closed_chain
 from softimpact.symbolic.contact import HERTZ_STIFFNESS
 
-from . import impact, sine
+from . import impact, sine, tridiagonal
 from .configuration_source import ConfigurationSource
 from .costs import stored_costs
-from .description import Parameter
+from .defaults import Default
 from .files import sha256
-from .functions import CHAIN_ENDS, coordinates_of, is_elastic
+from .functions import CHAIN_ENDS, coordinates_of
 from .impact_error import FINER
 from .impact_source import ImpactSource
+from .inputs import SCALARS, Parameter, is_elastic
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
@@ -29,14 +30,6 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 MEASURED_SAMPLES = 16384
 """Inputs over which float errors are measured."""
-
-
-@dataclass(frozen=True)
-class Default:
-    """Default values of a parameter; None where none are known."""
-
-    parameter: Parameter
-    values: tuple[float, ...] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +43,8 @@ class Package:
         real: default number type.
         gravity: whose curvature enters K0 [m/s²].
         chain_order: masses of the chain.
-        parameters: fields of the parameter struct.
-        defaults: of each of them.
+        parameters: all, frozen ones too.
+        defaults: of each field of the parameter struct.
         functions: all C functions.
         samples: golden inputs.
         tables: golden results of each function by its short name.
@@ -88,6 +81,22 @@ class Package:
         """Names of the joints whose coordinates describe the robot."""
         return [self.robot.joint_names[i] for i in closed_chain(self.robot).independent]
 
+    @property
+    def fields(self) -> list[Parameter]:
+        """Fields of the parameter struct: all parameters that are not frozen."""
+        return [p for p in self.parameters if p.frozen is None]
+
+    def fields_of(self, sample: Sample) -> list[tuple[Parameter, Sequence[float]]]:
+        """Return the fields with a sample's values."""
+        pairs = zip(self.parameters, sample.parameters, strict=True)
+        return [(p, values) for p, values in pairs if p.frozen is None]
+
+    @property
+    def shown(self) -> CSource:
+        """Return the function of the README's example."""
+        name = "reduced_model" if self.has("reduced_model") else "reflected_mass"
+        return next(source for source in self.functions if source.function.name == name)
+
     def has(self, function: str) -> bool:
         """Whether the package has a function of this short name."""
         return function in self.tables
@@ -113,8 +122,10 @@ def render(package: Package) -> dict[str, str]:
         "robot": package.robot,
         "n": package.robot.n,
         "version": softimpact.__version__,
+        "scalars": SCALARS,
         "sine": sine,
         "impact": impact,
+        "tridiagonal": tridiagonal,
         "finer": int(FINER),
         "chain_ends": CHAIN_ENDS,
         "regions": list(REGIONS.values()),
@@ -134,7 +145,7 @@ def render(package: Package) -> dict[str, str]:
         "LICENSE": "LICENSE",
     }
     if package.impact:
-        for part in ("impact.h", "impact.c", "peak_force.c", "safe_speed.c"):
+        for part in ("impact.h", "impact_modes.c", "impact.c", "peak_force.c", "safe_speed.c"):
             files[f"src/{name}_{part}"] = part
     rendered = {
         path: environment.get_template(f"{template}.jinja").render(context)

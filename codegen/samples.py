@@ -18,13 +18,24 @@ from numpy.typing import NDArray
 from softimpact.symbolic import JointKind, Robot
 
 from .closed_samples import closed_configurations
-from .description import Parameter
+from .inputs import SCALARS, Parameter
 
 STEPS = 1024
 """Joint coordinates are multiples of 1/1024 rad or m."""
 
 UNLIMITED = {JointKind.HINGE: math.pi, JointKind.SLIDE: 1.0}
 """Largest coordinate sampled of a joint without limits [rad, m]."""
+
+DRAWN = {
+    "rotor_inertia": (4, 64, 64),
+    "position_gain": (0, 4096, 1),
+    "payload_mass": (0, 128, 16),
+    "payload_com": (-64, 64, 256),
+    "speed": (1, 128, 64),
+    "restitution": (0, 64, 64),
+    "other_mobility": (0, 64, 64),
+}
+"""Least and largest numerator of other numbers sampled, and their denominator."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +45,14 @@ class Sample:
     Attributes:
         q: joint coordinates within their limits; of closed chains near home, with closed loops.
         n: direction of any length but zero.
-        parameters: one vector a field of the parameter struct.
+        parameters: one vector a parameter; of one that is frozen, its numbers.
+        scalars: one number for each of ``SCALARS``.
     """
 
     q: tuple[float, ...]
     n: tuple[float, ...]
     parameters: tuple[tuple[float, ...], ...]
+    scalars: tuple[float, ...] = (1.0, 0.0, 0.0)
 
 
 def draw_samples(
@@ -47,6 +60,7 @@ def draw_samples(
 ) -> list[Sample]:
     """Return random samples; ``random.Random`` promises the same ones everywhere."""
     source = random.Random(seed)
+    beside = random.Random(~seed)
     closed = iter(closed_configurations(robot, source, count) if robot.loops else ())
 
     def configuration() -> tuple[float, ...]:
@@ -58,7 +72,8 @@ def draw_samples(
         Sample(
             configuration(),
             _direction(source),
-            tuple(tuple(_value(source, p.name) for _ in range(robot.n)) for p in parameters),
+            tuple(_values(source, p) for p in parameters),
+            tuple(_value(beside, p.name) for p in SCALARS),
         )
         for _ in range(count)
     ]
@@ -89,15 +104,19 @@ def _direction(source: random.Random) -> tuple[float, ...]:
             return n
 
 
+def _values(source: random.Random, parameter: Parameter) -> tuple[float, ...]:
+    drawn = tuple(_value(source, parameter.name) for _ in range(parameter.size))
+    return drawn if parameter.frozen is None else parameter.frozen
+
+
 def _value(source: random.Random, name: str) -> float:
     if name == "joint_stiffness":
         return float(math.floor(2 ** (7 + 10 * source.random())))
-    if name == "rotor_inertia":
-        return _between(source, 4, 64) / 64
-    return float(_between(source, 0, 4096))
+    low, high, steps = DRAWN[name]
+    return _between(source, low, high) / steps
 
 
 def as_columns(samples: Sequence[Sample]) -> list[NDArray[np.float64]]:
-    """Return q, n and the parameters of all samples, each as an array of size × samples."""
-    rows = [[s.q, s.n, *s.parameters] for s in samples]
+    """Return all inputs of all samples, each as an array of size × samples."""
+    rows = [[s.q, s.n, *s.parameters, *((x,) for x in s.scalars)] for s in samples]
     return [np.array(column, dtype=float).T for column in zip(*rows, strict=True)]

@@ -9,8 +9,9 @@ from functools import cached_property
 
 import casadi as ca
 
-from .description import CFunction, Output, Parameter
+from .description import CFunction, Output
 from .graph import Graph, Node
+from .inputs import SCALARS, Parameter
 from .manifest import FunctionRecord
 from .printer import Statements, print_graph
 
@@ -25,7 +26,7 @@ class CSource:
     Attributes:
         prefix: of the package's names.
         joints: number of joints.
-        parameters: all fields of the parameter struct.
+        parameters: all parameters of the package.
         function: what it computes.
         record: its cost and accuracy.
     """
@@ -42,24 +43,38 @@ class CSource:
         return f"{self.prefix}_{self.function.name}"
 
     @property
+    def has_struct(self) -> bool:
+        """Whether the package has a parameter struct: not if all parameters are frozen."""
+        return any(p.frozen is None for p in self.parameters)
+
+    @property
     def struct(self) -> str | None:
         """Type of the struct it writes; None if it has one output."""
         return f"{self.name}_t" if len(self.function.outputs) > 1 else None
 
     @property
-    def used_parameters(self) -> list[Parameter]:
-        """Fields of the parameter struct that it reads."""
-        return [p for p in self.parameters if p.name in self.function.parameters]
+    def inputs(self) -> list[str]:
+        """Names of the arguments it reads."""
+        function = self.function
+        direction, struct = ["n"] * function.direction, ["p"] * bool(function.parameters)
+        return ["q", *direction, *(p.name for p in function.scalars), *struct]
 
     @property
     def pointers(self) -> list[str]:
-        """Names of all arguments."""
-        inputs = ["q"]
-        if self.function.direction:
-            inputs.append("n")
-        if self.function.parameters:
-            inputs.append("p")
-        return [*inputs, self.output_argument]
+        """Names of all arguments but scalars."""
+        scalars = [p.name for p in self.function.scalars]
+        return [*(name for name in self.inputs if name not in scalars), self.output_argument]
+
+    @property
+    def checks(self) -> list[str]:
+        """Calls that return the status of each number it reads beside q and n."""
+        return [
+            *(self._check(p, f"p->{p.name}") for p in self.function.parameters),
+            *(self._check(p, p.name) for p in self.function.scalars),
+        ]
+
+    def _check(self, p: Parameter, name: str) -> str:
+        return f"{self.prefix}_{p.range.check}({'' if p.shape else '&'}{name}, {p.size})"
 
     @property
     def output_argument(self) -> str:
@@ -73,6 +88,7 @@ class CSource:
             "q": f"const {self.prefix}_real q[{self.joints}]",
             "n": f"const {self.prefix}_real n[3]",
             "p": f"const {self.prefix}_params *p",
+            **{p.name: f"{self.prefix}_real {p.name}" for p in self.function.scalars},
         }
         if self.struct:
             written = f"{self.struct} *out"
@@ -80,7 +96,7 @@ class CSource:
             output = self.function.outputs[0]
             star = "" if output.shape else "*"
             written = f"{self.prefix}_real {star}{output.name}{_brackets(output)}"
-        return [*(kinds[name] for name in self.pointers[:-1]), written]
+        return [*(kinds[name] for name in self.inputs), written]
 
     @property
     def declaration(self) -> str:
@@ -101,7 +117,8 @@ class CSource:
         inputs = [
             [f"q[{i}]" for i in range(n)],
             [f"u[{i}]" for i in range(3)],
-            *([f"p->{p.name}[{i}]" for i in range(n)] for p in self.parameters),
+            *([f"p->{place}" for place in p.places] for p in self.parameters),
+            *(p.places for p in SCALARS),
         ]
         names = [
             *([self._local(output, place) for place in output.places] for output in self.outputs),

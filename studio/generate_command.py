@@ -11,12 +11,13 @@ import typer
 from . import options as o
 
 if TYPE_CHECKING:
-    from softimpact.codegen import Manifest
+    from softimpact.codegen import Manifest, Payload
 
 Real = Annotated[str, typer.Option(metavar="TYPE", help="Number type: float or double.")]
 Name = Annotated[
     str | None, typer.Option(metavar="NAME", help="Prefix of all C names; default the robot's.")
 ]
+PAYLOAD = "What the robot carries"
 
 
 def generate(
@@ -31,6 +32,33 @@ def generate(
     gear_ratio: o.GearRatio = None,
     gravity: o.Gravity = None,
     order: o.Order = 3,
+    payload: Annotated[
+        bool,
+        typer.Option(
+            "--payload",
+            help="Add a point mass at the contact point's frame to the parameters.",
+            rich_help_panel=PAYLOAD,
+        ),
+    ] = False,
+    payload_mass: Annotated[
+        float | None,
+        typer.Option(metavar="X", help="Its default (kg).", rich_help_panel=PAYLOAD),
+    ] = None,
+    payload_com: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LIST",
+            help="Its default place from the contact point, tip's axes (m).",
+            rich_help_panel=PAYLOAD,
+        ),
+    ] = None,
+    freeze: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAMES",
+            help="Parameters to build in instead, such as joint_stiffness,rotor_inertia, or all.",
+        ),
+    ] = None,
     json: o.Json = False,
 ) -> None:
     """Write a C99 package; the drives given are the defaults of its parameters."""
@@ -52,11 +80,28 @@ def generate(
         drives_=drives_of(robot, given),
         gravity=None if gravity is None else gravity_of(gravity),
         chain_order=order,
+        payload=_payload(payload, payload_mass, payload_com),
+        freeze=[] if freeze is None else [name.strip() for name in freeze.split(",")],
     )
     if json:
         print_json({"out": out, **vars(manifest)})
     else:
         _print_table(manifest, out)
+
+
+def _payload(wanted: bool, mass: float | None, com: str | None) -> Payload | None:
+    from softimpact.codegen import Payload
+    from softimpact.symbolic import InvalidValue
+
+    from .values import vector
+
+    if not wanted:
+        for field, value in (("payload_mass", mass), ("payload_com", com)):
+            if value is not None:
+                raise InvalidValue(field, "is read with --payload only")
+        return None
+    x, y, z = vector("payload_com", com or "[0, 0, 0]", 3)
+    return Payload(mass or 0.0, (x, y, z))
 
 
 def _print_table(manifest: Manifest, out: Path) -> None:

@@ -28,6 +28,7 @@ from .ellipsoids import (
     dynamic_impact_measure,
     force_measure,
     generalised_inertia_ellipsoid,
+    longest_manipulability,
     manipulability,
     manipulability_ellipsoid,
 )
@@ -157,6 +158,7 @@ __all__ = [
     "link_angles_at_rest",
     "load_robot",
     "lock_joints",
+    "longest_manipulability",
     "loop_acceleration",
     "loop_gaps",
     "loop_jacobian",

@@ -8,95 +8,21 @@ fold and whatever no output needs is never computed.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import casadi as ca
-import numpy as np
 
+from .composites import Composite, bodies_of
 from .joint_frames import customised
-from .kinematics import Motion, cross, motions, require_length, rotate
+from .kinematics import Motion, cross, motions, require_length
 from .matrices import Matrix, on_scalars
-from .rigid import Array, Inertia
 from .robot import BASE, Joint, JointKind, Robot
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
 """Acceleration of gravity along the base's axes [m/s²]."""
 
 
-@dataclass(frozen=True)
-class Composite:
-    """Inertia of a joint's body and all that it carries, in the joint's frame (SX).
-
-    Attributes:
-        mass: in kg.
-        first_moment: length 3, kg m.
-        tensor: xx, yy, zz, xy, xz, yz about the frame's origin, kg m².
-    """
-
-    mass: Matrix
-    first_moment: Matrix
-    tensor: Sequence[Matrix]
-
-    @staticmethod
-    def of(inertia: Inertia) -> Composite:
-        """Return the composite of a single body."""
-        I = inertia.about_origin  # noqa: E741 - the field's symbol
-        tensor = [ca.SX(x) for x in (I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2])]
-        return Composite(inertia.mass, ca.SX(inertia.first_moment), tensor)
-
-    def __add__(self, other: Composite) -> Composite:
-        tensor = [a + b for a, b in zip(self.tensor, other.tensor, strict=True)]
-        return Composite(self.mass + other.mass, self.first_moment + other.first_moment, tensor)
-
-    def in_parent(self, move: Motion) -> Composite:
-        """Return the same masses in the frame of the joint's parent."""
-        h = move.to_parent(self.first_moment)
-        tensor = _turned(self.tensor, move.cosine, move.sine)
-        tensor = _rotated(tensor, move.rotation)
-        return Composite(
-            self.mass,
-            h + self.mass * move.translation,
-            _shifted(tensor, self.mass, h, move.translation),
-        )
-
-
-def _turned(tensor: Sequence[Matrix], c: Matrix, s: Matrix) -> list[Matrix]:
-    """Turn an inertia tensor about z: ten operations for the xy block instead of thirteen."""
-    xx, yy, zz, xy, xz, yz = tensor
-    u = s * (xx - yy) + c * (2 * xy)
-    t = s * u
-    return [xx - t, yy + t, zz, c * u - xy, c * xz - s * yz, s * xz + c * yz]
-
-
-def _rotated(tensor: Sequence[Matrix], rotation: Array) -> list[Matrix]:
-    """Rotate an inertia tensor by a constant matrix."""
-    xx, yy, zz, xy, xz, yz = tensor
-    full = ca.blockcat([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    R = ca.SX(ca.sparsify(ca.DM(rotation)))
-    turned = ca.mtimes(ca.mtimes(R, full), R.T)
-    return [turned[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
-
-
-def _shifted(tensor: Sequence[Matrix], mass: Matrix, h: Matrix, p: Matrix) -> list[Matrix]:
-    """Move an inertia tensor's origin by p; h is the first moment before the move."""
-    xx, yy, zz, xy, xz, yz = tensor
-    g = [(2 * h[k]) * p[k] + mass * (p[k] * p[k]) for k in range(3)]
-
-    def off(i: int, j: int) -> Matrix:
-        return p[i] * h[j] + p[j] * h[i] + mass * (p[i] * p[j])
-
-    return [
-        xx + (g[1] + g[2]),
-        yy + (g[0] + g[2]),
-        zz + (g[0] + g[1]),
-        xy - off(0, 1),
-        xz - off(0, 2),
-        yz - off(1, 2),
-    ]
-
-
 def _composites(robot: Robot, moves: list[Motion]) -> list[Composite]:
-    composites = [Composite.of(joint.inertia) for joint in robot.joints]
+    composites = bodies_of(robot)
     for i in reversed(range(robot.n)):
         parent = robot.joints[i].parent
         if parent != BASE:
@@ -162,8 +88,9 @@ def potential_energy(
 
 def _potential_energy(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> Matrix:
     moves = motions(robot, q)
-    masses = [joint.inertia.mass for joint in robot.joints]
-    moments = [ca.SX(joint.inertia.first_moment) for joint in robot.joints]
+    bodies = bodies_of(robot)
+    masses = [body.mass for body in bodies]
+    moments = [body.first_moment for body in bodies]
     energy = ca.SX(0.0)
     for i in reversed(range(robot.n)):
         joint = robot.joints[i]
@@ -226,6 +153,7 @@ def _bias_torques(robot: Robot, gravity: tuple[float, ...], q: Matrix, velocity:
     spin = {BASE: ca.SX.zeros(3)}
     spin_rate = {BASE: ca.SX.zeros(3)}
     acceleration = {BASE: -ca.SX(ca.sparsify(ca.DM(list(gravity))))}
+    bodies = bodies_of(robot)
     forces, moments = [], []
     for i, joint in enumerate(robot.joints):
         p, move, along = joint.parent, moves[i], ca.vertcat(0, 0, velocity[i])
@@ -239,7 +167,7 @@ def _bias_torques(robot: Robot, gravity: tuple[float, ...], q: Matrix, velocity:
             spin_rate[i], spin[i] = move.to_child(spin_rate[p]), w
             a = a + 2 * cross(w, along)
         acceleration[i] = a
-        force, moment = _newton_euler(joint.inertia, spin[i], spin_rate[i], a)
+        force, moment = _newton_euler(bodies[i], spin[i], spin_rate[i], a)
         forces.append(force)
         moments.append(moment)
     torques = [ca.SX(0.0)] * robot.n
@@ -254,10 +182,9 @@ def _bias_torques(robot: Robot, gravity: tuple[float, ...], q: Matrix, velocity:
     return ca.vertcat(*torques)
 
 
-def _newton_euler(inertia: Inertia, w: Matrix, dw: Matrix, a: Matrix) -> tuple[Matrix, Matrix]:
+def _newton_euler(body: Composite, w: Matrix, dw: Matrix, a: Matrix) -> tuple[Matrix, Matrix]:
     """Force and moment about the origin that give a body its motion."""
-    h = ca.SX(ca.sparsify(ca.DM(np.array(inertia.first_moment))))
-    h = ca.densify(h)
-    force = inertia.mass * a + cross(dw, h) + cross(w, cross(w, h))
-    moment = rotate(inertia.about_origin, dw) + cross(w, rotate(inertia.about_origin, w))
+    h = ca.densify(body.first_moment)
+    force = body.mass * a + cross(dw, h) + cross(w, cross(w, h))
+    moment = ca.mtimes(body.matrix, dw) + cross(w, ca.mtimes(body.matrix, w))
     return force, moment + cross(h, a)

@@ -9,7 +9,7 @@ import casadi as ca
 
 from .eigen import symmetric_eigen
 from .factors import ContactMobility
-from .matrices import Matrix
+from .matrices import Matrix, OrthogonalRows, symmetric
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,11 +37,22 @@ def ellipsoid(matrix: Matrix) -> Ellipsoid:
 def manipulability(jacobian: Matrix) -> Matrix:
     """Return ω_m = √det(J Jᵀ) = σ1 σ2 σ3 (GIAF Eq. 2); zero where the point cannot move.
 
+    It is the volume that the rows of J span, taken from their lengths when made orthogonal: det
+    loses twice as many digits near singular poses.
+
     Args:
         jacobian: translational J, 3×n.
     """
-    JJ = ContactMobility(ca.mtimes(jacobian, jacobian.T))
-    return ca.sqrt(ca.fmax(JJ.determinant, 0))
+    return OrthogonalRows(jacobian).volume
+
+
+def longest_manipulability(jacobian: Matrix) -> Matrix:
+    """Return the product of the lengths of J's rows, which ω_m never exceeds (Hadamard).
+
+    The share ω_m has of it is 0 at singular poses and 1 where all rows are orthogonal.
+    """
+    x, y, z = (ca.sumsqr(jacobian[k, :]) for k in range(3))
+    return ca.sqrt(x * y * z)
 
 
 def force_measure(jacobian: Matrix) -> Matrix:
@@ -67,14 +78,18 @@ def impact_matrix(mass_matrix: Matrix, jacobian: Matrix) -> Matrix:
         mass_matrix: H with rotors, n×n.
         jacobian: translational J of rank 3, 3×n.
     """
-    JJ = ContactMobility(ca.mtimes(jacobian, jacobian.T))
-    HJ = ca.mtimes(mass_matrix, ca.mtimes(jacobian.T, JJ.inertia))
-    return ca.mtimes(HJ.T, HJ)
+    cost = _impulses(mass_matrix, jacobian)
+    return symmetric(lambda i, j: ca.dot(cost[i, :], cost[j, :]), 3)
+
+
+def _impulses(mass_matrix: Matrix, jacobian: Matrix) -> Matrix:
+    """Return (H J⁺)ᵀ, the joints' impulses for each component of Δẋ, 3×n."""
+    return ca.mtimes(OrthogonalRows(jacobian).pseudo_inverse.T, mass_matrix)
 
 
 def dynamic_impact_measure(mass_matrix: Matrix, jacobian: Matrix) -> Matrix:
     """Return ω_di = √det(J⁺ᵀ H² J⁺) (GIAF Eq. 15) [kg³ m³]."""
-    return ca.sqrt(ContactMobility(impact_matrix(mass_matrix, jacobian)).determinant)
+    return OrthogonalRows(_impulses(mass_matrix, jacobian)).volume
 
 
 def dynamic_impact_ellipsoid(mass_matrix: Matrix, jacobian: Matrix) -> Ellipsoid:

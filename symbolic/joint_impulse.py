@@ -58,6 +58,18 @@ def joint_impulse(
         other_mobility: 1/m_2 of the other body [1/kg]; zero if it is held.
     """
     push = ca.mtimes(jacobian.T, direction)
+    return impulse_along(mass_matrix, rotors, push, speed, restitution, other_mobility)
+
+
+def impulse_along(
+    mass_matrix: Matrix,
+    rotors: Matrix,
+    push: Matrix,
+    speed: Matrix = 1.0,
+    restitution: Matrix = 0.0,
+    other_mobility: Matrix = 0.0,
+) -> JointImpulse:
+    """Return the same from the joint torques Jᵀn of a unit force, length n."""
     answer = Factorisation(mass_matrix + ca.diag(rotors)).solve(push)
     contact = (1 + restitution) * speed / (ca.dot(push, answer) + other_mobility)
     change = -answer * contact

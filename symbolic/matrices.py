@@ -8,6 +8,10 @@ from functools import lru_cache
 from typing import Any
 
 import casadi as ca
+import numpy as np
+
+LEAST_SQUARE = float(np.finfo(np.float32).tiny)
+"""Keeps the share of a row of zeros finite; it is lost in the square of any other."""
 
 Matrix = Any
 """A CasADi matrix: SX, MX or DM. CasADi ships no types that a checker could use."""
@@ -72,6 +76,44 @@ class Factorisation:
     def inner(self, first: list[Matrix], second: list[Matrix]) -> Matrix:
         """Return aᵀM⁻¹b from the halfway solutions of a and b."""
         return _dot(first, [b / d for b, d in zip(second, self.d, strict=True)])
+
+
+class OrthogonalRows:
+    """J = L R of a matrix with full row rank: L unit lower triangular, the rows of R orthogonal.
+
+    Gram and Schmidt's process without square roots. A row that depends on those before it leaves
+    next to nothing, which counts as a row of zeros.
+    """
+
+    def __init__(self, matrix: Matrix) -> None:
+        self.rows: list[Matrix] = []
+        self.squares: list[Matrix] = []
+        self.l: list[list[Matrix]] = []
+        for i in range(matrix.shape[0]):
+            row, shares = matrix[i, :], []
+            for other, square in zip(self.rows, self.squares, strict=True):
+                shares.append(ca.dot(row, other) / (square + LEAST_SQUARE))
+                row = row - shares[-1] * other
+            self.l.append(shares)
+            self.rows.append(row)
+            self.squares.append(ca.sumsqr(row))
+
+    @property
+    def volume(self) -> Matrix:
+        """√det(J Jᵀ), the volume that the rows span."""
+        product: Matrix = 1.0
+        for square in self.squares:
+            product = product * square
+        return ca.sqrt(product)
+
+    @property
+    def pseudo_inverse(self) -> Matrix:
+        """J⁺ = Jᵀ(J Jᵀ)⁻¹, one column for each row of J."""
+        columns = [row / square for row, square in zip(self.rows, self.squares, strict=True)]
+        for i in reversed(range(len(columns))):
+            for k in range(i + 1, len(columns)):
+                columns[i] = columns[i] - self.l[k][i] * columns[k]
+        return ca.vertcat(*columns).T
 
 
 def _dot(first: list[Matrix], second: list[Matrix]) -> Matrix:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .errors import FrameNotFound, InvalidValue, UnknownName, WrongLength
+from .matrices import Matrix
 from .rigid import Array, Inertia, Placement, rotation_about_z
 
 BASE = -1
@@ -84,6 +85,21 @@ class Loop:
 
 
 @dataclass(frozen=True, eq=False)
+class Payload:
+    """A point mass held at a frame.
+
+    Attributes:
+        frame: name of the frame.
+        mass: in kg, a number or a symbol.
+        com: its place along that frame's axes from its origin [m], length 3, numbers or symbols.
+    """
+
+    frame: str
+    mass: Matrix
+    com: Matrix
+
+
+@dataclass(frozen=True, eq=False)
 class Robot:
     """A fixed-base tree of hinge and slide joints, parents before children, and the loops in it.
 
@@ -100,6 +116,7 @@ class Robot:
         independent: names of the joints whose coordinates describe a closed chain; empty leaves
             the choice to ``closed_chain``.
         base_inertia: of what is fixed to the base, in its frame; felt by floating robots only.
+        payload: that it holds; with symbols in it, expressions need a q of symbols too.
     """
 
     name: str
@@ -111,6 +128,7 @@ class Robot:
     home: tuple[float, ...] | None = None
     independent: tuple[str, ...] = ()
     base_inertia: Inertia = field(default_factory=Inertia.zero)
+    payload: Payload | None = None
 
     @property
     def n(self) -> int:
@@ -201,6 +219,16 @@ class Robot:
         )
         return replace(self, joints=joints)
 
+    def with_payload(self, frame: str, mass: Matrix, com: Matrix = (0.0, 0.0, 0.0)) -> Robot:
+        """Return the robot with a point mass in its hand, instead of the one it may hold.
+
+        Args:
+            frame: name of the frame that holds it; raises FrameNotFound.
+            mass: in kg, a number or an SX.
+            com: its place along that frame's axes from its origin [m], length 3.
+        """
+        return replace(self, payload=Payload(self.frame(frame).name, mass, com))
+
     def digest(self) -> str:
         """Return a hash of every number and name that the robot's expressions depend on."""
         text = hashlib.sha256()
@@ -228,6 +256,8 @@ class Robot:
         if self.loops:
             home = _in_words(self.home or ())
             text.update(f"{home} {' '.join(self.independent)}\n".encode())
+        if self.payload:
+            text.update(f"{self.payload.frame} {self.payload.mass} {self.payload.com}\n".encode())
         return text.hexdigest()
 
 

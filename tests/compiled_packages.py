@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from softimpact.codegen.description import CFunction
-from softimpact.codegen.functions import functions_of, parameters_of
+from softimpact.codegen.functions import functions_of, symbols_of
+from softimpact.codegen.inputs import SCALARS, Parameter, freeze, parameters_of
 from softimpact.codegen.manifest import Manifest
 from softimpact.codegen.samples import Sample
 from softimpact.symbolic import Robot
@@ -70,7 +71,15 @@ class Generated:
     def functions(self) -> tuple[CFunction, ...]:
         """What the package computes."""
         m = self.manifest
-        return functions_of(self.robot, self.tip, m.gravity, m.chain_order)
+        symbols = symbols_of(self.robot, self.tip, m.gravity, self.parameters)
+        return functions_of(symbols, m.chain_order)
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """All parameters, frozen ones too."""
+        m = self.manifest
+        payload = "payload_mass" in (*m.parameters, *m.frozen)
+        return freeze(parameters_of(self.robot, payload=payload), m.frozen)
 
     def run_own_test(self, compiler: str, real: str, out: Path) -> str:
         """Compile the package's own test without a warning, run it and return what it says."""
@@ -97,17 +106,23 @@ class Library:
 
     def call(self, function: CFunction, sample: Sample) -> tuple[int, list[Array]]:
         """Return a function's status and its outputs, which start as NaN."""
-        _, kind = KINDS[self.real]
+        real, kind = KINDS[self.real]
         sizes = [int(np.prod(output.shape)) for output in function.outputs]
         out = np.full(sum(sizes), np.nan, dtype=kind)
-        arguments = [np.array(sample.q, dtype=kind)]
-        if function.direction:
-            arguments.append(np.array(sample.n, dtype=kind))
-        if function.parameters:
-            arguments.append(np.array(sample.parameters, dtype=kind).ravel())
-        arguments.append(out)
+        scalars = dict(zip(SCALARS, sample.scalars, strict=True))
+        vectors = [np.array(sample.q, dtype=kind), np.array(sample.n, dtype=kind)]
+        pairs = zip(self.package.parameters, sample.parameters, strict=True)
+        fields = [values for p, values in pairs if p.frozen is None]
+        vectors.append(np.concatenate([(), *fields]).astype(kind))
+        q, n, p = (ctypes.c_void_p(vector.ctypes.data) for vector in vectors)
         entry = getattr(self.library, f"{self.package.manifest.name}_{function.name}")
-        status = entry(*(ctypes.c_void_p(argument.ctypes.data) for argument in arguments))
+        status = entry(
+            q,
+            *([n] if function.direction else []),
+            *(real(scalars[scalar]) for scalar in function.scalars),
+            *([p] if function.parameters else []),
+            ctypes.c_void_p(out.ctypes.data),
+        )
         parts = np.split(out.astype(float), np.cumsum(sizes)[:-1])
         shapes = [output.shape for output in function.outputs]
         return status, [part.reshape(shape) for part, shape in zip(parts, shapes, strict=True)]
@@ -115,5 +130,5 @@ class Library:
 
 def parameter(package: Generated, sample: Sample, name: str) -> Array:
     """Return a sample's values of one field of the parameter struct."""
-    names = [p.name for p in parameters_of(package.robot)]
+    names = [p.name for p in package.parameters]
     return np.array(sample.parameters[names.index(name)])

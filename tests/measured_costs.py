@@ -54,6 +54,7 @@ def calls(package: Generated) -> list[Call]:
         full = f"{name}_{function.name}"
         arguments = ["in->q"]
         arguments += ["in->n"] if function.direction else []
+        arguments += [f"in->{scalar.name}" for scalar in function.scalars]
         arguments += ["&in->p"] if function.parameters else []
         if len(function.outputs) > 1:
             arguments.append(f"&({full}_t){{0}}")

@@ -7,95 +7,22 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import casadi as ca
 import numpy as np
 import pytest
-from compiled_packages import Generated, Library, parameter, run, tool
+from compiled_packages import Generated, Library, run, tool
+from package_oracle import OK, SINGULAR, assert_agrees
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.functions import is_elastic, parameters_of
-from softimpact.codegen.manifest import FunctionRecord
+from softimpact.codegen.inputs import SCALARS, parameters_of
 from softimpact.codegen.samples import Sample, draw_samples
-from softimpact.symbolic import (
-    Drives,
-    ImpactModel,
-    directional_giaf,
-    extreme_directional_giaf,
-    giaf,
-    giif,
-)
 from softimpact.symbolic.rigid import Array
 
-ROBOTS = ["panda", "rr", "ur5", "baxter", "gantry", "rmin"]
-ON_THREE_AXES = ("osim", "giaf", "directional_giaf", "absorption_extremes")
-OK, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR = 0, 2, 3, 4, 5
-
-
-def oracle(package: Generated, sample: Sample) -> dict[str, list[Array]]:
-    """Return all outputs as the public model computes them on numbers."""
-    robot = package.robot
-    elastic = is_elastic(robot)
-    springs = parameter(package, sample, "joint_stiffness") if elastic else np.zeros(robot.n)
-    gains = parameter(package, sample, "position_gain") * np.array(robot.actuated)
-    drives = Drives(
-        ca.DM(parameter(package, sample, "rotor_inertia")),
-        ca.DM(springs),
-        (elastic,) * robot.n,
-        ca.DM(gains),
-    )
-    model = ImpactModel(robot, package.tip, drives, package.manifest.gravity)
-    q = ca.DM(sample.q)
-    n = ca.DM(sample.n) / ca.norm_2(ca.DM(sample.n))
-    reduced, chain = model.reduced(q, n), model.chain(q, n, package.manifest.chain_order)
-    real, free = model.mobility(q), model.free_mobility(q)
-    extremes = extreme_directional_giaf(free, real)
-    values = {
-        "mass_matrix": [model.mass_matrix(q)],
-        "jacobian": [model.jacobian(q)],
-        "generalised_mass_matrix": [model.generalised_mass(q).matrix],
-        "stiffness_matrix": [model.generalised_stiffness(q)],
-        "contact_jacobian": [model.contact_jacobian(q, n)],
-        "reflected_mass": [model.reflected_mass(q, n)],
-        "reduced_model": [reduced.m_c, reduced.k_r, reduced.m_a],
-        "chain": [ca.vertcat(*chain.mass), ca.vertcat(*chain.stiffness)],
-        "absorption_extremes": list(vars(extremes).values()),
-        "osim": [real.inertia, free.inertia],
-        "giaf": [giaf(free, real), giif(free, real)],
-        "directional_giaf": [directional_giaf(free, real, n)],
-    }
-    return {name: [np.array(ca.DM(v)) for v in outputs] for name, outputs in values.items()}
-
-
-def assert_agrees(library: Library, samples: list[Sample]) -> int:
-    """Compare all functions with the model; return how many results were compared."""
-    package, compared = library.package, 0
-    records = {record.name: record for record in package.manifest.functions}
-    functions = package.functions
-    for sample in samples:
-        expected = oracle(package, sample)
-        for function in functions:
-            status, found = library.call(function, sample)
-            if status == SINGULAR:
-                assert all(np.isnan(output).all() for output in found)
-                continue
-            assert status == OK, function.name
-            record = records[f"{package.manifest.name}_{function.name}"]
-            bound = stated_bound(record, library.real)
-            for output, ours, theirs in zip(
-                function.outputs, found, expected[function.name], strict=True
-            ):
-                scale = 1.0 if output.share else abs(theirs).max()
-                error = abs(ours.ravel() - theirs.ravel()).max() / scale
-                assert error <= bound, (function.name, output.name, sample)
-            compared += 1
-    return compared
-
-
-def stated_bound(record: FunctionRecord, real: str) -> float:
-    """Return the bound of the manifest; in double never more than the design's 1e-12."""
-    assert record.double_error == 1e-12
-    assert record.float_error <= 2e-3
-    return record.double_error if real == "double" else record.float_error
+ROBOTS = ["panda", "rr", "ur5e", "ur5", "baxter", "gantry", "rmin"]
+ON_THREE_AXES = (
+    *("osim", "giaf", "directional_giaf", "absorption_extremes"),
+    *("force_measure", "impact_measure", "rotor_influence", "single_joint_giaf"),
+)
+NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE = 2, 3, 4
 
 
 @pytest.mark.parametrize("real", ["double", "float"])
@@ -204,7 +131,7 @@ def test_directions_without_motion_are_singular(
         sample = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=1)[0]
         for function in generated.functions:
             status, outputs = library.call(function, replace(sample, n=(0.0, 0.0, 1.0)))
-            mass = function.name in ("reflected_mass", "reduced_model", "chain")
+            mass = function.name in ("reflected_mass", "reduced_model", "chain", "joint_impulse")
             assert status == (SINGULAR if mass else OK)
             assert all(np.isnan(output).all() == mass for output in outputs)
 
@@ -225,6 +152,46 @@ def test_stretched_arm_has_no_operational_space_inertia(
             assert library.call(function, straight)[0] == SINGULAR
 
 
+def test_manipulability_vanishes_where_an_arm_is_stretched(
+    package: Callable[[str], Generated],
+) -> None:
+    generated = package("ur5_wrist")
+    elbow = generated.robot.joint_names.index("elbow_joint")
+    bent = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=1)[0]
+    angles = (1e-6, 2e-6, 0.0)
+    (function,) = [f for f in generated.functions if f.name == "manipulability"]
+    found = []
+    for angle in angles:
+        sample = replace(bent, q=tuple(angle if i == elbow else x for i, x in enumerate(bent.q)))
+        status, (omega_m, _) = generated.load("double").call(function, sample)
+        assert status == OK
+        found.append(float(omega_m))
+    assert found[1] == pytest.approx(2 * found[0], rel=1e-5)  # det(J J') would leave six digits
+    assert 0 <= found[2] < 1e-15
+
+
+def test_scalars_outside_their_range_are_refused(package: Callable[[str], Generated]) -> None:
+    generated = package("rr")
+    library = generated.load("float")
+    good = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=2)[0]
+    (impulse,) = [f for f in generated.functions if f.name == "joint_impulse"]
+    nan, inf = float("nan"), float("inf")
+    cases = [
+        ((0.5, 0.0, 0.0), OK),
+        ((0.5, 1.0, 1.0), OK),
+        ((0.0, 0.0, 0.0), OUT_OF_RANGE),
+        ((0.5, 1.5, 0.0), OUT_OF_RANGE),
+        ((0.5, 0.0, -1.0), OUT_OF_RANGE),
+        ((inf, 0.0, 0.0), NOT_FINITE),
+        ((0.5, nan, 0.0), NOT_FINITE),
+        ((3e38, 1.0, 0.0), SINGULAR),  # the impulse is too large for a float
+    ]
+    for scalars, expected in cases:
+        status, outputs = library.call(impulse, replace(good, scalars=scalars))
+        assert status == expected, scalars
+        assert all(np.isfinite(output).all() == (expected == OK) for output in outputs)
+
+
 @pytest.mark.parametrize("real", ["double", "float"])
 @pytest.mark.parametrize("robot", ["panda", "gantry"])
 def test_any_bits_give_finite_results_or_a_status(
@@ -237,11 +204,13 @@ def test_any_bits_give_finite_results_or_a_status(
     random = np.random.default_rng(11)
     answered = 0
     for _ in range(300):
-        numbers = random.integers(0, np.iinfo(bits).max, n + 3 + fields * n, dtype=bits).view(kind)
+        count = n + 3 + len(SCALARS) + fields * n
+        numbers = random.integers(0, np.iinfo(bits).max, count, dtype=bits).view(kind)
         numbers = np.where(random.random(numbers.size) < 0.9, abs(numbers), numbers)
         numbers = np.where(np.isfinite(numbers), numbers, 1).astype(float)
-        q, direction, parameters = np.split(numbers, [n, n + 3])
-        sample = Sample(tuple(q), tuple(direction), tuple(map(tuple, parameters.reshape(-1, n))))
+        q, direction, scalars, rest = np.split(numbers, [n, n + 3, n + 3 + len(SCALARS)])
+        parameters = tuple(map(tuple, rest.reshape(-1, n)))
+        sample = Sample(tuple(q), tuple(direction), parameters, tuple(scalars))
         for function in generated.functions:
             status, outputs = library.call(function, sample)
             for output in outputs:

@@ -14,7 +14,7 @@ from compiled_packages import KINDS, Generated, Library
 from mechanisms import FIVE_BAR, SIX_BAR, SPATIAL, four_bar, robot_of
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.functions import parameters_of
+from softimpact.codegen.inputs import parameters_of
 from softimpact.codegen.samples import draw_samples
 from softimpact.symbolic import (
     NoEquilibrium,

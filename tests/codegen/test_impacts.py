@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import ctypes
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -15,8 +17,8 @@ import pytest
 from compiled_packages import KINDS, Generated, parameter
 
 from softimpact.codegen import impact
-from softimpact.codegen.functions import is_elastic, parameters_of
 from softimpact.codegen.impact_error import Impact, draw_impacts
+from softimpact.codegen.inputs import is_elastic, parameters_of
 from softimpact.codegen.manifest import ImpactRecord
 from softimpact.codegen.samples import Sample
 from softimpact.simulate import Approach, simulate_impact
@@ -283,11 +285,57 @@ def test_any_bits_give_finite_impacts_or_a_status(
 
 
 def test_impact_that_outlasts_its_steps_is_unresolved(
+    package: Callable[[str], Generated], tmp_path: Path
+) -> None:
+    generated = package("rr")
+    shutil.copytree(generated.folder, tmp_path / "rr")
+    source = tmp_path / "rr/src/rr_impact.c"
+    steps, few = f"? {impact.STEPS} :", "? 4 :"
+    assert steps in source.read_text()
+    source.write_text(source.read_text().replace(steps, few))
+    compiled = Impacts(replace(generated, folder=tmp_path / "rr"), "double")
+    case = impacts(generated, 1, seed=3)[0]
+    assert compiled.peak_force(case)[0] == UNRESOLVED
+    assert compiled.safe_speed(case, 50.0)[0] == UNRESOLVED
+
+
+@pytest.mark.parametrize("stiffness", [1e3, 1e5, 1e8])
+def test_impacts_on_bodies_of_any_stiffness_are_right(
+    package: Callable[[str], Generated], stiffness: float
+) -> None:
+    compiled = Impacts(package("panda"), "double")
+    case = impacts(compiled.package, 2, seed=3)[1]
+    region = replace(case.region, stiffness=stiffness, damping=0.0)
+    body = compiled.region(region.name, clamped=True)
+    body.stiffness, body.damping = stiffness, 0.0
+    status, (force, _) = compiled.call("peak_force", case.sample, 0.5, body)
+    right, _ = sundials(
+        compiled.package, replace(case, region=region, clamped=True, speed=0.5), 1e-10
+    )
+    assert status == OK
+    assert force == pytest.approx(right, rel=1e-3)
+
+
+def test_force_on_the_softest_bodies_goes_with_the_root_of_their_stiffness(
     package: Callable[[str], Generated],
 ) -> None:
     compiled = Impacts(package("panda"), "double")
     case = impacts(compiled.package, 2, seed=3)[1]
     soft = compiled.region("abdomen", clamped=True)
-    soft.stiffness = 1e-3  # the fastest mode sets the step, the body the time
-    assert compiled.call("peak_force", case.sample, 0.5, soft)[0] == UNRESOLVED
-    assert compiled.call("safe_speed", case.sample, 50.0, soft)[0] == UNRESOLVED
+    forces = []
+    for soft.stiffness in (1e-3, 1e-5):
+        soft.damping = 0.0
+        forces.append(compiled.call("peak_force", case.sample, 0.5, soft)[1][0])
+    assert forces[0] / forces[1] == pytest.approx(10, rel=1e-3)
+
+
+def test_a_fast_mode_without_a_motion_of_its_own_stands() -> None:
+    body = impact.Body(25e3, 0.0, None, 1.9e7)
+    slow = [np.array(x) for x in ([0.0, 60.0**2], [0.2, 0.1], [1.0, 0.0])]
+    fast = [np.array([x]) for x in (2e3**2, 0.6, 0.0)]
+    both = impact.Modes(*(np.append(a, b) for a, b in zip(slow, fast, strict=True)))
+    found, exact = impact.peak_force(both, 0.5, body), impact.peak_force(both, 0.5, body, 8.0)
+    assert found.force == pytest.approx(exact.force, rel=3e-4)
+    assert found.nodes < 40 < exact.nodes / 5
+    alone = impact.peak_force(impact.Modes(*slow), 0.5, body, 8.0)
+    assert alone.force > (1 + 1e-3) * exact.force  # so that it counts as a spring

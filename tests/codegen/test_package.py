@@ -17,7 +17,7 @@ import pytest
 from compiled_packages import COMMITTED, Generated, run, tool
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.functions import parameters_of
+from softimpact.codegen.inputs import parameters_of
 from softimpact.codegen.package import c_name
 from softimpact.codegen.samples import draw_samples
 from softimpact.symbolic import (

@@ -8,7 +8,13 @@ from oracles import assert_near
 
 from softimpact.symbolic import count_flops, load_robot
 from softimpact.symbolic.dynamics import _mass_matrix
-from softimpact.symbolic.matrices import Factorisation, _as_function, on_scalars, symmetric
+from softimpact.symbolic.matrices import (
+    Factorisation,
+    OrthogonalRows,
+    _as_function,
+    on_scalars,
+    symmetric,
+)
 
 
 def positive_definite(n: int, seed: int = 0) -> np.ndarray:
@@ -33,6 +39,22 @@ def test_factorisation_of_symbols_gives_the_same_numbers(kind):
     symbol, right = kind.sym("M", 4, 4), kind.sym("b", 4, 2)
     solve = ca.Function("solve", [symbol, right], [Factorisation(symbol).solve(right)])
     assert_near(solve(M, b), np.linalg.solve(M, b))
+
+
+@pytest.mark.parametrize("n", [3, 7])
+def test_orthogonal_rows_span_a_volume_and_invert(n):
+    J = np.random.default_rng(n).normal(size=(3, n))
+    rows = OrthogonalRows(ca.DM(J))
+    assert float(rows.volume) == pytest.approx(np.sqrt(np.linalg.det(J @ J.T)), rel=1e-12)
+    assert_near(rows.pseudo_inverse, np.linalg.pinv(J))
+
+
+def test_volume_of_nearly_dependent_rows_keeps_its_digits():
+    """√det(J Jᵀ) is rounding here: JJᵀ holds the gap squared."""
+    gap = 1e-9
+    J = ca.DM([[1.0, 1.0, 0.0], [1.0, 1.0, gap]])
+    assert float(OrthogonalRows(J).volume) == pytest.approx(np.sqrt(2) * gap, rel=1e-12)
+    assert float(OrthogonalRows(ca.DM([[0, 0], [2, 1], [4, 2]])).volume) == 0
 
 
 def test_structural_zeros_cost_nothing():

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What tells configurations apart at which a function has no answer."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic import ImpactModel, Matrix, Robot, loop_gaps
+from softimpact.symbolic.rigid import Array
+
+from ..approach import share_outside
+from ..description import Guard
+
+IMMOVABLE = 1e3
+"""A contact point counts as unable to move where it feels this many times the robot's mass."""
+
+LOOP_OPEN = 1e-3
+"""Gap of a loop, over the size of the robot, from which on a configuration is refused."""
+
+OUTSIDE = 1e-6
+"""Squared share of n that may point where the contact point never moves."""
+
+FASTEST = 100.0
+"""Joint velocity for 1 m/s, times the largest entry of J, from which on an approach is singular."""
+
+
+def loops_closed(robot: Robot, q: Matrix) -> tuple[Guard, ...]:
+    """Guard the loops of a closed chain; an open chain has none."""
+    if not robot.loops:
+        return ()
+    gap = loop_gaps(robot, q)
+    lengths = [float(np.linalg.norm(joint.placement.translation)) for joint in robot.joints]
+    widest = float(f"{(LOOP_OPEN * sum(lengths)) ** 2:.2g}")
+    return (Guard(widest - ca.dot(gap, gap), 0.0, status="LOOP_OPEN"),)
+
+
+def movable(robot: Robot, mass: Matrix) -> Guard:
+    """Guard a mass [kg] that is felt at the contact point: finite, and not of a singular pose."""
+    moved = sum(joint.inertia.mass for joint in robot.joints)
+    return Guard(mass, 0.0, float(f"{IMMOVABLE * moved:.2g}"))
+
+
+def movable_in_space(robot: Robot, inertia: Matrix) -> Guard:
+    """Guard an operational space inertia [kg], 3×3."""
+    return movable(robot, ca.trace(inertia))
+
+
+def arriving(
+    model: ImpactModel, n: Matrix, m_c: Matrix, rates: Matrix, directions: Array
+) -> tuple[Guard, ...]:
+    """Guard an approach: along n alone, and without wild joint velocities."""
+    slow = Guard(ca.sumsqr(rates), 0.0, _too_fast(model))
+    guards = (movable(model.robot, m_c), slow)
+    if len(directions) == 3:
+        return guards
+    return (*guards, Guard(1 - share_outside(n, directions), 1 - OUTSIDE))
+
+
+def _too_fast(model: ImpactModel) -> float:
+    q = np.random.default_rng(3).uniform(-1, 1, (8, model.robot.n))
+    arm = max(float(abs(np.array(model.jacobian(ca.DM(x)))).max()) for x in q)
+    return float(f"{(FASTEST / arm) ** 2:.2g}")
