@@ -10,9 +10,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studies import InProcess, study_of
+from studies import PANDA_24, InProcess, study_of
 
-from softimpact.optimize import Front, Outcome, Pareto, SolverFailure, Study, design, pareto_fronts
+from softimpact.optimize import (
+    Front,
+    Outcome,
+    Pareto,
+    SolverFailure,
+    Study,
+    design,
+    load_study,
+    pareto_fronts,
+)
 from softimpact.optimize import solve as solving
 from softimpact.optimize.front import WORTH, ParetoPoint, undominated
 from softimpact.optimize.levels import even_bounds
@@ -263,3 +272,16 @@ def test_nothing_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     assert caught.value.exit_code == 3
     assert "Maximum_Iterations_Exceeded" in str(caught.value)
     assert np.isfinite(caught.value.best.force)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("region", ["chest", "head"])
+def test_the_whole_study(region: str) -> None:
+    study = load_study(PANDA_24, {"impact": {"region": region}})
+    result = pareto_fronts(study)
+    for front in fronts(result):
+        assert front.unsolved == ()
+    assert len(result.free.points) >= study.levels.points
+    for level in (result.levels[0], study.max_deflection, result.levels[-1]):
+        best = design(replace(study, max_deflection=float(level))).winner.force
+        assert force_within(result.free, level) == pytest.approx(best, rel=1e-3)

@@ -11,20 +11,26 @@ from pathlib import Path
 import pytest
 from command_line import run_json
 
+from softimpact.robots import FOLDER
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def test_analyze_panda(tmp_path: Path) -> None:
-    script = EXAMPLES / "analyze_panda.py"
+def printed(script: Path, folder: Path) -> list[str]:
+    """Run an example; return the lines it prints."""
     assert len(script.read_text().splitlines()) <= 25
     done = subprocess.run(
         [sys.executable, "-W", "error", script],
-        cwd=tmp_path,
+        cwd=folder,
         capture_output=True,
         text=True,
         check=True,
     )
-    lines = done.stdout.splitlines()
+    return done.stdout.splitlines()
+
+
+def test_analyze_panda(tmp_path: Path) -> None:
+    lines = printed(EXAMPLES / "analyze_panda.py", tmp_path)
     assert [float(line.split()[1]) for line in lines] == [3e4, 1e4, 3e3]
     where = ("--q", "[0.2, 0.3, -0.4, -1.8, 0.1, 2.0, 0.5]", "--direction", "[0, 1, 0]")
     impact = ("--region", "chest", "--speed", 1, "--safe-speed")
@@ -33,3 +39,17 @@ def test_analyze_panda(tmp_path: Path) -> None:
         expected = run_json("simulate", "panda", *where, *impact, "--joint-stiffness", stiffness)
         speed = float(re.findall(r"([\d.]+) m/s", line)[0])
         assert speed == pytest.approx(expected["safe_speed"], abs=0.006)
+
+
+def test_pareto_panda(tmp_path: Path) -> None:
+    lines = printed(EXAMPLES / "pareto_panda.py", tmp_path)
+    numbers = [[float(number) for number in re.findall(r"\d+\.\d+", line)] for line in lines]
+    *front, before = numbers
+    deflections, forces = zip(*front, strict=True)
+    assert list(deflections) == sorted(deflections)
+    assert list(forces) == sorted(forces, reverse=True)
+    assert deflections[0] == 0.2
+    assert 1.0 in deflections
+    ranked = run_json("select", FOLDER / "studies/panda_24_poses.toml")["poses"]
+    nominal = next(pose["peak_force"] for pose in ranked if pose["name"] == "q9")
+    assert before[1] == pytest.approx(nominal, abs=0.1)
