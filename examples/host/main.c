@@ -47,7 +47,7 @@ static int prepare(guard *g)
     for (int i = 0; i < JOINTS; ++i) {
         g->drives.joint_stiffness[i] = 3000; /* N m/rad; yours */
     }
-    /* the part of the error that the package cannot see from inside its chain of masses */
+    /* the package keeps limits for its chain of masses; this covers what the chain leaves out */
     g->limit = g->body.force_limit*(1 - PANDA_IMPACT_MARGIN);
     g->speed = 0.05; /* until a direction is known */
     return 1;
