@@ -33,7 +33,10 @@ bench-c: $(VENV)/installed-test
 	$(BIN)/python benchmarks/embedded/run.py --out docs/embedded.md
 
 generated: $(VENV)/installed
-	for robot in panda rr rmin; do $(BIN)/softimpact generate $$robot --out generated/$$robot || exit 1; done
+	for robot in panda rr rmin; do \
+		study=$$(ls robots/studies/$${robot}_*.toml 2>/dev/null); \
+		$(BIN)/softimpact generate $$robot --out generated/$$robot $${study:+--poses $$study} || exit 1; \
+	done
 
 clean:
 	rm -rf $(VENV) build dist results

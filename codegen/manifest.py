@@ -84,6 +84,7 @@ class Manifest:
         parameters: fields of the parameter struct.
         frozen: parameters that are built in, and their numbers.
         functions: all functions.
+        poses: names of the built-in candidates of ``select_configuration``, in their order.
         impact: of peak forces and safe speeds, None where the robot has none.
         files: SHA-256 of each file by path.
     """
@@ -101,6 +102,7 @@ class Manifest:
     parameters: tuple[str, ...]
     frozen: Mapping[str, tuple[float, ...]]
     functions: tuple[FunctionRecord, ...]
+    poses: tuple[str, ...]
     impact: ImpactRecord | None
     files: Mapping[str, str]
 

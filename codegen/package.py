@@ -23,6 +23,7 @@ from .functions import functions_of, symbols_of
 from .impact_source import impact_source, longest_chain
 from .inputs import parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
+from .poses import checked_poses
 from .render import MEASURED_SAMPLES, Package, render
 from .samples import Sample, draw_samples
 from .source import CSource
@@ -44,6 +45,7 @@ def generate_package(
     impact_order: int | None = None,
     payload: Payload | None = None,
     freeze: Collection[str] = (),
+    poses: Mapping[str, Sequence[float]] | None = None,
 ) -> Manifest:
     """Write a C99 package that computes a robot's impact model.
 
@@ -64,6 +66,8 @@ def generate_package(
             defaults. Not for closed chains.
         freeze: names of parameters whose defaults are built in instead of read at run time, or
             ``{"all"}``.
+        poses: joint coordinates by name that ``select_configuration`` can choose from; default
+            none. They must lie within the joints' limits. Not for robots without impacts.
 
     Returns:
         What was generated, as in the package's ``manifest.json``.
@@ -83,6 +87,7 @@ def generate_package(
     if gravity is None:
         gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
     _check(robot, real, gravity, {"chain_order": chain_order, "impact_order": impact_order})
+    checked = checked_poses(robot, poses or {})
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot, payload=payload is not None)
     defaults = defaults_of(robot, parameters, drives_, payload)
@@ -115,7 +120,10 @@ def generate_package(
         tables=tables,
         configuration=configuration,
         impact=impact_source(prefix, symbols, impact_order),
+        poses=checked,
     )
+    if package.poses and not package.impact:
+        raise InvalidValue("poses", f"robot '{robot.name}' has no impacts to choose them by")
     files = render(package)
     manifest = _manifest(package, {path: sha256(text) for path, text in files.items()})
     replace_package(folder, {**files, MANIFEST: manifest.to_json()})
@@ -179,6 +187,7 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         parameters=tuple(p.name for p in package.fields),
         frozen={p.name: p.frozen for p in package.parameters if p.frozen is not None},
         functions=tuple(records),
+        poses=tuple(package.poses),
         impact=package.impact.record if package.impact else None,
         files=hashes,
     )
