@@ -3,12 +3,16 @@
 
 PYTHON ?= python3
 VENV := .venv
+OTHERS := .venv-others
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 # switch on the long parts: make test PYTEST="--slow --embedded"
 PYTEST ?=
+ROBOTS := $(basename $(notdir $(wildcard robots/*.xml)))
+# of make fuzz, a build: some 20 minutes for a robot with seven joints
+EXECUTIONS ?= 10000000
 
-.PHONY: demo test lint format bench bench-c generated clean
+.PHONY: demo test lint format bench bench-c fuzz generated clean
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
@@ -28,18 +32,26 @@ format: $(VENV)/installed-test
 bench: $(VENV)/installed-test
 	$(BIN)/python -m benchmarks
 
-# instructions, stack and code size on emulated Cortex-M; needs arm-none-eabi-gcc and QEMU
-bench-c: $(VENV)/installed-test
-	$(BIN)/python benchmarks/embedded/run.py --out docs/embedded.md
+# instructions, stack and code size on emulated Cortex-M, written to codegen/costs, docs/embedded.md
+# and the packages themselves, which needs arm-none-eabi-gcc and QEMU;
+# then the same numbers by Pinocchio, CasADi, adam and urdf2casadi
+bench-c: $(VENV)/installed-test $(OTHERS)/installed
+	$(BIN)/python benchmarks/embedded/run.py
+	$(MAKE) generated
+	$(BIN)/python benchmarks/cost/run.py --others $(OTHERS)/bin/python --out docs/benchmarks.md
+
+# libFuzzer on every package, float and double; needs clang
+fuzz: $(VENV)/installed-test
+	FUZZ_EXECUTIONS=$(EXECUTIONS) $(BIN)/pytest -n 2 --slow tests/codegen/test_verification.py -k fuzzer $(PYTEST)
 
 generated: $(VENV)/installed
-	for robot in panda rr rmin; do \
+	for robot in $(ROBOTS); do \
 		study=$$(ls robots/studies/$${robot}_*.toml 2>/dev/null); \
 		$(BIN)/softimpact generate $$robot --out generated/$$robot $${study:+--poses $$study} || exit 1; \
 	done
 
 clean:
-	rm -rf $(VENV) build dist results
+	rm -rf $(VENV) $(OTHERS) build dist results
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
@@ -51,3 +63,9 @@ $(VENV)/installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 $(VENV)/installed-test: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(INSTALL) --editable '.[test]'
 	touch $@ $(VENV)/installed
+
+# other generators want other versions of what we use
+$(OTHERS)/installed: benchmarks/cost/requirements.txt
+	$(PYTHON) -m venv $(OTHERS)
+	$(OTHERS)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --requirement $<
+	touch $@

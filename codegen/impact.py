@@ -18,9 +18,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Numbers = NDArray[np.floating[Any]]
+from .tridiagonal import Numbers, eigen_rows
 
 LEVELS = 3
 """How often spacing doubles after the first nodes."""
@@ -42,9 +41,6 @@ STEPS = 1024
 
 NEWTON, CLOSE = 32, 3e-3
 """Most iterations for a force, and the relative change after which the next would be nothing."""
-
-QL, APART = 30, 1e-6
-"""Most QL steps for a mode's frequency, and the coupling over frequencies that counts as none."""
 
 TRIALS = 16
 """Most impacts integrated for one safe speed; two or three do."""
@@ -100,13 +96,20 @@ class Peak:
 
 
 def modes_of_chain(mass: Numbers, stiffness: Numbers, velocity: Numbers) -> Modes:
-    """Return the modes of a chain; ``stiffness[-1]`` holds the last mass to ground."""
+    """Return the modes of a chain; ``stiffness[-1]`` holds the last mass to ground.
+
+    Masses are taken from the last, as numbers mostly grow towards the contact.
+    """
     root = np.sqrt(mass)
     before = np.concatenate([stiffness[:1] * 0, stiffness[:-1]])
-    off = np.diag(-stiffness[:-1] / (root[:-1] * root[1:]), -1)
-    squared_frequency, shapes = np.linalg.eigh(np.diag((before + stiffness) / mass) + off)
-    at_contact = shapes[0] / root[0]
-    return Modes(squared_frequency, at_contact**2, at_contact * (shapes.T @ (root * velocity)))
+    off = -stiffness[:-1] / (root[:-1] * root[1:])
+    at_contact = np.zeros_like(mass)
+    at_contact[0] = 1 / root[0]
+    rows = np.array([at_contact, root * velocity])[:, ::-1]
+    squared_frequency, (shape, rate) = eigen_rows(
+        ((before + stiffness) / mass)[::-1], off[::-1], rows
+    )
+    return Modes(squared_frequency, shape * shape, shape * rate)
 
 
 def peak_force(modes: Modes, speed: float, body: Body, finer: float = 1.0) -> Peak:

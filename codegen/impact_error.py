@@ -20,9 +20,10 @@ from .accuracy import is_regular, rounded_unit, rounded_up
 from .description import CFunction
 from .evaluate import evaluate_rounded
 from .functions import CHAIN_ENDS
-from .impact import Body, Modes, Numbers, modes_of_chain, peak_force
+from .impact import Body, Modes, modes_of_chain, peak_force
 from .inputs import Parameter
 from .samples import Sample, as_columns, draw_samples
+from .tridiagonal import Numbers
 
 CASES = 128
 """Random impacts that a chain is judged by."""

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Literal
 
+from .costs import Costs
+
 GENERATOR = "softimpact.codegen"
 
 MANIFEST = "manifest.json"
@@ -86,6 +88,7 @@ class Manifest:
         functions: all functions.
         poses: names of the built-in candidates of ``select_configuration``, in their order.
         impact: of peak forces and safe speeds, None where the robot has none.
+        costs: measured on a Cortex-M, None where they were not.
         files: SHA-256 of each file by path.
     """
 
@@ -104,6 +107,7 @@ class Manifest:
     functions: tuple[FunctionRecord, ...]
     poses: tuple[str, ...]
     impact: ImpactRecord | None
+    costs: Costs | None
     files: Mapping[str, str]
 
     def to_json(self) -> str:

@@ -16,6 +16,7 @@ from softimpact.symbolic.impact_model import WEIGHTLESS
 from .accuracy import accuracy, golden_results, is_regular
 from .configuration import Configuration, has_configuration
 from .configuration_source import configuration_source
+from .costs import stored_costs
 from .defaults import Payload, defaults_of, frozen_parameters
 from .description import CFunction
 from .files import replace_package, require_own, sha256
@@ -189,5 +190,6 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         functions=tuple(records),
         poses=tuple(package.poses),
         impact=package.impact.record if package.impact else None,
+        costs=stored_costs(package.prefix, hashes),
         files=hashes,
     )

@@ -139,7 +139,8 @@ class _Printer:
             return
         sine, cosine = self.names[index], self.names[after]
         call = f"{self.prefix}_sine_cosine({self.texts[angle].text}, &{sine}, &{cosine});"
-        self.lines += [f"{INDENT}{self.real} {sine}, {cosine};", f"{INDENT}{call}"]
+        declared = [f"{INDENT}{self.real} {name};" for name in (sine, cosine)]
+        self.lines += [*declared, f"{INDENT}{call}"]
         self.texts[index] = _Text(sine, Binding.ATOM)
         self.texts[after] = _Text(cosine, Binding.ATOM)
 

@@ -13,9 +13,11 @@ import softimpact
 from softimpact.symbolic import REGIONS, Robot, closed_chain
 from softimpact.symbolic.contact import HERTZ_STIFFNESS
 
-from . import impact, sine
+from . import impact, sine, tridiagonal
 from .configuration_source import ConfigurationSource
+from .costs import stored_costs
 from .defaults import Default
+from .files import sha256
 from .functions import CHAIN_ENDS, coordinates_of
 from .impact_error import FINER
 from .impact_source import ImpactSource
@@ -135,6 +137,7 @@ def render(package: Package) -> dict[str, str]:
         "scalars": SCALARS,
         "sine": sine,
         "impact": impact,
+        "tridiagonal": tridiagonal,
         "finer": int(FINER),
         "chain_ends": CHAIN_ENDS,
         "regions": list(REGIONS.values()),
@@ -151,7 +154,6 @@ def render(package: Package) -> dict[str, str]:
         "test/run_tests.c": "run_tests.c",
         "fuzz/fuzz.c": "fuzz.c",
         "CMakeLists.txt": "CMakeLists.txt",
-        "README.md": "README.md",
         "LICENSE": "LICENSE",
     }
     if package.impact:
@@ -168,6 +170,9 @@ def render(package: Package) -> dict[str, str]:
     if package.configuration:
         solver = environment.get_template("configuration.c.jinja")
         rendered[f"src/{name}_configuration.c"] = solver.render(context, c=package.configuration)
+    costs = stored_costs(name, {path: sha256(text) for path, text in rendered.items()})
+    readme = environment.get_template("README.md.jinja")
+    rendered["README.md"] = readme.render(context, costs=costs)
     return dict(sorted(rendered.items()))
 
 

@@ -185,8 +185,7 @@ class CSource:
                 if self._is_sparse(output) and text == self._zero:
                     continue
                 mirrored = {place, place[::-1]} if output.symmetric else {place}
-                left = " = ".join(f"{target}{_index(at)}" for at in sorted(mirrored))
-                lines.append(f"{left} = {text};")
+                lines += [f"{target}{_index(at)} = {text};" for at in sorted(mirrored)]
         return lines
 
     @property

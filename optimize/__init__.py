@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Design problems: which joint stiffness and which posture hurt least."""
 
-from .co_design import Design, Gains, PoseResult, SolverFailure, design
+from .co_design import Design, Gains, PoseResult, design
+from .front import Front, ParetoPoint
+from .pareto import Pareto, pareto_fronts
 from .poses import Candidate, candidates
-from .solve import Mode, Outcome
+from .solve import Mode, Outcome, SolverFailure
 from .study import Pose, Study, load_study
 
 __all__ = [
     "Candidate",
     "Design",
+    "Front",
     "Gains",
     "Mode",
     "Outcome",
+    "Pareto",
+    "ParetoPoint",
     "Pose",
     "PoseResult",
     "SolverFailure",
@@ -19,4 +24,5 @@ __all__ = [
     "candidates",
     "design",
     "load_study",
+    "pareto_fronts",
 ]

@@ -3,24 +3,19 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
-from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from concurrent.futures import Executor, as_completed
+from dataclasses import dataclass
 
 import numpy as np
 
-from softimpact.symbolic.rigid import Array
-
-from .compiled import c_compiler, compiled_nlp
-from .nlp import DesignNlp, build_nlp, parameters
-from .poses import Candidate, candidates, tip_pose
+from .poses import Candidate
+from .problem import Problem, prepare
 from .repair import accurate_springs, largest_deflection
-from .solve import Bounds, Mode, Outcome, Program, Start, nlp_solver, preference, solve
+from .solve import Mode, Outcome, SolverFailure, Start, better, solve
 from .study import Study
-from .timing import Timing, impact_timing
+from .timing import Timing
+from .workers import workers
 
 MODES: tuple[Mode, ...] = ("table", "free")
 
@@ -90,22 +85,6 @@ class Design:
         return [outcome for outcome in found if outcome is not None]
 
 
-class SolverFailure(Exception):
-    """No start of a study was solved; carries the best feasible point found, if any."""
-
-    exit_code = 3
-
-    def __init__(self, outcomes: Sequence[Outcome]) -> None:
-        self.outcomes = tuple(outcomes)
-        self.best = min(outcomes, key=preference)
-        statuses = sorted({outcome.status for outcome in outcomes})
-        super().__init__(
-            f"none of {len(outcomes)} starts was solved (Ipopt: {', '.join(statuses)}); "
-            f"the best point, from {self.best.name}, has a peak force of {self.best.force:.1f} N "
-            f"and violates a constraint by {self.best.violation:.2g}"
-        )
-
-
 def design(
     study: Study,
     modes: Sequence[Mode] = MODES,
@@ -124,27 +103,20 @@ def design(
     Raises:
         SolverFailure: no search was solved.
     """
-    poses = candidates(study)
-    timing = impact_timing(study, [pose.q for pose in poses])
-    nlp = build_nlp(study.model, len(study.forces), timing.nodes, timing.substeps)
-    before = [peak_force(study, nlp, timing, pose.q, study.nominal) for pose in poses]
-    unit = float(np.median(before))
-    position, rotation = tip_pose(study.model, study.task_pose.q)
-    numbers = parameters(study, position, rotation, timing.step, unit)
-    program = _program(nlp)
-    bounds = Bounds(*study.robot.limits, study.lower, study.upper, unit)
+    problem = prepare(study)
+    poses = problem.poses
     outcomes: dict[tuple[str, Mode], Outcome] = {}
-    with _workers(len(poses)) if executor is None else nullcontext(executor) as pool:
+    with workers(len(poses), executor) as pool:
         for mode in (mode for mode in MODES if mode in modes):
             starts = [_start(study, p, mode, outcomes.get((p.pose.name, "table"))) for p in poses]
-            for outcome in _run(program, starts, bounds, numbers, pool):
+            for outcome in _run(problem, starts, pool):
                 outcomes[outcome.name, outcome.mode] = outcome
                 if on_outcome is not None:
                     on_outcome(outcome)
         again = _laggards(study, poses, outcomes) if set(MODES) <= set(modes) else []
-        for outcome in _run(program, again, bounds, numbers, pool):
+        for outcome in _run(problem, again, pool):
             key = outcome.name, outcome.mode
-            outcomes[key] = _better(outcomes[key], outcome)
+            outcomes[key] = better(outcomes[key], outcome)
     solved = [outcome for outcome in outcomes.values() if outcome.solved]
     if not solved:
         raise SolverFailure(list(outcomes.values()))
@@ -156,23 +128,12 @@ def design(
             outcomes.get((pose.pose.name, "table")),
             outcomes.get((pose.pose.name, "free")),
         )
-        for pose, force in zip(poses, before, strict=True)
+        for pose, force in zip(poses, problem.before, strict=True)
     )
     winner = min(solved, key=lambda outcome: outcome.force)
     gains = _gains(study, results, winner)
-    return Design(study, results, winner, gains, timing, program.library is not None)
-
-
-def peak_force(study: Study, nlp: DesignNlp, timing: Timing, q: Array, springs: Array) -> float:
-    """Return the peak of the first contact [N] as the NLP sees it."""
-    x = np.concatenate([q, np.log10(springs), [0.0]])
-    numbers = parameters(study, np.zeros(3), np.eye(3), timing.step, 1.0)
-    return float(np.array(nlp.oracle(x, numbers)[1])[nlp.forces].max())
-
-
-def _program(nlp: DesignNlp) -> Program:
-    library = compiled_nlp(nlp_solver(nlp.oracle), c_compiler())
-    return Program(nlp.oracle.serialize(), library, nlp.n, nlp.pose, nlp.forces)
+    compiled = problem.program.library is not None
+    return Design(study, results, winner, gains, problem.timing, compiled)
 
 
 def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None) -> Start:
@@ -206,42 +167,11 @@ def _laggards(
     ]
 
 
-def _better(first: Outcome, second: Outcome) -> Outcome:
-    """Return the preferred of two outcomes of one start, with the effort of both."""
-    best = min(first, second, key=preference)
-    return replace(
-        best,
-        iterations=first.iterations + second.iterations,
-        attempts=first.attempts + second.attempts,
-        seconds=first.seconds + second.seconds,
-    )
-
-
-def _workers(starts: int) -> Executor:
-    """Return a process for each core."""
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(min(starts, _cores()), context, initializer=_keep_to_one_core)
-
-
-def _cores() -> int:
-    """Number of cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-def _keep_to_one_core() -> None:
-    """Keep the linear solver of a worker from spinning threads on the other workers' cores.
-
-    OpenMP reads this when Ipopt is loaded, at the worker's first search.
-    """
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
-
-
-def _run(
-    program: Program, starts: Sequence[Start], bounds: Bounds, numbers: Array, pool: Executor
-) -> Iterator[Outcome]:
-    futures = [pool.submit(solve, program, start, bounds, numbers) for start in starts]
+def _run(problem: Problem, starts: Sequence[Start], pool: Executor) -> Iterator[Outcome]:
+    numbers = problem.numbers()
+    futures = [
+        pool.submit(solve, problem.program, start, problem.bounds, numbers) for start in starts
+    ]
     for future in as_completed(futures):
         yield future.result()
 

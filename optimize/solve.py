@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import threading
 import time
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
@@ -155,14 +156,11 @@ def _search(program: Program, start: Start, bounds: Bounds, parameters: Array) -
         if any(outcome.solved for outcome in found):
             break
         found.append(_attempt(program, start, *point, bounds, parameters))
-    best = min(found, key=preference)
-    return Outcome(
-        **{
-            **vars(best),
-            "iterations": sum(outcome.iterations for outcome in found),
-            "attempts": len(found),
-            "seconds": time.perf_counter() - begin,
-        }
+    return replace(
+        min(found, key=preference),
+        iterations=sum(outcome.iterations for outcome in found),
+        attempts=len(found),
+        seconds=time.perf_counter() - begin,
     )
 
 
@@ -170,6 +168,33 @@ def preference(outcome: Outcome) -> tuple[bool, bool, float]:
     """Sort key: solved before feasible before the rest; then by force, or by violation."""
     feasible = outcome.violation <= FEASIBLE
     return not outcome.solved, not feasible, outcome.force if feasible else outcome.violation
+
+
+def better(first: Outcome, second: Outcome) -> Outcome:
+    """Return the preferred of two outcomes of one start, with the effort of both."""
+    best = min(first, second, key=preference)
+    return replace(
+        best,
+        iterations=first.iterations + second.iterations,
+        attempts=first.attempts + second.attempts,
+        seconds=first.seconds + second.seconds,
+    )
+
+
+class SolverFailure(Exception):
+    """No start of a study was solved; carries the best feasible point found, if any."""
+
+    exit_code = 3
+
+    def __init__(self, outcomes: Sequence[Outcome]) -> None:
+        self.outcomes = tuple(outcomes)
+        self.best = min(outcomes, key=preference)
+        statuses = sorted({outcome.status for outcome in outcomes})
+        super().__init__(
+            f"none of {len(outcomes)} starts was solved (Ipopt: {', '.join(statuses)}); "
+            f"the best point, from {self.best.name}, has a peak force of {self.best.force:.1f} N "
+            f"and violates a constraint by {self.best.violation:.2g}"
+        )
 
 
 def _constraint_bounds(program: Program, mode: Mode) -> tuple[Array, Array]:

@@ -30,7 +30,14 @@ from softimpact.symbolic import (
 from softimpact.symbolic.drives import PerJoint, per_joint
 from softimpact.symbolic.rigid import Array
 
-from .study_file import PoseSection, RobotSection, StiffnessSection, StudyFile, read_study_file
+from .study_file import (
+    ParetoSection,
+    PoseSection,
+    RobotSection,
+    StiffnessSection,
+    StudyFile,
+    read_study_file,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +70,7 @@ class Study:
         nominal: the joint stiffness to improve on, length n [N·m/rad].
         forces: on the tip, k×3 [N].
         max_deflection: of the springs under each force [m].
+        levels: at which a Pareto front is sought, as the file has it.
         task_pose: the pose that fixes where the tip is held.
         exact: whether poses are moved to where they hold the tip exactly there.
         poses: all candidates.
@@ -79,6 +87,7 @@ class Study:
     nominal: Array
     forces: Array
     max_deflection: float
+    levels: ParetoSection
     task_pose: Pose
     exact: bool
     poses: tuple[Pose, ...]
@@ -142,6 +151,7 @@ def _build(file: StudyFile, source: Path) -> Study:
         nominal=nominal,
         forces=np.array(file.accuracy.forces),
         max_deflection=file.accuracy.max_deflection,
+        levels=file.pareto,
         task_pose=next(pose for pose in poses if pose.name == file.task.pose_of),
         exact=file.task.exact,
         poses=poses,

@@ -54,6 +54,20 @@ class AccuracySection(_Section):
     max_deflection: Positive
 
 
+class ParetoSection(_Section):
+    """Between which bounds on the deflection [m], and at how many, a Pareto front is sought."""
+
+    points: Annotated[int, Field(ge=2, le=100)] = 11
+    lower: Positive | None = None
+    upper: Positive | None = None
+
+    @model_validator(mode="after")
+    def _lower_is_below(self) -> ParetoSection:
+        if self.lower is not None and self.upper is not None and self.lower >= self.upper:
+            raise ValueError(f"lower {self.lower:g} must be below upper {self.upper:g}")
+        return self
+
+
 class TaskSection(_Section):
     """Where the tip is held: where one of the poses has it."""
 
@@ -77,6 +91,7 @@ class StudyFile(_Section):
     impact: ImpactSection
     stiffness: StiffnessSection
     accuracy: AccuracySection
+    pareto: ParetoSection = ParetoSection()
     task: TaskSection
     poses: Annotated[list[PoseSection], Field(min_length=1)]
 

@@ -18,6 +18,7 @@ from .design_command import design
 from .factors_command import factors
 from .factors_study_command import factors_study
 from .generate_command import generate
+from .pareto_command import pareto
 from .reproduce_command import reproduce
 from .robots_command import robots
 from .select_command import select
@@ -35,6 +36,7 @@ app.command()(factors_study)
 app.command()(simulate)
 app.command()(select)
 app.command()(design)
+app.command()(pareto)
 app.command()(generate)
 app.command()(reproduce)
 

@@ -26,20 +26,14 @@ ModeName = Annotated[
         "--mode", help="table (springs for each pose), free (springs and posture) or both."
     ),
 ]
-Region = Annotated[
-    str | None, typer.Option(metavar="NAME", help="Body region instead of the study's.")
-]
-Speed = Annotated[
-    float | None, typer.Option(metavar="V", help="Speed (m/s) instead of the study's.")
-]
 
 
 def design(
     study: o.StudyFile,
     out: Out = None,
     mode: ModeName = "both",
-    region: Region = None,
-    speed: Speed = None,
+    region: o.Region = None,
+    speed: o.Speed = None,
     json: o.Json = False,
 ) -> None:
     """Find the joint stiffness and the posture of least peak force with Ipopt."""
@@ -48,9 +42,10 @@ def design(
     from .design_report import GENERATOR, as_record, design_report
     from .output import print_json
     from .results_folder import replaced_folder, require_replaceable
+    from .values import given
 
     modes = _modes(mode)
-    problem = load_study(study, _overrides(region, speed))
+    problem = load_study(study, {"impact": given(region=region, speed=speed)})
     folder = out or Path("results") / problem.source.stem
     require_replaceable(folder, GENERATOR)
     report = design_report(_search(problem, modes))
@@ -76,27 +71,14 @@ def _modes(name: str) -> tuple[Mode, ...]:
     return MODES if chosen == "both" else (chosen,)
 
 
-def _overrides(region: str | None, speed: float | None) -> dict[str, dict[str, Any]]:
-    given = {"region": region, "speed": speed}
-    return {"impact": {field: value for field, value in given.items() if value is not None}}
-
-
 def _search(study: Study, modes: tuple[Mode, ...]) -> Design:
     """Run the design with a progress bar on stderr."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
-
     from softimpact.optimize import Outcome
     from softimpact.optimize import design as search
-    from softimpact.optimize.compiled import c_compiler
 
-    console = Console(stderr=True)
-    if c_compiler() is None:
-        console.print(
-            "No C compiler found: CasADi's virtual machine does the work, some ten times slower."
-        )
-    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console) as progress:
+    from .progress import progress_bar
+
+    with progress_bar() as progress:
         task = progress.add_task("compile", total=len(modes) * len(study.poses))
 
         def advance(outcome: Outcome) -> None:

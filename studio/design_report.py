@@ -13,15 +13,10 @@ import mujoco
 import numpy as np
 
 from softimpact.optimize import Design, Gains, Outcome, PoseResult, Study
-from softimpact.simulate import (
-    Approach,
-    Fidelity,
-    ImpactHistory,
-    largest_safe_speed,
-    simulate_impact,
-)
+from softimpact.simulate import ImpactHistory
 from softimpact.symbolic import Analysis, analyse
-from softimpact.symbolic.rigid import Array
+
+from .checks import Check, safe_speed, simulated
 
 Limited = Literal["transient", "quasi_static"]
 
@@ -44,21 +39,6 @@ class RankedPose:
     def best(self) -> Outcome:
         """The better of the outcomes in both modes."""
         return best_outcome(self.result)
-
-
-@dataclass(frozen=True, eq=False)
-class Check:
-    """The winner's peak force [N], as the NLP has it and by independent simulation.
-
-    Attributes:
-        nlp: the optimum.
-        linearised: the same model, integrated by SUNDIALS.
-        full: the nonlinear robot, one rung up the ladder.
-    """
-
-    nlp: float
-    linearised: float
-    full: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +91,8 @@ def design_report(design: Design) -> DesignReport:
         for i, pose in enumerate(ordered)
     )
     worst = max(design.poses, key=lambda pose: pose.force_before)
-    history = _impact(study, winner.q, winner.springs)
-    full = _impact(study, winner.q, winner.springs, "full")
+    history = simulated(study, winner.q, winner.springs)
+    full = simulated(study, winner.q, winner.springs, "full")
     task = next(p for p in design.poses if p.candidate.pose.name == study.task_pose.name)
     return DesignReport(
         design=design,
@@ -120,28 +100,14 @@ def design_report(design: Design) -> DesignReport:
         worst=worst,
         check=Check(winner.force, history.first_contact, full.first_contact),
         winner_history=history,
-        worst_history=_impact(study, worst.candidate.q, study.nominal),
-        speed_before=_safe_speed(study, task.candidate.q, study.nominal),
-        speed_after=_safe_speed(study, winner.q, winner.springs),
+        worst_history=simulated(study, worst.candidate.q, study.nominal),
+        speed_before=safe_speed(study, task.candidate.q, study.nominal),
+        speed_after=safe_speed(study, winner.q, winner.springs),
     )
 
 
 def _order(outcome: Outcome) -> tuple[bool, float]:
     return not outcome.solved, outcome.force
-
-
-def _impact(
-    study: Study, q: Array, springs: Array, fidelity: Fidelity = "linearised"
-) -> ImpactHistory:
-    model = study.model.with_springs(ca.DM(springs))
-    approach = Approach(q, study.direction, study.speed)
-    return simulate_impact(model, approach, study.contact, fidelity)
-
-
-def _safe_speed(study: Study, q: Array, springs: Array) -> float:
-    model = study.model.with_springs(ca.DM(springs))
-    approach = Approach(q, study.direction, study.speed)
-    return largest_safe_speed(model, approach, study.contact, study.contact.region.force_limit)
 
 
 def as_record(report: DesignReport) -> dict[str, Any]:
@@ -151,7 +117,7 @@ def as_record(report: DesignReport) -> dict[str, Any]:
     return {
         "generator": GENERATOR,
         "versions": versions(),
-        "study": _inputs(study),
+        "study": inputs(study),
         "region": region.name,
         "limit": report.limit,
         "limit_kind": limit_kind(study),
@@ -188,7 +154,8 @@ def limit_kind(study: Study) -> Limited:
     return "quasi_static" if study.contact.region.transient_limit is None else "transient"
 
 
-def _inputs(study: Study) -> dict[str, Any]:
+def inputs(study: Study) -> dict[str, Any]:
+    """Return what a study asks, as plain data."""
     return {
         "title": study.title,
         "source": study.source,

@@ -97,3 +97,9 @@ Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write
 StudyFile = Annotated[
     str, typer.Argument(metavar="STUDY", help="Study file (.toml).", show_default=False)
 ]
+Region = Annotated[
+    str | None, typer.Option(metavar="NAME", help="Body region instead of the study's.")
+]
+Speed = Annotated[
+    float | None, typer.Option(metavar="V", help="Speed (m/s) instead of the study's.")
+]

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``softimpact reproduce``: the paper's tables and figures, recomputed."""
+"""``softimpact reproduce``: the papers' tables, figures and statements, recomputed."""
 
 from __future__ import annotations
 
+from enum import StrEnum
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -15,35 +17,51 @@ if TYPE_CHECKING:
 GENERATOR = "softimpact reproduce"
 """Marks a folder of results as one that may be replaced."""
 
+GIAF_FOLDER = "giaf"
+"""Where in the results the second paper's page and figures are."""
+
+
+class Paper(StrEnum):
+    """What can be recomputed."""
+
+    MSM = "msm"
+    GIAF = "giaf"
+
+
+Papers = Annotated[
+    list[Paper] | None,
+    typer.Option("--paper", help="Reduced models or impact factors, repeatable; default both."),
+]
 Scenarios = Annotated[
     str | None,
-    typer.Option(metavar="NAMES", help="Scenarios of the paper, e.g. abc; default all six."),
+    typer.Option(metavar="NAMES", help="Scenarios of MSM, e.g. abc; default all six."),
 ]
 
 
-def reproduce(out: o.Out, scenarios: Scenarios = None, json: o.Json = False) -> None:
-    """Recompute the paper on reduced models (MSM) and hold each printed number against ours."""
+def reproduce(
+    out: o.Out, paper: Papers = None, scenarios: Scenarios = None, json: o.Json = False
+) -> None:
+    """Recompute both papers (MSM, GIAF) and hold what they print and say against our numbers."""
+    from json import dumps
+
+    from .design_report import versions
     from .output import plain, print_json
-    from .reproduce.compare import compared
     from .results_folder import RESULTS, replaced_folder, require_replaceable
 
     names = _names(scenarios)
+    papers = tuple(paper or Paper)
     require_replaceable(out, GENERATOR)
-    results = _computed(names)
-    comparisons = compared(results)
-    record = _record(results, comparisons)
     with replaced_folder(out, GENERATOR) as fresh:
-        from json import dumps
-
-        from .reproduce.figures import draw
-        from .reproduce.page import page
-
-        captions = draw(results, fresh)
+        record: dict[str, Any] = {"generator": GENERATOR, "versions": versions()}
+        if Paper.MSM in papers:
+            record |= _reduced_models(names, fresh)
+        if Paper.GIAF in papers:
+            record["giaf"] = _impact_factors(fresh / GIAF_FOLDER)
         text = dumps(plain(record), indent=1, allow_nan=False)
         (fresh / RESULTS).write_text(text + "\n", encoding="utf-8")
-        (fresh / "report.md").write_text(page(results, comparisons, captions), encoding="utf-8")
     if json:
-        print_json({"out": out, **{k: record[k] for k in ("verdicts", "comparisons")}})
+        short = ("verdicts", "comparisons", "giaf")
+        print_json({"out": out, **{k: record[k] for k in short if k in record}})
     else:
         _print(record, out)
 
@@ -57,6 +75,40 @@ def _names(typed: str | None) -> tuple[str, ...]:
         if name not in SCENARIOS:
             raise UnknownName("scenario", name, SCENARIOS)
     return tuple(name for name in SCENARIOS if not typed or name in typed)
+
+
+def _reduced_models(names: tuple[str, ...], folder: Path) -> dict[str, Any]:
+    """Recompute MSM, write its page and figures, and return what was found."""
+    from .reproduce.compare import compared
+    from .reproduce.figures import draw
+    from .reproduce.page import page
+
+    results = _computed(names)
+    comparisons = compared(results)
+    captions = draw(results, folder)
+    (folder / "report.md").write_text(page(results, comparisons, captions), encoding="utf-8")
+    return _record(results, comparisons)
+
+
+def _impact_factors(folder: Path) -> dict[str, Any]:
+    """Recompute GIAF, write its page and figures, and return what was found."""
+    from collections import Counter
+
+    from softimpact.optimize import load_study
+    from softimpact.robots import FOLDER
+
+    from .factor_figures import draw_factor_figures
+    from .factor_study import factor_study
+    from .reproduce_giaf.page import page
+    from .reproduce_giaf.statements import STUDY, TIPS, statements
+
+    study = load_study(FOLDER / STUDY)
+    found = factor_study(study, TIPS, lambda stage: typer.echo(stage, err=True))
+    lines = statements(found)
+    folder.mkdir()
+    figures = [path.name for path in draw_factor_figures(found, folder)]
+    (folder / "report.md").write_text(page(found, lines, figures), encoding="utf-8")
+    return {"verdicts": Counter(line.verdict for line in lines), "statements": lines}
 
 
 def _computed(names: tuple[str, ...]) -> Results:
@@ -75,13 +127,10 @@ def _computed(names: tuple[str, ...]) -> Results:
 def _record(results: Results, comparisons: Any) -> dict[str, Any]:
     from collections import Counter
 
-    from .design_report import versions
     from .reproduce.ladder import LADDER
     from .reproduce.page import titles
 
     return {
-        "generator": GENERATOR,
-        "versions": versions(),
         "scenarios": titles(),
         "models": {name: rung.title for name, rung in LADDER.items()},
         "verdicts": Counter(line.verdict for line in comparisons),
@@ -95,17 +144,32 @@ def _record(results: Results, comparisons: Any) -> dict[str, Any]:
     }
 
 
-def _print(record: dict[str, Any], out: Any) -> None:
+def _print(record: dict[str, Any], out: Path) -> None:
     from rich.console import Console
 
     from .output import print_table
 
-    rows = [(str(verdict), float(count)) for verdict, count in record["verdicts"].items()]
-    print_table("Printed numbers", ("verdict", "count"), rows)
-    others = [line for line in record["comparisons"] if line.verdict != "agrees"]
-    print_table(
-        "Where they differ",
-        ("quantity", "scenario", "unit", "printed", "ours", "verdict"),
-        [(x.what, x.scenario, x.unit, x.printed, x.ours, x.verdict) for x in others],
-    )
-    Console(soft_wrap=True).print(f"\nReport, figures and numbers: {out}")
+    if "comparisons" in record:
+        _print_verdicts("Printed numbers of MSM", record["verdicts"])
+        others = [line for line in record["comparisons"] if line.verdict != "agrees"]
+        print_table(
+            "Where they differ",
+            ("quantity", "scenario", "unit", "printed", "ours", "verdict"),
+            [(x.what, x.scenario, x.unit, x.printed, x.ours, x.verdict) for x in others],
+        )
+    if "giaf" in record:
+        _print_verdicts("Statements of GIAF", record["giaf"]["verdicts"])
+        others = [line for line in record["giaf"]["statements"] if line.verdict != "holds"]
+        print_table(
+            "Which do not hold",
+            ("source", "statement", "tip", "rotors", "ours", "verdict"),
+            [(x.source, x.claim, x.tip, x.rotors, x.ours, x.verdict) for x in others],
+        )
+    Console(soft_wrap=True).print(f"\nReports, figures and numbers: {out}")
+
+
+def _print_verdicts(title: str, verdicts: dict[str, int]) -> None:
+    from .output import print_table
+
+    rows = [(str(verdict), float(count)) for verdict, count in verdicts.items()]
+    print_table(title, ("verdict", "count"), rows)

@@ -159,12 +159,16 @@ def _reject_unsupported(model: mujoco.MjModel, path: Path) -> None:
         raise ModelFileError(str(path), "a number is infinite")
     for i in range(model.njnt):
         name = joint_name(model, i)
-        if int(model.jnt_type[i]) not in KINDS:
-            raise UnsupportedModel(
-                str(path),
-                f"joint '{name}' is a ball or free joint; "
-                "only hinges and slides on a fixed base are supported",
+        kind = int(model.jnt_type[i])
+        if kind not in KINDS:
+            free = kind == int(mujoco.mjtJoint.mjJNT_FREE)
+            advice = (
+                "at the root load the robot with floating=True (softimpact factors --floating)"
+                if free
+                else "write it as three hinges"
             )
+            words = "free" if free else "ball"
+            raise UnsupportedModel(str(path), f"joint '{name}' is a {words} joint; {advice}")
     if any(int(kind) == int(mujoco.mjtEq.mjEQ_WELD) for kind in model.eq_type):
         raise UnsupportedModel(str(path), "equality weld; close loops with connect")
     if np.any(getattr(model, "jnt_stiffnesspoly", 0.0)):

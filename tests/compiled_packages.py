@@ -7,6 +7,7 @@ import ctypes
 import os
 import shutil
 import subprocess
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,17 +17,29 @@ import pytest
 
 from softimpact.codegen.description import CFunction
 from softimpact.codegen.functions import functions_of, symbols_of
-from softimpact.codegen.inputs import SCALARS, parameters_of
+from softimpact.codegen.inputs import SCALARS, Parameter, freeze, parameters_of
 from softimpact.codegen.manifest import Manifest
 from softimpact.codegen.samples import Sample
+from softimpact.studio.pose_table import pose_table
 from softimpact.symbolic import Robot
 from softimpact.symbolic.rigid import Array
+
+STUDIES = Path(__file__).parents[1] / "robots/studies"
 
 WARNINGS = [
     *("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow"),
     *("-Wmissing-prototypes", "-Wstrict-prototypes", "-Wfloat-equal", "-Wundef", "-Werror"),
 ]
+COMMITTED = sorted(path.name for path in (Path(__file__).parents[1] / "generated").iterdir())
+"""Names of the built-in robots whose packages are in the repository."""
+
 KINDS = {"double": (ctypes.c_double, np.float64), "float": (ctypes.c_float, np.float32)}
+
+
+def candidate_poses(name: str, robot: Robot) -> dict[str, Sequence[float]]:
+    """Return the poses built into a robot's committed package: those of its study, if it has one."""
+    study = next(STUDIES.glob(f"{name}_*.toml"), None)
+    return pose_table(study, robot) if study else {}
 
 
 def tool(name: str) -> str:
@@ -68,8 +81,15 @@ class Generated:
     def functions(self) -> tuple[CFunction, ...]:
         """What the package computes."""
         m = self.manifest
-        symbols = symbols_of(self.robot, self.tip, m.gravity, parameters_of(self.robot))
+        symbols = symbols_of(self.robot, self.tip, m.gravity, self.parameters)
         return functions_of(symbols, m.chain_order)
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """All parameters, frozen ones too."""
+        m = self.manifest
+        payload = "payload_mass" in (*m.parameters, *m.frozen)
+        return freeze(parameters_of(self.robot, payload=payload), m.frozen)
 
     def run_own_test(self, compiler: str, real: str, out: Path) -> str:
         """Compile the package's own test without a warning, run it and return what it says."""
@@ -101,7 +121,9 @@ class Library:
         out = np.full(sum(sizes), np.nan, dtype=kind)
         scalars = dict(zip(SCALARS, sample.scalars, strict=True))
         vectors = [np.array(sample.q, dtype=kind), np.array(sample.n, dtype=kind)]
-        vectors.append(np.concatenate(sample.parameters).astype(kind))
+        pairs = zip(self.package.parameters, sample.parameters, strict=True)
+        fields = [values for p, values in pairs if p.frozen is None]
+        vectors.append(np.concatenate([(), *fields]).astype(kind))
         q, n, p = (ctypes.c_void_p(vector.ctypes.data) for vector in vectors)
         entry = getattr(self.library, f"{self.package.manifest.name}_{function.name}")
         status = entry(
@@ -118,5 +140,5 @@ class Library:
 
 def parameter(package: Generated, sample: Sample, name: str) -> Array:
     """Return a sample's values of one field of the parameter struct."""
-    names = [p.name for p in parameters_of(package.robot)]
+    names = [p.name for p in package.parameters]
     return np.array(sample.parameters[names.index(name)])

@@ -40,7 +40,8 @@ static void plan(panda_real time, panda_real q[JOINTS], panda_real rate[JOINTS])
 }
 
 /* Velocity of the contact point; returns its size [m/s]. */
-static panda_real tip_velocity(panda_real q[JOINTS], panda_real rate[JOINTS], panda_real velocity[3])
+static panda_real tip_velocity(const panda_real q[JOINTS], const panda_real rate[JOINTS],
+    panda_real velocity[3])
 {
     panda_real J[3][JOINTS];
     panda_real square = 0;
@@ -58,7 +59,8 @@ static panda_real tip_velocity(panda_real q[JOINTS], panda_real rate[JOINTS], pa
 }
 
 /* Share of the planned velocity that is allowed now; *force is what it leads to [N]. */
-static panda_real allowed_share(guard *g, panda_real q[JOINTS], panda_real rate[JOINTS], panda_real *force)
+static panda_real allowed_share(guard *g, const panda_real q[JOINTS], const panda_real rate[JOINTS],
+    panda_real *force)
 {
     panda_real direction[3];
     const panda_real planned = tip_velocity(q, rate, direction);

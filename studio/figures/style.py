@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
+from softimpact.optimize import Study
 from softimpact.studio.design_report import DesignReport, limit_kind
 
 # Okabe and Ito's colours, told apart by the colour-blind too
@@ -34,6 +36,18 @@ MODE_COLOURS = {"table": SPRINGS, "free": BOTH}
 MODE_WORDS = {"table": "springs designed, posture held", "free": "springs and posture designed"}
 
 
+class Reported(Protocol):
+    """What any report of a study has."""
+
+    @property
+    def study(self) -> Study:
+        """The problem."""
+
+    @property
+    def limit(self) -> float:
+        """Force limit of the body region [N]."""
+
+
 def new_figure(width: float, height: float) -> Figure:
     """Return an empty figure [in] that leaves room for legends outside of its axes."""
     figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
@@ -47,6 +61,13 @@ def tidy(axes: Any, grid: str = "both") -> None:
     axes.grid(axis=grid, color=FAINT, linewidth=0.8)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=SMALL)
+
+
+def plain_log_ticks(axes: Any) -> None:
+    """Label a logarithmic horizontal axis with plain numbers at 1, 2 and 5 of each decade."""
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def legend_below(figure: Figure, handles: Sequence[Any], columns: int) -> None:
@@ -66,7 +87,7 @@ def save(figure: Figure, path: Path) -> Path:
     return path
 
 
-def setting(report: DesignReport) -> str:
+def setting(report: Reported) -> str:
     """Return which robot hits what, how that is held and how fast, for titles."""
     study = report.study
     held = "clamped" if study.contact.clamped else "free to give way"
@@ -80,7 +101,7 @@ def winner_in_words(report: DesignReport) -> str:
     return f"winner: {winner.name}" if winner.mode == "table" else f"winner: from {winner.name}"
 
 
-def limit_in_words(report: DesignReport) -> str:
+def limit_in_words(report: Reported) -> str:
     """Return the force limit with its kind and source, for legends and labels."""
     kind = limit_kind(report.study).replace("_", "-")
     return f"{kind} limit {report.limit:g} N (ISO/TS 15066)"

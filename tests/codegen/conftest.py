@@ -5,17 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 
 import pytest
-from compiled_packages import Generated
+from compiled_packages import Generated, candidate_poses
 from oracles import example_urdf
 
 from softimpact.codegen import generate_package
-from softimpact.studio.pose_table import pose_table
 from softimpact.symbolic import Robot, chain_to, load_robot
-
-STUDIES = Path(__file__).parents[2] / "robots/studies"
 
 GANTRY = """
 <mujoco model="Gantry-2">
@@ -60,8 +56,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Generat
     def generated(name: str) -> Generated:
         robot, tip = load(name)
         folder = root / name
-        study = next(STUDIES.glob(f"{name}_*.toml"), None)
-        poses = pose_table(study, robot) if study else None
+        poses = candidate_poses(name, robot)
         manifest = generate_package(robot, folder, tip=tip, poses=poses)
         return Generated(robot, tip, folder, manifest)
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from compiled_packages import Generated, run, tool
+from compiled_packages import COMMITTED, Generated, run, tool
 
 from softimpact.codegen import generate_package
 from softimpact.codegen.inputs import parameters_of
@@ -33,7 +33,7 @@ ROOT = Path(__file__).parents[2]
 FLOAT_CALLS = {"sinf", "cosf", "sqrtf", "fmaxf", "powf", "logf", "memcpy", "memset"}
 
 
-@pytest.mark.parametrize("name", ["panda", "rr", "rmin"])
+@pytest.mark.parametrize("name", COMMITTED)
 def test_committed_packages_are_current(package: Callable[[str], Generated], name: str) -> None:
     committed, fresh = ROOT / "generated" / name, package(name).folder
     names = {p.relative_to(fresh) for p in fresh.rglob("*") if p.is_file()}
@@ -128,15 +128,16 @@ def test_joints_that_hardly_move_are_sampled_where_they_are(panda: Robot) -> Non
         assert sample.q[2] == pytest.approx(0.30005, abs=1e-6)
 
 
+@pytest.mark.parametrize("name", COMMITTED)
 def test_float_builds_hold_no_double_operation(
-    package: Callable[[str], Generated], tmp_path: Path
+    package: Callable[[str], Generated], name: str, tmp_path: Path
 ) -> None:
-    generated = package("panda")
+    generated = package(name)
     for source in generated.folder.glob("src/*.c"):
         target = tmp_path / f"{source.stem}.o"
         run(tool("gcc"), *generated.flags("float"), "-c", source, "-o", target)
         needed = set(re.findall(r" U (\w+)", run(tool("nm"), target)))
-        needed = {name for name in needed if not name.startswith("panda_")}
+        needed = {name for name in needed if not name.startswith(f"{generated.manifest.name}_")}
         assert needed <= {*FLOAT_CALLS, "sincosf", "_GLOBAL_OFFSET_TABLE_"}
         code = run(tool("objdump"), "-d", target)
         assert not re.search(r"\b(cvtss2sd|cvtsd2ss|mulsd|addsd|fcvt)\b", code)

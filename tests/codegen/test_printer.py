@@ -168,7 +168,8 @@ def test_sine_and_cosine_of_one_angle_are_computed_at_once() -> None:
     printed = print_graph(graph, [["q[0]", "q[1]", "q[2]"]], [["y"]], "x", angles=0)
     text = "\n".join(printed.lines)
     assert "x_sine_cosine(q[1], &s2, &c2);" in text
-    assert "t1 = q[1] + X_R(0.5);\n    x_real s2_2, c2_2;\n    x_sine_cosine(t1, &s2_2" in text
+    declared = "    x_real s2_2;\n    x_real c2_2;\n"
+    assert f"t1 = q[1] + X_R(0.5);\n{declared}    x_sine_cosine(t1, &s2_2" in text
     assert "c3 = X_COS(q[2]);" in text
     assert text.count("X_SIN") + text.count("sine_cosine") == 2
 

@@ -16,9 +16,10 @@ from studies import PANDA_24, InProcess, study_of
 
 from softimpact.optimize import Design, Outcome, SolverFailure, Study, design, load_study
 from softimpact.optimize import solve as solving
-from softimpact.optimize.co_design import MODES, peak_force
+from softimpact.optimize.co_design import MODES
 from softimpact.optimize.nlp import build_nlp, tip_pose_error
 from softimpact.optimize.poses import tip_pose
+from softimpact.optimize.problem import peak_force
 from softimpact.optimize.repair import accurate_springs, largest_deflection
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic.rigid import Array

@@ -50,6 +50,7 @@ SECTIONS = {
     "[impact]": "impact",
     "[stiffness]": "stiffness",
     "[accuracy]": "accuracy",
+    "[pareto]": "pareto",
     "[task]": "task",
 }
 

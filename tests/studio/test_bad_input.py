@@ -124,7 +124,7 @@ PENDULUMS = BODY.format("hand", "hinge") + BODY.format("foot", "hinge")
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        (f"<worldbody>{BALL}</worldbody>", "ball or free joint"),
+        (f"<worldbody>{BALL}</worldbody>", "ball joint"),
         (
             f"<worldbody>{PENDULUMS}</worldbody>"
             "<equality><weld body1='hand' body2='foot'/></equality>",

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from command_line import refusal, run, run_json
 
-from softimpact.codegen import generate_package
+from softimpact.codegen import Payload, generate_package
 from softimpact.symbolic import drives, load_robot
 
 STUDY = Path(__file__).parents[2] / "robots/studies/panda_24_poses.toml"
@@ -108,3 +108,39 @@ def test_failure_leaves_the_older_package(tmp_path: Path) -> None:
     (folder / "README.md").write_text("edited")
     refusal("generate", "rr", "--out", folder)
     assert (folder / "README.md").read_text() == "edited"
+
+
+def test_payload_and_frozen_parameters(tmp_path: Path) -> None:
+    typed, called = tmp_path / "typed", tmp_path / "called"
+    options = ("--payload", "--payload-mass", 2, "--payload-com", "[0, 0, 0.125]", "--order", 2)
+    result = run_json(
+        "generate", "rr", "--out", typed, *options, "--freeze", "rotor_inertia, payload_mass"
+    )
+    generate_package(
+        load_robot("rr"),
+        called,
+        drives_=drives(load_robot("rr")),
+        chain_order=2,
+        payload=Payload(2.0, (0.0, 0.0, 0.125)),
+        freeze=["rotor_inertia", "payload_mass"],
+    )
+    assert contents(typed) == contents(called)
+    assert result["parameters"] == ["position_gain", "payload_com"]
+    assert result["frozen"]["payload_mass"] == [2.0]
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        (["--payload-mass", "1"], "payload_mass: is read with --payload only"),
+        (["--payload-com", "[0, 0, 1]"], "payload_com: is read with --payload only"),
+        (["--payload", "--payload-mass", "-1"], "payload_mass"),
+        (["--payload", "--payload-com", "[0, 1]"], "payload_com"),
+        (["--freeze", "joint_stiffness"], "joint_stiffness"),
+        (["--freeze", "payload_mass"], "payload_mass"),
+        (["--freeze", ""], "parameter to freeze"),
+    ],
+)
+def test_refuses_inputs_without_meaning(tmp_path: Path, options: list[str], field: str) -> None:
+    assert field in refusal("generate", "panda", "--out", tmp_path / "p", *options)
+    assert not (tmp_path / "p").exists()

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from command_line import refusal
@@ -69,16 +70,20 @@ def test_the_page_shows_every_number_and_figure(
     assert all((tmp_path / name).read_bytes().startswith(PNG) for name in shown)
 
 
+def reproduced(paper: str, out: Path) -> dict[str, Any]:
+    start = "from softimpact.studio.cli import main; raise SystemExit(main())"
+    done = subprocess.run(
+        [sys.executable, "-c", start, "reproduce", "--paper", paper, "--out", str(out), "--json"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    record: dict[str, Any] = json.loads(done.stdout)
+    return record
+
+
 @pytest.mark.slow
 def test_the_whole_paper(tmp_path: Path) -> None:
     out = tmp_path / "msm"
-    start = "from softimpact.studio.cli import main; raise SystemExit(main())"
-    command = [sys.executable, "-c", start]
-    done = subprocess.run(
-        [*command, "reproduce", "--out", str(out), "--json"],
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    record = json.loads(done.stdout)
+    record = reproduced("msm", out)
     assert record["verdicts"]["misprint"] == 1
     assert record["verdicts"]["agrees"] >= 46
     assert sum(record["verdicts"].values()) == len(record["comparisons"]) == 101
@@ -88,6 +93,30 @@ def test_the_whole_paper(tmp_path: Path) -> None:
     assert kept["comparisons"] == record["comparisons"]
     assert sorted(kept["sweeps"]) == list("abcdef")
     assert (out / "report.md").read_text().count("![") == 11
+
+
+@pytest.mark.slow
+def test_the_paper_on_impact_factors(tmp_path: Path) -> None:
+    """39 statements: six for each of two tips and three sets of rotors, and one a set on bases."""
+    out = tmp_path / "giaf"
+    found = reproduced("giaf", out)["giaf"]
+    assert len(found["statements"]) == 39
+    others = [x for x in found["statements"] if x["verdict"] != "holds"]
+    assert {x["source"] for x in others} == {"Fig. 3", "Fig. 4"}
+    assert all("base's axes" in x["claim"] for x in others if x["source"] == "Fig. 4")
+    assert all(x["tip"] == "flange" for x in others if x["source"] == "Fig. 3")
+    assert [path.name for path in out.iterdir() if path.is_file()] == ["results.json"]
+    text = (out / "giaf" / "report.md").read_text()
+    shown = re.findall(r"\]\((\S+\.png)\)", text)
+    assert sorted(shown) == sorted(path.name for path in (out / "giaf").glob("*.png"))
+    assert len(shown) == 11
+    assert text.count("| holds |") == found["verdicts"]["holds"]
+
+
+def test_unknown_papers_are_refused(tmp_path: Path) -> None:
+    message = refusal("reproduce", "--out", tmp_path / "out", "--paper", "iso")
+    assert "'iso'" in message
+    assert "giaf" in message
 
 
 def test_unknown_scenarios_are_refused(tmp_path: Path) -> None:

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#ifndef RK4_H
+#define RK4_H
+
+#include "sample.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Peak force [N]; step times the fastest rate stays below share. NAN if the chain is singular. */
+double rk4_peak_force(const sample *s, double share);
+
+/* Speed [m/s] at which that force is at most 0.1 % below limit. */
+double rk4_safe_speed(const sample *s, double limit, double share);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a package's functions cost on a microcontroller, where that has been measured.
+
+Generating needs no cross compiler: the numbers are data beside this file, written by
+``make bench-c`` for the built-in robots. They belong to certain sources and no others.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+COSTS = Path(__file__).parent / "costs"
+"""One file a package, named by its prefix."""
+
+
+@dataclass(frozen=True)
+class Instructions:
+    """Instructions of a call, on average over a package's golden inputs and at most."""
+
+    mean: int
+    most: int
+
+
+@dataclass(frozen=True)
+class FunctionCost:
+    """Cost of a function in a float build.
+
+    Attributes:
+        name: of the C function.
+        m4: instructions on a Cortex-M4F.
+        m7: instructions on a Cortex-M7.
+        text: code of the source it stands in, on the M7 [bytes].
+        rodata: constants of that source [bytes].
+        stack: deepest of it and whatever it calls in the package, on the M7 [bytes].
+    """
+
+    name: str
+    m4: Instructions
+    m7: Instructions
+    text: int
+    rodata: int
+    stack: int
+
+
+@dataclass(frozen=True)
+class SharedCost:
+    """Code and constants [bytes] of a source that holds none of the functions above."""
+
+    name: str
+    text: int
+    rodata: int
+
+
+@dataclass(frozen=True)
+class Costs:
+    """Costs of a package.
+
+    Attributes:
+        sources: digest of what was measured, see ``sources_digest``.
+        compiler: and its version.
+        flags: that optimise.
+        functions: costs of each.
+        shared: sources that they share.
+    """
+
+    sources: str
+    compiler: str
+    flags: str
+    functions: tuple[FunctionCost, ...]
+    shared: tuple[SharedCost, ...]
+
+    def to_json(self) -> str:
+        """Return the text of the file that ``stored_costs`` reads."""
+        return json.dumps(asdict(self), indent=2) + "\n"
+
+
+def sources_digest(hashes: Mapping[str, str]) -> str:
+    """Return a hash over what decides a package's costs.
+
+    These are its sources and headers, but for the one that picks the number type, and the golden
+    inputs.
+
+    Args:
+        hashes: SHA-256 of each file of the package, or of more or fewer files that do not count.
+    """
+    counted = [
+        f"{path} {digest}\n"
+        for path, digest in sorted(hashes.items())
+        if path.startswith(("include/", "src/", "test/golden")) and not path.endswith("_config.h")
+    ]
+    return hashlib.sha256("".join(counted).encode()).hexdigest()
+
+
+def stored_costs(prefix: str, hashes: Mapping[str, str]) -> Costs | None:
+    """Return a package's costs; None if they were not measured or are those of other sources."""
+    path = COSTS / f"{prefix}.json"
+    if not path.is_file():
+        return None
+    costs = _from_json(path.read_text(encoding="utf-8"))
+    return costs if costs.sources == sources_digest(hashes) else None
+
+
+def _from_json(text: str) -> Costs:
+    read = json.loads(text)
+    functions = [
+        FunctionCost(**{**f, "m4": Instructions(**f["m4"]), "m7": Instructions(**f["m7"])})
+        for f in read["functions"]
+    ]
+    shared = [SharedCost(**s) for s in read["shared"]]
+    return Costs(**{**read, "functions": tuple(functions), "shared": tuple(shared)})

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Feeds ur5e any bits, or any numbers of a plausible size: whatever is UR5E_OK must be finite,
+ * whatever is not must have written nothing. For libFuzzer:
+ * clang -fsanitize=fuzzer,address,undefined -Iinclude fuzz/fuzz.c src/<all>.c -lm
+ */
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ur5e.h"
+
+/* Everything that functions read, as plain numbers. */
+typedef struct {
+    ur5e_real q[6];
+    ur5e_real n[3];
+    ur5e_params p;
+    ur5e_real region[4];
+    ur5e_real number;
+} inputs;
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+/* Stops the fuzzer unless memory holds finite numbers, or is as it was. */
+static void check(int status, const void *memory, size_t size)
+{
+    for (size_t at = 0; at < size; at += sizeof(ur5e_real)) {
+        ur5e_real x;
+        unsigned char untouched[sizeof x];
+        memset(untouched, 0xA5, sizeof untouched);
+        memcpy(&x, (const unsigned char *)memory + at, sizeof x);
+        if (status == UR5E_OK ? !isfinite(x) : memcmp(&x, untouched, sizeof x) != 0) {
+            abort();
+        }
+    }
+}
+
+/* Bits as they are, or two bytes a number: -8 to 8, or its square for what should be positive. */
+static void decode(const uint8_t *data, size_t size, inputs *in)
+{
+    memset(in, 0, sizeof *in);
+    if (size > 0 && (data[0] & 1u) != 0u) {
+        memcpy(in, data + 1, size - 1 < sizeof *in ? size - 1 : sizeof *in);
+        return;
+    }
+    for (size_t i = 0; i < sizeof *in/sizeof(ur5e_real); ++i) {
+        const size_t at = 1 + 2*i;
+        const int low = at < size ? data[at] : 1;
+        const int high = at + 1 < size ? data[at + 1] : 144;
+        const ur5e_real x = (ur5e_real)(256*high + low - 32768)/(ur5e_real)4096;
+        const ur5e_real positive = x*x*x*x;
+        memcpy((unsigned char *)in + i*sizeof x, i < 9 ? &x : &positive, sizeof x);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    inputs in;
+    decode(data, size, &in);
+    {
+        ur5e_real M[6][6];
+        memset(&M, 0xA5, sizeof M);
+        const int status = ur5e_mass_matrix(in.q, M);
+        check(status, &M, sizeof M);
+    }
+    {
+        ur5e_real J[3][6];
+        memset(&J, 0xA5, sizeof J);
+        const int status = ur5e_jacobian(in.q, J);
+        check(status, &J, sizeof J);
+    }
+    {
+        ur5e_real M0[12][12];
+        memset(&M0, 0xA5, sizeof M0);
+        const int status = ur5e_generalised_mass_matrix(in.q, &in.p, M0);
+        check(status, &M0, sizeof M0);
+    }
+    {
+        ur5e_real K0[12][12];
+        memset(&K0, 0xA5, sizeof K0);
+        const int status = ur5e_stiffness_matrix(in.q, &in.p, K0);
+        check(status, &K0, sizeof K0);
+    }
+    {
+        ur5e_real J_c[12];
+        memset(&J_c, 0xA5, sizeof J_c);
+        const int status = ur5e_contact_jacobian(in.q, in.n, J_c);
+        check(status, &J_c, sizeof J_c);
+    }
+    {
+        ur5e_real m_c;
+        memset(&m_c, 0xA5, sizeof m_c);
+        const int status = ur5e_reflected_mass(in.q, in.n, &m_c);
+        check(status, &m_c, sizeof m_c);
+    }
+    {
+        ur5e_reduced_model_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_reduced_model(in.q, in.n, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        ur5e_chain_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_chain(in.q, in.n, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        ur5e_osim_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_osim(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        ur5e_giaf_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_giaf(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        ur5e_real giaf;
+        memset(&giaf, 0xA5, sizeof giaf);
+        const int status = ur5e_directional_giaf(in.q, in.n, &in.p, &giaf);
+        check(status, &giaf, sizeof giaf);
+    }
+    {
+        ur5e_absorption_extremes_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_absorption_extremes(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    ur5e_region region;
+    if (ur5e_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != UR5E_OK) {
+        return 0;
+    }
+    if (size > 0 && (data[0] & 4u) != 0u) {
+        region.stiffness = in.region[0];
+        region.damping = in.region[1];
+        region.effective_mass = in.region[2];
+        region.hertz_stiffness = in.region[3];
+    }
+    {
+        ur5e_peak_force_t out;
+        memset(&out, 0xA5, sizeof out);
+        check(ur5e_peak_force(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    {
+        ur5e_safe_speed_t out;
+        memset(&out, 0xA5, sizeof out);
+        check(ur5e_safe_speed(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    return 0;
+}

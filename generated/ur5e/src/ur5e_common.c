@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Status texts, default parameters and sines of ur5e. */
+#include "ur5e_internal.h"
+
+const char *ur5e_status_text(int status)
+{
+    switch (status) {
+    case UR5E_OK:
+        return "ok";
+    case UR5E_NULL_POINTER:
+        return "an argument is NULL";
+    case UR5E_NOT_FINITE:
+        return "an input is infinite or not a number";
+    case UR5E_ZERO_DIRECTION:
+        return "the direction is zero";
+    case UR5E_OUT_OF_RANGE:
+        return "a parameter is out of range";
+    case UR5E_SINGULAR:
+        return "the configuration is singular";
+    case UR5E_LOOP_OPEN:
+        return "a loop of the closed chain is open";
+    case UR5E_NO_EQUILIBRIUM:
+        return "no equilibrium of springs and gravity was found";
+    case UR5E_UNRESOLVED:
+        return "the impact does not end, or no speed is found, in the steps there are";
+    default:
+        return "unknown status";
+    }
+}
+
+int ur5e_default_params(ur5e_params *p)
+{
+    if (p == NULL) {
+        return UR5E_NULL_POINTER;
+    }
+    p->joint_stiffness[0] = UR5E_R(0.0);
+    p->joint_stiffness[1] = UR5E_R(0.0);
+    p->joint_stiffness[2] = UR5E_R(0.0);
+    p->joint_stiffness[3] = UR5E_R(0.0);
+    p->joint_stiffness[4] = UR5E_R(0.0);
+    p->joint_stiffness[5] = UR5E_R(0.0);
+    p->rotor_inertia[0] = UR5E_R(0.1);
+    p->rotor_inertia[1] = UR5E_R(0.1);
+    p->rotor_inertia[2] = UR5E_R(0.1);
+    p->rotor_inertia[3] = UR5E_R(0.1);
+    p->rotor_inertia[4] = UR5E_R(0.1);
+    p->rotor_inertia[5] = UR5E_R(0.1);
+    p->position_gain[0] = UR5E_R(0.0);
+    p->position_gain[1] = UR5E_R(0.0);
+    p->position_gain[2] = UR5E_R(0.0);
+    p->position_gain[3] = UR5E_R(0.0);
+    p->position_gain[4] = UR5E_R(0.0);
+    p->position_gain[5] = UR5E_R(0.0);
+    return UR5E_OK;
+}
+
+#if defined(UR5E_USE_FLOAT)
+/* Takes the nearest quarter turns off the angle; then a polynomial each. Error < 1.2e-07. */
+void ur5e_sine_cosine(float x, float *s, float *c)
+{
+    if (!(fabsf(x) < 200.0f)) {
+        *s = sinf(x);
+        *c = cosf(x);
+        return;
+    }
+    const int nearest = (int)(x*0.636619772f + (x < 0.0f ? -0.5f : 0.5f));
+    const unsigned int quarter = (unsigned int)nearest;
+    const float k = (float)nearest;
+    const float about = (x - k*1.5703125f) - k*0.00048375129699707f;
+    const float r = about - k*7.54978995489188e-08f;
+    const float z = r*r;
+    const float sine = r + r*z*(-0.166666552f + z*(0.00833217334f + z*-0.000195166562f));
+    const float tail = 0.0416666456f + z*(-0.00138873619f + z*2.44377297e-05f);
+    const float cosine = 1.0f - 0.5f*z + z*z*tail;
+    const float first = (quarter & 1u) != 0u ? cosine : sine;
+    const float second = (quarter & 1u) != 0u ? sine : cosine;
+    *s = (quarter & 2u) != 0u ? -first : first;
+    *c = ((quarter + 1u) & 2u) != 0u ? -second : second;
+}
+#endif

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The most accurate design: springs, and posture, of least deflection."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic import ImpactModel
+from softimpact.symbolic.rigid import Array
+
+from .nlp import deflections, tip_pose_error
+from .poses import tip_pose
+from .repair import largest_deflection
+from .solve import Mode, quiet
+from .study import Study
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffest:
+    """How accurate springs within their bounds can be.
+
+    Attributes:
+        q: posture, length n [rad].
+        springs: joint stiffness, length n [N·m/rad].
+        deflection: largest of the tip under the study's forces [m].
+    """
+
+    q: Array
+    springs: Array
+    deflection: float
+
+
+def stiffest(study: Study, q: Array, mode: Mode) -> Stiffest:
+    """Return the design of least deflection, the stiffest springs if Ipopt finds none better.
+
+    The stiffest springs need not be it: deflections of several joints can cancel in part.
+
+    Args:
+        study: whose forces, stiffness bounds and task count.
+        q: posture that is held (table), or that the search starts from (free), length n [rad].
+        mode: table or free.
+    """
+    n, held = study.robot.n, mode == "table"
+    lower, upper = study.robot.limits
+    unit = largest_deflection(study, q, study.upper)
+    position, rotation = tip_pose(study.model, study.task_pose.q)
+    free_pose = np.full(6, np.inf if held else 0.0)
+    least = np.concatenate([q if held else lower, np.log10(study.lower), [0.0]])
+    most = np.concatenate([q if held else upper, np.log10(study.upper), [np.inf]])
+    solver = _solver(study.model, len(study.forces))
+    found = solver(
+        x0=np.concatenate([q, np.log10(study.upper), [1.0]]),
+        p=np.concatenate([position, rotation.ravel(order="F"), (study.forces / unit).ravel()]),
+        lbx=least,
+        ubx=most,
+        lbg=np.concatenate([-free_pose, np.full(len(study.forces), -np.inf)]),
+        ubg=np.concatenate([free_pose, np.zeros(len(study.forces))]),
+    )
+    x = np.clip(np.array(found["x"]).ravel(), least, most)
+    design = Stiffest(x[:n], 10 ** x[n:-1], largest_deflection(study, x[:n], 10 ** x[n:-1]))
+    if solver.stats()["success"] and design.deflection < unit:
+        return design
+    return Stiffest(q, study.upper, unit)
+
+
+@lru_cache(maxsize=8)
+def _solver(model: ImpactModel, wrenches: int) -> ca.Function:
+    """Ipopt on min t with |deflection|² ≤ t for each force."""
+    n = model.robot.n
+    q, s, t = ca.SX.sym("q", n), ca.SX.sym("s", n), ca.SX.sym("t")
+    position, rotation = ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)
+    forces = ca.SX.sym("forces", 3, wrenches)
+    squares = ca.sum1(deflections(model, q, 10**s, forces) ** 2).T
+    problem: dict[str, Any] = {
+        "x": ca.vertcat(q, s, t),
+        "p": ca.vertcat(position, ca.vec(rotation), ca.vec(forces)),
+        "f": t,
+        "g": ca.vertcat(tip_pose_error(model, q, position, rotation), squares - t),
+    }
+    return ca.nlpsol("stiffest", "ipopt", problem, quiet({"tol": 1e-8}))

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact pareto``: what accuracy costs in force and speed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import options as o
+
+if TYPE_CHECKING:
+    from softimpact.optimize import Study
+
+    from .pareto_report import ParetoReport
+
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder of results; default results/STUDY_pareto."),
+]
+Points = Annotated[
+    int | None,
+    typer.Option(metavar="N", help="Number of accuracies instead of the study's.", min=2, max=100),
+]
+
+
+def pareto(
+    study: o.StudyFile,
+    out: Out = None,
+    points: Points = None,
+    region: o.Region = None,
+    speed: o.Speed = None,
+    json: o.Json = False,
+) -> None:
+    """Find the least peak force at every accuracy: fronts with the posture free and held."""
+    from softimpact.optimize import load_study
+
+    from .output import print_json
+    from .pareto_record import GENERATOR, as_record
+    from .results_folder import replaced_folder, require_replaceable
+    from .values import given
+
+    overrides = {"impact": given(region=region, speed=speed), "pareto": given(points=points)}
+    problem = load_study(study, overrides)
+    folder = out or Path("results") / f"{problem.source.stem}_pareto"
+    require_replaceable(folder, GENERATOR)
+    report = _search(problem)
+    record = as_record(report)
+    with replaced_folder(folder, GENERATOR) as fresh:
+        _write(report, record, fresh)
+    if json:
+        print_json({"out": folder, **record})
+    else:
+        _print(report, folder)
+
+
+def _search(study: Study) -> ParetoReport:
+    """Find the fronts and check them, with a progress bar on stderr."""
+    from softimpact.optimize import pareto_fronts
+
+    from .pareto_report import pareto_report
+    from .progress import progress_bar
+
+    with progress_bar() as progress:
+        task = progress.add_task("compile", total=None)
+
+        def advance(what: str, done: int, total: int) -> None:
+            progress.update(task, description=what, completed=done, total=total)
+
+        return pareto_report(pareto_fronts(study, on_progress=advance), advance)
+
+
+def _write(report: ParetoReport, record: dict[str, Any], folder: Path) -> None:
+    import json
+
+    from .figures.pareto import draw_pareto_figures
+    from .output import plain
+    from .pareto_record import write_table
+    from .pareto_words import markdown
+    from .results_folder import RESULTS
+
+    text = json.dumps(plain(record), indent=1, allow_nan=False)
+    (folder / RESULTS).write_text(text + "\n", encoding="utf-8")
+    write_table(report, folder / "fronts.csv")
+    figures = draw_pareto_figures(report, folder)
+    words = markdown(report, [figure.name for figure in figures])
+    (folder / "report.md").write_text(words, encoding="utf-8")
+
+
+def _print(report: ParetoReport, folder: Path) -> None:
+    from rich.console import Console
+
+    from .output import print_table
+    from .pareto_words import COLUMNS, heading, in_words, rows
+
+    print_table(heading(report), COLUMNS, rows(report))
+    console = Console(soft_wrap=True, highlight=False)
+    for line in in_words(report):
+        console.print(line)
+    console.print(f"\nResults, table, report and figures: {folder}")

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pareto fronts as plain data: one JSON object, and one table."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+from softimpact.optimize import Front, ParetoPoint
+
+from .design_report import inputs, limit_kind, versions
+from .pareto_report import FRONTS, CheckedPoint, ParetoReport
+
+GENERATOR = "softimpact pareto"
+"""Marks a folder of results as one that may be replaced."""
+
+
+def as_record(report: ParetoReport) -> dict[str, Any]:
+    """Return a report as plain data, for ``results.json``."""
+    study, pareto = report.study, report.pareto
+    return {
+        "generator": GENERATOR,
+        "versions": versions(),
+        "study": {**inputs(study), "pareto": study.levels.model_dump()},
+        "region": study.contact.region.name,
+        "limit": report.limit,
+        "limit_kind": limit_kind(study),
+        "peak_definition": "first_contact",
+        "accuracy": "largest deflection of the tip by the springs under the study's forces [m]",
+        "solver": {
+            "compiled": pareto.compiled,
+            "searches": pareto.searches,
+            "impact_duration": pareto.timing.duration,
+            "impact_steps": pareto.timing.steps,
+        },
+        "levels": pareto.levels,
+        "reference": {
+            "name": study.task_pose.name,
+            **vars(pareto.reference),
+            "safe_speed": report.reference_speed,
+        },
+        "fronts": {
+            name: [_checked(point, report) for point in report.fronts[name]] for name in FRONTS
+        },
+        "held": {
+            name: [_point(point) for point in front.points] for name, front in pareto.held.items()
+        },
+        "unsolved": {
+            name: _unsolved(front, report)
+            for name, front in {"free": pareto.free, **pareto.held}.items()
+            if front.unsolved
+        },
+    }
+
+
+def _point(point: ParetoPoint) -> dict[str, Any]:
+    outcome = point.outcome
+    return {
+        "bound": point.bound,
+        "deflection": point.deflection,
+        "force": point.force,
+        "start": outcome.name,
+        "mode": outcome.mode,
+        "status": outcome.status,
+        "iterations": outcome.iterations,
+        "attempts": outcome.attempts,
+        "violation": outcome.violation,
+        "q": outcome.q,
+        "springs": outcome.springs,
+    }
+
+
+def _checked(checked: CheckedPoint, report: ParetoReport) -> dict[str, Any]:
+    return {
+        **_point(checked.point),
+        "meets_limit": checked.point.force <= report.limit,
+        "safe_speed": checked.safe_speed,
+        "check": vars(checked.check),
+    }
+
+
+def _unsolved(front: Front, report: ParetoReport) -> list[dict[str, Any]]:
+    """Levels at which Ipopt failed, with its status and the best it left."""
+    return [
+        {
+            "bound": bound,
+            "status": outcome.status,
+            "force": outcome.force,
+            "violation": outcome.violation,
+        }
+        for bound, outcome in zip(report.pareto.levels, front.outcomes, strict=True)
+        if outcome is not None and not outcome.solved
+    ]
+
+
+def write_table(report: ParetoReport, path: Path) -> None:
+    """Write the fronts as CSV, a row a point, in SI units."""
+    joints = report.study.robot.joint_names
+    header = ["front", "bound_m", "deflection_m", "force_N", "safe_speed_m_per_s", "meets_limit"]
+    header += ["linearised_N", "full_N", "status", "mode", "start"]
+    header += [f"k_s_{joint}" for joint in joints] + [f"q_{joint}" for joint in joints]
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(header)
+        for name in FRONTS:
+            for checked in report.fronts[name]:
+                table.writerow([name, *_row(checked, report)])
+
+
+def _row(checked: CheckedPoint, report: ParetoReport) -> list[object]:
+    point, outcome = checked.point, checked.point.outcome
+    return [
+        *(point.bound, point.deflection, point.force, checked.safe_speed),
+        str(point.force <= report.limit).lower(),
+        *(checked.check.linearised, checked.check.full),
+        *(outcome.status, outcome.mode, outcome.name),
+        *map(float, outcome.springs),
+        *map(float, outcome.q),
+    ]

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What Pareto fronts say, as a table, sentences and a page of Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import log
+
+from softimpact.optimize import ParetoPoint
+
+from .design_report import limit_kind
+from .output import Cell, shown
+from .pareto_report import CheckedPoint, ParetoReport
+
+MM = 1e3
+"""Millimetres in a metre."""
+
+COLUMNS = (
+    "deflection\nmm",
+    "free\nN",
+    "from",
+    "best given\nN",
+    "pose",
+    "task's\nN",
+    "safe, free\nm/s",
+    "safe, task's\nm/s",
+    "Ipopt",
+)
+
+
+def heading(report: ParetoReport) -> str:
+    """Return what the table is about."""
+    study = report.study
+    held = "clamped" if study.contact.clamped else "free to give way"
+    return (
+        f"{study.title}\n{study.contact.region.title}, {held}, {study.speed:g} m/s; least peak of "
+        "the first contact by the largest deflection allowed"
+    )
+
+
+def rows(report: ParetoReport) -> list[list[Cell]]:
+    """Return a row for each level; a dash is a level out of reach, or no better than another."""
+    return [_row(report, float(level)) for level in report.pareto.levels]
+
+
+def _row(report: ParetoReport, level: float) -> list[Cell]:
+    free, given, task = (report.at(name, level) for name in ("free", "given", "task"))
+    return [
+        f"{MM * level:.4g}",
+        _force(free),
+        _start(free),
+        _force(given),
+        None if given is None else given.point.outcome.name,
+        _force(task),
+        None if free is None else f"{free.safe_speed:.3f}",
+        None if task is None else f"{task.safe_speed:.3f}",
+        _status(report, level),
+    ]
+
+
+def _force(checked: CheckedPoint | None) -> str | None:
+    return None if checked is None else f"{checked.point.force:.1f}"
+
+
+def _start(checked: CheckedPoint | None) -> str | None:
+    """The pose that the search began with; a held one that no other beats says so."""
+    if checked is None:
+        return None
+    outcome = checked.point.outcome
+    return outcome.name if outcome.mode == "free" else f"{outcome.name} held"
+
+
+def _status(report: ParetoReport, level: float) -> str | None:
+    i = report.pareto.levels.tolist().index(level)
+    outcome = report.pareto.free.outcomes[i]
+    if outcome is None:
+        return None
+    return "solved" if outcome.solved else outcome.status
+
+
+def in_words(report: ParetoReport) -> list[str]:
+    """Return what the fronts say, a sentence each."""
+    return [
+        *_trade_off(report),
+        *_posture(report),
+        *_at_the_studys_bound(report),
+        *_limit(report),
+        _check(report),
+        *_unsolved(report),
+    ]
+
+
+def _trade_off(report: ParetoReport) -> list[str]:
+    points = [checked.point for checked in report.fronts["free"]]
+    first, last = points[0], points[-1]
+    saved = 100 * (1 - last.force / first.force)
+    lines = [
+        f"Accuracy: from {MM * first.deflection:.3g} to {MM * last.deflection:.3g} mm of "
+        f"deflection the force falls from {first.force:.1f} to {last.force:.1f} N "
+        f"({saved:.1f} %)."
+    ]
+    if len(points) > 1:
+        a, b = max(pairwise(points), key=lambda pair: _slope(*pair))
+        lines.append(
+            f"It pays most from {MM * a.deflection:.3g} to {MM * b.deflection:.3g} mm: "
+            f"{a.force - b.force:.1f} N for {100 * (b.deflection / a.deflection - 1):.0f} % more "
+            "deflection."
+        )
+    return lines
+
+
+def _slope(a: ParetoPoint, b: ParetoPoint) -> float:
+    """Force saved between two points, by the logarithm of the deflection [N]."""
+    return (a.force - b.force) / log(b.deflection / a.deflection)
+
+
+def _posture(report: ParetoReport) -> list[str]:
+    """What a free posture buys over the task's own, in force and in accuracy."""
+    name = report.study.task_pose.name
+    free, task = report.fronts["free"], report.fronts["task"]
+    if not task:
+        return [f"Posture: held as in {name}, no accuracy of these is within reach."]
+    pairs = [(p, report.within("free", p.point.deflection)) for p in task]
+    most, at = max(
+        (1 - better.point.force / p.point.force, p.point.deflection)
+        for p, better in pairs
+        if better is not None
+    )
+    return [
+        f"Posture: freeing it saves up to {100 * max(most, 0.0):.1f} % of the force of {name} (at "
+        f"{MM * at:.3g} mm), and reaches {MM * free[0].point.deflection:.3g} mm; {name} reaches "
+        f"{MM * task[0].point.deflection:.3g} mm."
+    ]
+
+
+def _at_the_studys_bound(report: ParetoReport) -> list[str]:
+    study, reference = report.study, report.pareto.reference
+    before = (
+        f"{study.task_pose.name} with nominal springs has {MM * reference.deflection:.3g} mm and "
+        f"{reference.force:.1f} N"
+    )
+    found = report.within("free", study.max_deflection)
+    if found is None:
+        return [f"Before the design {before}."]
+    return [
+        f"Within the study's {MM * study.max_deflection:.3g} mm: {found.point.force:.1f} N; before "
+        f"the design {before}."
+    ]
+
+
+def _limit(report: ParetoReport) -> list[str]:
+    free, kind = report.fronts["free"], limit_kind(report.study).replace("_", "-")
+    limit = f"the {kind} limit of {report.limit:g} N (ISO/TS 15066)"
+    good = [p for p in free if p.point.force <= report.limit]
+    speed = f"{report.study.speed:g} m/s"
+    met = (
+        f"At {speed} {limit} is met from {MM * good[0].point.deflection:.3g} mm on."
+        if good
+        else f"At {speed} no accuracy meets {limit}."
+    )
+    return [
+        met,
+        f"Speed: the limit is met at {free[0].safe_speed:.3f} m/s at the accurate end and at "
+        f"{free[-1].safe_speed:.3f} m/s at the soft end ({report.reference_speed:.3f} m/s before "
+        "the design).",
+    ]
+
+
+def _check(report: ParetoReport) -> str:
+    checks = [checked.check for points in report.fronts.values() for checked in points]
+    same = max(abs(check.linearised / check.nlp - 1) for check in checks)
+    above = max((check.full / check.nlp - 1 for check in checks), key=abs)
+    return (
+        f"Check of all {len(checks)} points: linearised by SUNDIALS within {100 * same:.3f} % of "
+        f"the optimum, nonlinear at most {100 * above:+.2f} % from it."
+    )
+
+
+def _unsolved(report: ParetoReport) -> list[str]:
+    fronts = [report.pareto.free, *report.pareto.held.values()]
+    asked = sum(o is not None for front in fronts for o in front.outcomes)
+    failed = [outcome for front in fronts for outcome in front.unsolved]
+    if not failed:
+        return [f"Ipopt solved all {asked} levels of all postures."]
+    kinds = ", ".join(sorted({outcome.status for outcome in failed}))
+    return [f"Ipopt failed at {len(failed)} of {asked} levels of all postures ({kinds})."]
+
+
+def markdown(report: ParetoReport, figures: Sequence[str]) -> str:
+    """Return a page with the table, what it says, and links to figures beside it."""
+    titles = [column.replace("\n", " [", 1) + ("]" if "\n" in column else "") for column in COLUMNS]
+    table = [titles, ["---"] * len(titles), *([shown(c) for c in row] for row in rows(report))]
+    title, setting = heading(report).split("\n")
+    blocks = [
+        f"# {title}",
+        f"{setting}.",
+        "\n".join(f"| {' | '.join(row)} |" for row in table),
+        "A dash: out of reach, or no better than a more accurate design.",
+        "\n".join(f"- {line}" for line in in_words(report)),
+        *(f"![{figure.removesuffix('.png').replace('_', ' ')}]({figure})" for figure in figures),
+        "Every number is in `results.json`; the fronts are also in `fronts.csv`.",
+    ]
+    return "\n\n".join(blocks) + "\n"

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What packages say they cost on a microcontroller is theirs, true and affordable."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from compiled_packages import COMMITTED, Generated, missing, tool
+from measured_costs import compiler_version, measure, stacks_of
+
+from softimpact.codegen import costs as costs_module
+from softimpact.codegen import generate_package
+from softimpact.codegen.costs import (
+    Costs,
+    FunctionCost,
+    Instructions,
+    SharedCost,
+    sources_digest,
+    stored_costs,
+)
+from softimpact.symbolic import load_robot
+
+AGAIN = "run `make bench-c`"
+HASHES = {"include/a.h": "1", "include/a_config.h": "2", "src/a_f.c": "3", "test/golden.c": "4"}
+SMALL = Costs(
+    sources=sources_digest(HASHES),
+    compiler="a compiler",
+    flags="-O2",
+    functions=(FunctionCost("a_f", Instructions(9, 10), Instructions(7, 8), 100, 4, 16),),
+    shared=(SharedCost("a_common", 50, 0),),
+)
+
+
+@pytest.mark.parametrize("robot", COMMITTED)
+def test_built_in_packages_know_their_costs(
+    package: Callable[[str], Generated], robot: str
+) -> None:
+    generated = package(robot)
+    costs = generated.manifest.costs
+    assert costs is not None, f"{robot}'s costs are those of other sources: {AGAIN}"
+    assert {f.name for f in generated.manifest.functions} <= {f.name for f in costs.functions}
+    readme = (generated.folder / "README.md").read_text()
+    for function in costs.functions:
+        assert f"| `{function.name}` | {function.m4.mean} |" in readme
+    assert json.loads((generated.folder / "manifest.json").read_text())["costs"]
+
+
+def test_costs_are_within_the_designs_limits(package: Callable[[str], Generated]) -> None:
+    costs = package("panda").manifest.costs
+    assert costs is not None, AGAIN
+    found = {function.name.removeprefix("panda_"): function for function in costs.functions}
+    assert 600 < found["reflected_mass"].m4.mean <= 1400  # not fewer than it has operations
+    assert found["reduced_model"].m4.mean <= 2100
+    assert found["peak_force"].m7.mean <= 25_000
+    assert found["safe_speed"].m7.most <= 48_000  # 100 µs at 480 MHz, an instruction a cycle
+    assert max(function.stack for function in costs.functions) <= 2048
+
+
+def test_costs_come_back_for_their_sources_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(costs_module, "COSTS", tmp_path)
+    assert stored_costs("a", HASHES) is None
+    (tmp_path / "a.json").write_text(SMALL.to_json())
+    assert stored_costs("a", HASHES) == SMALL
+    assert stored_costs("a", {**HASHES, "include/a_config.h": "float", "README.md": "x"}) == SMALL
+    assert stored_costs("a", {**HASHES, "src/a_f.c": "other"}) is None
+    assert stored_costs("a", {**HASHES, "test/golden.c": "other"}) is None
+    assert stored_costs("b", HASHES) is None
+
+
+@pytest.mark.slow
+def test_other_packages_say_that_nothing_was_measured(tmp_path: Path) -> None:
+    robot = load_robot("rmin")
+    manifest = generate_package(robot, tmp_path / "p", name="other")
+    assert manifest.costs is None
+    assert "has not been measured" in (tmp_path / "p/README.md").read_text()
+
+
+@pytest.mark.embedded
+@pytest.mark.parametrize("robot", COMMITTED)
+def test_costs_are_those_measured_again(
+    package: Callable[[str], Generated], robot: str, tmp_path: Path
+) -> None:
+    tool("qemu-system-arm")
+    tool("arm-none-eabi-gcc")
+    generated = package(robot)
+    stated = generated.manifest.costs
+    assert stated is not None, AGAIN
+    if stated.compiler != compiler_version():
+        missing(f"{stated.compiler}, not {compiler_version()}, or {AGAIN}")
+    assert measure(generated, tmp_path) == stated, AGAIN
+
+
+def test_stack_is_that_of_the_deepest_call(tmp_path: Path) -> None:
+    node = 'node: {{ title: "{0}" label: "{0}\\n{0}.c:1:1\\n{1} bytes (static)" }}\n'
+    edge = 'edge: {{ sourcename: "{}" targetname: "{}" label: "x" }}\n'
+    nodes = [node.format(*pair) for pair in (("a", 8), ("b", 16), ("c", 100), ("d", 4))]
+    edges = [edge.format(*pair) for pair in (("a", "b"), ("b", "c"), ("a", "d"), ("d", "sinf"))]
+    (tmp_path / "x.ci").write_text("".join(nodes))
+    (tmp_path / "y.ci").write_text("".join(edges))
+    assert stacks_of(tmp_path) == {"a": 124, "b": 116, "c": 100, "d": 4}
+    (tmp_path / "z.ci").write_text(edge.format("c", "a"))
+    with pytest.raises(AssertionError, match="calls itself"):
+        stacks_of(tmp_path)

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Instructions, code and stack of a package's functions on a Cortex-M."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from compiled_packages import Generated, run
+from cross_compiled import BOARD, CORES, GCC, OPTIMISE, build, compile_one, link, run_image
+
+from softimpact.codegen.costs import Costs, FunctionCost, Instructions, SharedCost, sources_digest
+
+NODE = re.compile(r'node: \{ title: "([^"]+)" label: "[^"]*\\n(\d+) bytes \((.*?)\)')
+EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
+
+
+@dataclass(frozen=True)
+class Call:
+    """A call of a function on its golden inputs.
+
+    Attributes:
+        function: its name.
+        text: the call in C, of an input ``in`` and, for impacts, of a ``region``.
+        inputs: name of the array that ``in`` points into.
+        region: type of the region; None where there is none.
+    """
+
+    function: str
+    text: str
+    inputs: str
+    region: str | None = None
+
+    @property
+    def defines(self) -> list[str]:
+        """What ``count.c`` needs to know."""
+        defines = [f"-DCALL={self.text}", f"-DINPUTS={self.inputs}"]
+        if self.region:
+            prefix = self.region.removesuffix("_region")
+            defines += [f"-DREGION={self.region}", f"-DBODY_REGION={prefix}_body_region"]
+        return defines
+
+
+def calls(package: Generated) -> list[Call]:
+    """Return a call of each function of a package; safe speeds are asked for regions' limits."""
+    name, n, found = package.manifest.name, package.robot.n, []
+    listed = {f.name for f in package.manifest.functions}
+    if f"{name}_configuration" in listed:
+        text = f"{name}_configuration(*in, NULL, ({name}_real[{n}]){{0}})"
+        found.append(Call(f"{name}_configuration", text, f"{name}_golden_motors"))
+    for function in package.functions:
+        full = f"{name}_{function.name}"
+        arguments = ["in->q"]
+        arguments += ["in->n"] if function.direction else []
+        arguments += [f"in->{scalar.name}" for scalar in function.scalars]
+        arguments += ["&in->p"] if function.parameters else []
+        if len(function.outputs) > 1:
+            arguments.append(f"&({full}_t){{0}}")
+        else:
+            shape = "".join(f"[{size}]" for size in function.outputs[0].shape)
+            zero = "{{0}}" if len(function.outputs[0].shape) == 2 else "{0}"
+            arguments.append(f"{'' if shape else '&'}({name}_real{shape}){zero}")
+        found.append(Call(full, f"{full}({', '.join(arguments)})", f"{name}_golden_inputs"))
+    if package.manifest.impact:
+        for short, number in (("peak_force", "in->speed"), ("safe_speed", "region.force_limit")):
+            full = f"{name}_{short}"
+            text = f"{full}(in->q, in->n, {number}, &region, &in->p, &({full}_t){{0}})"
+            found.append(Call(full, text, f"{name}_golden_impacts", f"{name}_region"))
+    return found
+
+
+def count(
+    package: Generated, core: str, objects: Sequence[Path], call: Call, out: Path
+) -> Instructions:
+    """Count the instructions of a call in a float build."""
+    counter = compile_one(package, core, "float", out, BOARD / "count.c", *call.defines)
+    said = run_image(link(core, [*objects, counter], out), core)
+    numbers = re.search(r"instructions: (\d+), at most (\d+)", said)
+    assert numbers, said
+    return Instructions(int(numbers[1]), int(numbers[2]))
+
+
+def measure(package: Generated, folder: Path) -> Costs:
+    """Return the costs of all functions of a package, using a folder for what is compiled."""
+    counts: dict[str, dict[str, Instructions]] = {}
+    for core in CORES:
+        (folder / core).mkdir()
+        objects = build(package, core, "float", folder / core)
+        counts[core] = {
+            call.function: count(package, core, objects, call, folder / core)
+            for call in calls(package)
+        }
+    sizes = sizes_of(objects)
+    stacks = stacks_of(folder / "m7")
+    own = {source.stem for source in package.folder.glob("src/*.c")}
+    functions = counts["m7"]
+    return Costs(
+        sources=sources_digest(package.manifest.files),
+        compiler=compiler_version(),
+        flags=" ".join(OPTIMISE),
+        functions=tuple(
+            FunctionCost(name, counts["m4"][name], functions[name], *sizes[name], stacks[name])
+            for name in functions
+        ),
+        shared=tuple(SharedCost(name, *sizes[name]) for name in sorted(own - functions.keys())),
+    )
+
+
+def compiler_version() -> str:
+    """Return the cross compiler's name and version."""
+    return run(GCC, "--version").splitlines()[0]
+
+
+def sizes_of(objects: Sequence[Path]) -> dict[str, tuple[int, int]]:
+    """Return the sizes of code and constants [bytes] of each object by its name."""
+    sizes = {}
+    for target in objects:
+        found = re.findall(r"^\.(text|rodata)\S* +(\d+)", run("arm-none-eabi-size", "-A", target),
+                           re.MULTILINE)  # fmt: skip
+        text, rodata = (sum(int(n) for kind, n in found if kind == k) for k in ("text", "rodata"))
+        sizes[target.stem] = (text, rodata)
+    return sizes
+
+
+def stacks_of(out: Path) -> dict[str, int]:
+    """Return the deepest stack [bytes] of each function compiled into a folder.
+
+    The C library's functions count as nothing.
+    """
+    frames: dict[str, int] = {}
+    called: dict[str, set[str]] = {}
+    for file in sorted(out.glob("*.ci")):
+        text = file.read_text()
+        for name, size, kind in NODE.findall(text):
+            assert kind == "static", (name, kind)  # no array whose length is not known
+            frames[name] = int(size)
+        for caller, callee in EDGE.findall(text):
+            assert callee != "__indirect_call", caller
+            called.setdefault(caller, set()).add(callee)
+    return {name: _deepest(name, frames, called, ()) for name in frames}
+
+
+def _deepest(
+    name: str, frames: Mapping[str, int], called: Mapping[str, set[str]], above: tuple[str, ...]
+) -> int:
+    assert name not in above, f"{name} calls itself"
+    below = [_deepest(callee, frames, called, (*above, name)) for callee in called.get(name, ())]
+    return frames.get(name, 0) + max(below, default=0)
