@@ -37,7 +37,7 @@ KINDS = {"double": (ctypes.c_double, np.float64), "float": (ctypes.c_float, np.f
 
 
 def candidate_poses(name: str, robot: Robot) -> dict[str, Sequence[float]]:
-    """Return the poses built into a robot's committed package: those of its study, if it has one."""
+    """Return the poses built into a committed package: those of the robot's study, if any."""
     study = next(STUDIES.glob(f"{name}_*.toml"), None)
     return pose_table(study, robot) if study else {}
 
