@@ -45,7 +45,10 @@ fuzz: $(VENV)/installed-test
 	FUZZ_EXECUTIONS=$(EXECUTIONS) $(BIN)/pytest -n 2 --slow tests/codegen/test_verification.py -k fuzzer $(PYTEST)
 
 generated: $(VENV)/installed
-	for robot in $(ROBOTS); do $(BIN)/softimpact generate $$robot --out generated/$$robot || exit 1; done
+	for robot in $(ROBOTS); do \
+		study=$$(ls robots/studies/$${robot}_*.toml 2>/dev/null); \
+		$(BIN)/softimpact generate $$robot --out generated/$$robot $${study:+--poses $$study} || exit 1; \
+	done
 
 clean:
 	rm -rf $(VENV) $(OTHERS) build dist results

@@ -75,15 +75,26 @@ class ImpactSource:
         """Prototype without the semicolon."""
         return self._declaration("safe_speed", "limit")
 
+    @property
+    def select_configuration(self) -> str:
+        """Prototype without the semicolon."""
+        real, joints = f"{self.chain.prefix}_real", self.chain.joints
+        table = [f"const {real} poses[][{joints}]", "int count", "const unsigned char *allowed"]
+        return self._prototype("select_configuration", "selection", table, "speed")
+
     def _declaration(self, function: str, number: str) -> str:
+        q = f"const {self.chain.prefix}_real q[{self.chain.joints}]"
+        return self._prototype(function, function, [q], number)
+
+    def _prototype(self, function: str, result: str, first: list[str], number: str) -> str:
         prefix = self.chain.prefix
         arguments = [
-            f"const {prefix}_real q[{self.chain.joints}]",
+            *first,
             f"const {prefix}_real n[3]",
             f"{prefix}_real {number}",
             f"const {prefix}_region *region",
             *([f"const {prefix}_params *p"] if self.chain.has_struct else []),
-            f"{prefix}_{function}_t *out",
+            f"{prefix}_{result}_t *out",
         ]
         return f"int {prefix}_{function}(\n    " + ",\n    ".join(arguments) + ")"
 

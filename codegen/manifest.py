@@ -87,6 +87,7 @@ class Manifest:
         frozen: parameters that are built in, and their numbers.
         floating: whether a function sets the base free.
         functions: all functions.
+        poses: names of the built-in candidates of ``select_configuration``, in their order.
         impact: of peak forces and safe speeds, None where the robot has none.
         costs: measured on a Cortex-M, None where they were not.
         files: SHA-256 of each file by path.
@@ -106,6 +107,7 @@ class Manifest:
     frozen: Mapping[str, tuple[float, ...]]
     floating: bool
     functions: tuple[FunctionRecord, ...]
+    poses: tuple[str, ...]
     impact: ImpactRecord | None
     costs: Costs | None
     files: Mapping[str, str]

@@ -24,6 +24,7 @@ from .functions import functions_of, symbols_of
 from .impact_source import impact_source, longest_chain
 from .inputs import parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
+from .poses import checked_poses
 from .render import MEASURED_SAMPLES, Package, render
 from .samples import Sample, draw_samples
 from .source import CSource
@@ -46,6 +47,7 @@ def generate_package(
     payload: Payload | None = None,
     freeze: Collection[str] = (),
     floating: bool = False,
+    poses: Mapping[str, Sequence[float]] | None = None,
 ) -> Manifest:
     """Write a C99 package that computes a robot's impact model.
 
@@ -67,6 +69,8 @@ def generate_package(
         freeze: names of parameters whose defaults are built in instead of read at run time, or
             ``{"all"}``.
         floating: adds the impact mitigation of the robot with its base set free.
+        poses: joint coordinates by name that ``select_configuration`` can choose from; default
+            none. They must lie within the joints' limits. Not for robots without impacts.
 
     Returns:
         What was generated, as in the package's ``manifest.json``.
@@ -89,6 +93,7 @@ def generate_package(
     _check(
         robot, real, gravity, {"chain_order": chain_order, "impact_order": impact_order}, floating
     )
+    checked = checked_poses(robot, poses or {})
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot, payload=payload is not None)
     defaults = defaults_of(robot, parameters, drives_, payload)
@@ -122,7 +127,10 @@ def generate_package(
         configuration=configuration,
         floating=floating,
         impact=impact_source(prefix, symbols, impact_order),
+        poses=checked,
     )
+    if package.poses and not package.impact:
+        raise InvalidValue("poses", f"robot '{robot.name}' has no impacts to choose them by")
     files = render(package)
     manifest = _manifest(package, {path: sha256(text) for path, text in files.items()})
     replace_package(folder, {**files, MANIFEST: manifest.to_json()})
@@ -193,6 +201,7 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         frozen={p.name: p.frozen for p in package.parameters if p.frozen is not None},
         floating=package.floating,
         functions=tuple(records),
+        poses=tuple(package.poses),
         impact=package.impact.record if package.impact else None,
         costs=stored_costs(package.prefix, hashes),
         files=hashes,

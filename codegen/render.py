@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import jinja2
@@ -27,6 +27,16 @@ from .samples import Sample
 from .source import CSource
 
 TEMPLATES = Path(__file__).parent / "templates"
+
+IMPACT_PARTS = (
+    "impact.h",
+    "impact_modes.c",
+    "impact.c",
+    "peak_force.c",
+    "safe_speed.c",
+    "select_configuration.c",
+)
+"""Sources of a package that has impacts."""
 
 MEASURED_SAMPLES = 16384
 """Inputs over which float errors are measured."""
@@ -51,6 +61,7 @@ class Package:
         configuration: where a closed chain's motors decide the rest; None if they do not.
         impact: peak forces and safe speeds; None where the robot has none.
         floating: whether a function sets the base free.
+        poses: built-in candidates for ``select_configuration``, by name.
     """
 
     prefix: str
@@ -67,6 +78,7 @@ class Package:
     configuration: ConfigurationSource | None = None
     impact: ImpactSource | None = None
     floating: bool = False
+    poses: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
     @property
     def elastic(self) -> bool:
@@ -147,7 +159,7 @@ def render(package: Package) -> dict[str, str]:
         "LICENSE": "LICENSE",
     }
     if package.impact:
-        for part in ("impact.h", "impact_modes.c", "impact.c", "peak_force.c", "safe_speed.c"):
+        for part in IMPACT_PARTS:
             files[f"src/{name}_{part}"] = part
     rendered = {
         path: environment.get_template(f"{template}.jinja").render(context)

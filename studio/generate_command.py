@@ -67,6 +67,13 @@ def generate(
             help="Parameters to build in instead, such as joint_stiffness,rotor_inertia, or all.",
         ),
     ] = None,
+    poses: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Build in the candidate poses of a study, or of a JSON file.",
+        ),
+    ] = None,
     json: o.Json = False,
 ) -> None:
     """Write a C99 package; the drives given are the defaults of its parameters."""
@@ -74,6 +81,7 @@ def generate(
     from softimpact.codegen.manifest import Real
 
     from .output import print_json
+    from .pose_table import pose_table
     from .situation import TypedDrives, drives_of, gravity_of, robot_to_tip, whole_robot
     from .values import one_of
 
@@ -91,6 +99,7 @@ def generate(
         floating=floating,
         payload=_payload(payload, payload_mass, payload_com),
         freeze=[] if freeze is None else [name.strip() for name in freeze.split(",")],
+        poses=pose_table(poses, robot) if poses else None,
     )
     if json:
         print_json({"out": out, **vars(manifest)})

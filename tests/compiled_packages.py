@@ -7,6 +7,7 @@ import ctypes
 import os
 import shutil
 import subprocess
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -19,8 +20,11 @@ from softimpact.codegen.functions import functions_of, symbols_of
 from softimpact.codegen.inputs import SCALARS, Parameter, freeze, parameters_of
 from softimpact.codegen.manifest import Manifest
 from softimpact.codegen.samples import Sample
+from softimpact.studio.pose_table import pose_table
 from softimpact.symbolic import Robot
 from softimpact.symbolic.rigid import Array
+
+STUDIES = Path(__file__).parents[1] / "robots/studies"
 
 WARNINGS = [
     *("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow"),
@@ -30,6 +34,12 @@ COMMITTED = sorted(path.name for path in (Path(__file__).parents[1] / "generated
 """Names of the built-in robots whose packages are in the repository."""
 
 KINDS = {"double": (ctypes.c_double, np.float64), "float": (ctypes.c_float, np.float32)}
+
+
+def candidate_poses(name: str, robot: Robot) -> dict[str, Sequence[float]]:
+    """Return the poses built into a committed package: those of the robot's study, if any."""
+    study = next(STUDIES.glob(f"{name}_*.toml"), None)
+    return pose_table(study, robot) if study else {}
 
 
 def tool(name: str) -> str:

@@ -18,7 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
-from compiled_packages import COMMITTED, Generated  # noqa: E402
+from compiled_packages import COMMITTED, Generated, candidate_poses  # noqa: E402
 from measured_costs import measure  # noqa: E402
 
 from softimpact.codegen import generate_package  # noqa: E402
@@ -67,7 +67,7 @@ def main() -> None:
 def measured(name: str, folder: Path) -> Costs:
     """Return the costs of a built-in robot's package."""
     robot = load_robot(name)
-    manifest = generate_package(robot, folder / name)
+    manifest = generate_package(robot, folder / name, poses=candidate_poses(name, robot))
     return measure(Generated(robot, manifest.tip, folder / name, manifest), folder)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import cache
 
 import pytest
-from compiled_packages import Generated
+from compiled_packages import Generated, candidate_poses
 from oracles import example_urdf
 
 from softimpact.codegen import generate_package
@@ -56,6 +56,8 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Generat
     def generated(name: str) -> Generated:
         robot, tip = load(name)
         folder = root / name
-        return Generated(robot, tip, folder, generate_package(robot, folder, tip=tip))
+        poses = candidate_poses(name, robot)
+        manifest = generate_package(robot, folder, tip=tip, poses=poses)
+        return Generated(robot, tip, folder, manifest)
 
     return generated

@@ -55,7 +55,7 @@ def test_costs_are_within_the_designs_limits(package: Callable[[str], Generated]
     assert 600 < found["reflected_mass"].m4.mean <= 1400  # not fewer than it has operations
     assert found["reduced_model"].m4.mean <= 2100
     assert found["peak_force"].m7.mean <= 25_000
-    assert found["safe_speed"].m7.mean <= 48_000  # 100 µs at 480 MHz, an instruction a cycle
+    assert found["safe_speed"].m7.most <= 48_000  # 100 µs at 480 MHz, an instruction a cycle
     assert max(function.stack for function in costs.functions) <= 2048
 
 

@@ -11,6 +11,8 @@ from command_line import refusal, run, run_json
 from softimpact.codegen import Payload, generate_package
 from softimpact.symbolic import drives, load_robot
 
+STUDY = Path(__file__).parents[2] / "robots/studies/panda_24_poses.toml"
+
 
 def contents(folder: Path) -> dict[str, str]:
     return {
@@ -52,6 +54,30 @@ def test_table_for_people_and_a_prefix(tmp_path: Path) -> None:
 )
 def test_bad_input(tmp_path: Path, options: list[str], reason: str) -> None:
     assert reason in refusal("generate", "rr", "--out", tmp_path / "c", *options)
+    assert not (tmp_path / "c").exists()
+
+
+def test_candidate_poses_come_from_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "poses.json"
+    path.write_text('{"low": [0.1, 0, 0.2, 0], "high": [1, 0, 1, 0]}')
+    result = run_json("generate", "rr", "--out", tmp_path / "c", "--poses", path)
+    assert result["poses"] == ["low", "high"]
+    assert "RR_CANDIDATES 2" in (tmp_path / "c/include/rr.h").read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "reason"),
+    [
+        ("poses.json", "[[0, 0, 0]]", "poses.pose 0: needs 4 finite numbers"),
+        ("poses.json", '{"low": "q"}', "must hold a list of lists of numbers"),
+        ("poses.json", "[[", "poses: cannot read "),
+        ("poses.toml", STUDY.read_text(), "is a study of 'panda'"),
+    ],
+)
+def test_bad_poses(tmp_path: Path, name: str, text: str, reason: str) -> None:
+    path = tmp_path / name
+    path.write_text(text)
+    assert reason in refusal("generate", "rr", "--out", tmp_path / "c", "--poses", path)
     assert not (tmp_path / "c").exists()
 
 
