@@ -69,15 +69,7 @@ def measure(folder: Path, others: Path, quick: bool) -> tuple[Table, str]:
     package = Generated(robot, manifest.tip, folder / "panda", manifest)
     rivals = {"CasADi": our_expressions(robot), **from_others(robot, others, folder)}
     program, compiler = build_host(folder, rivals)
-    done = subprocess.run(
-        [program], input=given(robot, order, quick), text=True, capture_output=True, check=False
-    )
-    if done.returncode:
-        sys.exit(f"the contenders disagree, or one failed:\n{done.stdout}{done.stderr}")
-    times: Table = {}
-    for line in done.stdout.splitlines():
-        quantity, name, _, nanoseconds = line.split()
-        times.setdefault(quantity, {})[name] = float(nanoseconds)
+    times = run_host(program, given(robot, order, quick))
     own = {f.name.removeprefix("panda_"): f.flops for f in manifest.functions}
     flops: Table = {
         quantity: {"ours": own[quantity], **{name: q.flops[quantity] for name, q in rivals.items()}}
@@ -86,6 +78,18 @@ def measure(folder: Path, others: Path, quick: bool) -> tuple[Table, str]:
     chosen = {name: rival for name, rival in rivals.items() if name in ON_MICROCONTROLLERS}
     found = {} if quick else counts(package, chosen, folder)
     return times, page(processor(), compiler, times, flops, found)
+
+
+def run_host(program: Path, given: str) -> Table:
+    """Return the times that the program measures once all values agree."""
+    done = subprocess.run([program], input=given, text=True, capture_output=True, check=False)
+    if done.returncode:
+        sys.exit(f"the contenders disagree, or one failed:\n{done.stdout}{done.stderr}")
+    times: Table = {}
+    for line in done.stdout.splitlines():
+        quantity, name, _, nanoseconds = line.split()
+        times.setdefault(quantity, {})[name] = float(nanoseconds)
+    return times
 
 
 def given(robot: Robot, order: int, quick: bool) -> str:
