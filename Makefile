@@ -8,7 +8,8 @@ BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 # switch on the long parts: make test PYTEST="--slow --embedded"
 PYTEST ?=
-ROBOTS := $(basename $(notdir $(wildcard robots/*.xml)))
+# robots whose packages are in the repository
+ROBOTS := $(notdir $(wildcard generated/*))
 # of make fuzz, a build: some 20 minutes for a robot with seven joints
 EXECUTIONS ?= 10000000
 
