@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+import random
+
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, Matrix, least_velocity
+from softimpact.symbolic import ImpactModel, Matrix, Robot, least_velocity
 from softimpact.symbolic.rigid import Array
 
+from .closed_samples import closed_configurations
+
 SEEN = 8
-"""Configurations at which the contact point's motions are looked at."""
+"""Configurations at which a robot's motions are looked at."""
 
 NOTHING = 1e-9
 """Share of the largest motion that counts as none."""
@@ -21,8 +25,7 @@ def directions_of_motion(model: ImpactModel) -> Array | None:
 
     None if there are none, or if they depend on the configuration without being all three.
     """
-    q = np.random.default_rng(2).uniform(-1, 1, (SEEN, model.robot.n))
-    columns = [motor_jacobian(model, x) for x in q]
+    columns = [motor_jacobian(model, q) for q in some_configurations(model.robot, seed=2)]
     rank = min(int(np.linalg.matrix_rank(J, 1e-6)) for J in columns)
     directions, sizes, _ = np.linalg.svd(np.hstack(columns))
     if rank == 0 or (rank < 3 and sizes[rank] > NOTHING * sizes[0]):
@@ -30,9 +33,16 @@ def directions_of_motion(model: ImpactModel) -> Array | None:
     return _along_axes(directions[:, :rank] @ directions[:, :rank].T)
 
 
+def some_configurations(robot: Robot, seed: int) -> list[Array]:
+    """Return ``SEEN`` configurations at which to look at a robot; its loops are closed there."""
+    if robot.loops:
+        return closed_configurations(robot, random.Random(seed), SEEN)
+    return list(np.random.default_rng(seed).uniform(-1, 1, (SEEN, robot.n)))
+
+
 def motor_jacobian(model: ImpactModel, q: Array) -> Array:
-    """Return J with the columns of passive joints set to zero, 3×n."""
-    return np.asarray(np.array(model.jacobian(ca.DM(q))) * np.array(model.robot.actuated, float))
+    """Return J over the independent joints, with zero for those without a motor."""
+    return np.asarray(np.array(model.jacobian(ca.DM(q))) * np.array(model.actuated, dtype=float))
 
 
 def _along_axes(projector: Array) -> Array:
@@ -48,13 +58,15 @@ def _along_axes(projector: Array) -> Array:
 def approach_rates(model: ImpactModel, q: Matrix, n: Matrix, directions: Array) -> Matrix:
     """Return the link velocities of least norm that move the contact point by 1 m/s along n.
 
+    Of a closed chain they are the velocities of the independent joints.
+
     Args:
         model: whose motors move.
         q: link angles, SX.
         n: unit vector among ``directions``, SX.
         directions: from ``directions_of_motion``.
     """
-    motors = ca.sparsify(ca.DM(np.diag(np.array(model.robot.actuated, dtype=float))))
+    motors = ca.sparsify(ca.DM(np.diag(np.array(model.actuated, dtype=float))))
     basis = ca.sparsify(ca.DM(directions))
     J = ca.mtimes([basis, model.jacobian(q), motors])
     return least_velocity(J, ca.mtimes(basis, n))

@@ -27,7 +27,7 @@ def impact_chain_of(s: Symbols, order: int) -> CFunction | None:
     chain = s.model.chain(s.q, s.n, order, reorthogonalise="once")
     mass: Matrix = ca.vertcat(*chain.mass)
     rates = approach_rates(s.model, s.q, s.n, directions)
-    motors = chain.displacement[list(range(s.robot.n)), :]
+    motors = chain.displacement[: rates.numel(), :]
     velocity = ca.mtimes(motors.T, rates)
     outputs = (
         Output("mass", mass, "kg", "the contact force acts on the first"),
@@ -50,7 +50,7 @@ def linear_model_of(s: Symbols) -> CFunction | None:
         return None
     linear = s.model.linear(s.q, s.n)
     rates = approach_rates(s.model, s.q, s.n, directions)
-    velocity = ca.vertcat(rates, ca.SX(s.model.size - s.robot.n, 1))
+    velocity = ca.vertcat(rates, ca.SX(s.model.size - rates.numel(), 1))
     outputs = (
         Output("M0", ca.densify(linear.mass.matrix), "kg m^2", ""),
         Output("K0", ca.densify(linear.stiffness), "N m/rad", ""),

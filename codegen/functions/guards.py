@@ -9,7 +9,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix, Robot, loop_gaps
 from softimpact.symbolic.rigid import Array
 
-from ..approach import share_outside
+from ..approach import share_outside, some_configurations
 from ..description import Guard
 
 IMMOVABLE = 1e3
@@ -58,6 +58,6 @@ def arriving(
 
 
 def _too_fast(model: ImpactModel) -> float:
-    q = np.random.default_rng(3).uniform(-1, 1, (8, model.robot.n))
-    arm = max(float(abs(np.array(model.jacobian(ca.DM(x)))).max()) for x in q)
+    seen = some_configurations(model.robot, seed=3)
+    arm = max(float(abs(np.array(model.jacobian(ca.DM(q)))).max()) for q in seen)
     return float(f"{(FASTEST / arm) ** 2:.2g}")
