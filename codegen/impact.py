@@ -39,6 +39,9 @@ STANDS = 3e-5
 STEPS = 1024
 """Most nodes of an impact."""
 
+REFERENCE_STEPS = 2**20
+"""The same with finer steps, so many that references end where C does not."""
+
 NEWTON, CLOSE = 32, 3e-3
 """Most iterations for a force, and the relative change after which the next would be nothing."""
 
@@ -123,8 +126,9 @@ def peak_force(modes: Modes, speed: float, body: Body, finer: float = 1.0) -> Pe
     """
     run = _Run(modes, speed, body, finer)
     run.first_node()
+    most = STEPS if finer == 1 else REFERENCE_STEPS
     for level in range(LEVELS + 1):
-        nodes = {0: FIRST_NODES, LEVELS: int(STEPS * finer)}.get(level, NODES)
+        nodes = {0: FIRST_NODES, LEVELS: most}.get(level, NODES)
         for left in reversed(range(nodes)):
             if not run.node(doubles=level < LEVELS and left == 0):
                 return Peak(float(run.best) * speed, run.nodes)

@@ -19,7 +19,7 @@ from softimpact.symbolic.rigid import Array
 from .accuracy import is_regular, rounded_unit, rounded_up
 from .description import CFunction
 from .evaluate import evaluate_rounded
-from .functions import CHAIN_ENDS
+from .functions import CHAIN_ENDS, Symbols, coordinates_of
 from .impact import Body, Modes, modes_of_chain, peak_force
 from .inputs import Parameter
 from .samples import Sample, as_columns, draw_samples
@@ -44,6 +44,10 @@ USUAL = 0.95
 
 LEAST = 1e-5
 """Least error stated."""
+
+UNFELT = 1e-12
+"""Share of the mobility and of the velocity below which references leave a mode out: it would only
+shorten their steps."""
 
 
 @dataclass(frozen=True)
@@ -102,10 +106,16 @@ def _released(sample: Sample, parameters: Sequence[Parameter]) -> Sample:
     return replace(sample, parameters=values)
 
 
-def is_held(impact: Impact, parameters: Sequence[Parameter]) -> bool:
+def is_held(impact: Impact, symbols: Symbols) -> bool:
     """Whether a controller holds a motor; a chain then keeps its spring to ground."""
-    pairs = zip(parameters, impact.sample.parameters, strict=True)
-    return any(p.name == GAIN and max(v) > 0 for p, v in pairs)
+    pairs = zip(symbols.parameters, impact.sample.parameters, strict=True)
+    (gains,) = [values for p, values in pairs if p.name == GAIN]
+    return holds_a_motor(symbols.robot, gains)
+
+
+def holds_a_motor(robot: Robot, gains: Sequence[float]) -> bool:
+    """Whether gains of a controller, one a joint, hold a joint that has a motor."""
+    return any(a and gain > 0 for a, gain in zip(robot.actuated, gains, strict=True))
 
 
 def regular_impacts(function: CFunction, impacts: Sequence[Impact]) -> list[Impact]:
@@ -115,7 +125,7 @@ def regular_impacts(function: CFunction, impacts: Sequence[Impact]) -> list[Impa
 
 
 def linear_forces(linear: CFunction, impacts: Sequence[Impact]) -> Array:
-    """Return the peak forces [N] of the whole linear robot, with fine steps."""
+    """Return the peak forces [N] of the whole linear robot, with fine steps; NaN if endless."""
     M0, K0, J_c, velocity = _values(linear, impacts, np.float64)
     size = len(J_c)
     forces = []
@@ -125,28 +135,36 @@ def linear_forces(linear: CFunction, impacts: Sequence[Impact]) -> Array:
         squared, shapes = np.linalg.eigh(np.linalg.solve(root, half.T))
         at_contact = shapes.T @ np.linalg.solve(root, J_c[:, k])
         rates = shapes.T @ (root.T @ velocity[:, k])
-        modes = Modes(squared, at_contact**2, at_contact * rates)
+        modes = _felt(Modes(squared, at_contact**2, at_contact * rates))
         forces.append(peak_force(modes, impact.speed, impact.body, FINER).force)
     return np.array(forces)
 
 
+def _felt(modes: Modes) -> Modes:
+    weight, velocity = modes.weight, modes.velocity
+    felt = (weight > UNFELT * weight.sum()) | (abs(velocity) > UNFELT)
+    return Modes(modes.squared_frequency[felt], weight[felt], velocity[felt])
+
+
 def chain_forces(
     chain: CFunction,
-    parameters: Sequence[Parameter],
+    symbols: Symbols,
     impacts: Sequence[Impact],
     order: int,
     kind: type[np.floating[Any]] = np.float64,
     finer: float = 1.0,
 ) -> Array:
-    """Return the peak forces [N] of the first ``order`` masses of a chain, as C computes them."""
+    """Return the peak forces [N] of the first ``order`` masses of a chain, as C computes them.
+
+    NaN where an impact does not end within the steps.
+    """
     mass, stiffness, velocity = _values(chain, impacts, kind)
-    elastic = any(p.name == "joint_stiffness" for p in parameters)
-    coordinates = chain.symbols[0].numel() * (2 if elastic else 1)
+    coordinates = coordinates_of(symbols.robot)
     forces = []
     for k, impact in enumerate(impacts):
         m, springs, v = mass[:order, k], stiffness[:order, k].copy(), velocity[:order, k]
         length = chain_length(m, springs)
-        if length == order < coordinates and not is_held(impact, parameters):
+        if length == order < coordinates and not is_held(impact, symbols):
             springs[-1] = 0
         modes = modes_of_chain(m[:length], springs[:length], v[:length])
         forces.append(peak_force(modes, impact.speed, impact.body, finer).force)

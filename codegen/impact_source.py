@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from softimpact.symbolic import Robot
+from softimpact.symbolic.rigid import Array
 
 from . import impact
 from .accuracy import rounded_up
@@ -21,6 +23,7 @@ from .impact_error import (
     chain_forces,
     draw_impacts,
     errors_of_order,
+    holds_a_motor,
     linear_forces,
     regular_impacts,
 )
@@ -36,6 +39,9 @@ GOOD_ENOUGH = 0.01
 GOLDEN_IMPACTS = 12
 """Impacts in a package's own test."""
 
+FEWEST = CASES // 4
+"""Impacts without which there is too little to state an error of."""
+
 ACCURACY = 1e-3
 """Least bound stated of the integration's error."""
 
@@ -45,11 +51,13 @@ class ImpactSource:
     """What the templates need for ``peak_force`` and ``safe_speed``.
 
     Attributes:
+        robot: the rigid robot.
         chain: the internal function they start from.
         record: their accuracy.
         golden: impacts and the right peak forces [N].
     """
 
+    robot: Robot
     chain: CSource
     record: ImpactRecord
     golden: tuple[tuple[Impact, float], ...]
@@ -63,7 +71,12 @@ class ImpactSource:
     def held(self) -> bool | None:
         """Whether a controller holds a motor; None if the parameters at run time tell."""
         (gains,) = [p.frozen for p in self.chain.parameters if p.name == GAIN]
-        return None if gains is None else any(gain > 0 for gain in gains)
+        return None if gains is None else holds_a_motor(self.robot, gains)
+
+    @property
+    def motors(self) -> list[int]:
+        """Indices of the joints that a controller can hold."""
+        return [i for i, actuated in enumerate(self.robot.actuated) if actuated]
 
     @property
     def peak_force(self) -> str:
@@ -105,7 +118,10 @@ def longest_chain(robot: Robot) -> int:
 
 
 def impact_source(prefix: str, symbols: Symbols, order: int | None) -> ImpactSource | None:
-    """Return the impacts of a robot; None where there are none.
+    """Return the impacts of a robot.
+
+    None where there are none: if the contact point's directions of motion depend on the
+    configuration, or if it arrives at too few random impacts that end within the steps.
 
     Args:
         prefix: of the C names.
@@ -113,46 +129,60 @@ def impact_source(prefix: str, symbols: Symbols, order: int | None) -> ImpactSou
         order: masses of the chain; None takes the fewest that are good enough.
     """
     robot, parameters = symbols.robot, symbols.parameters
-    if robot.loops:
-        return None
-    linear = linear_model_of(symbols)
-    longest = impact_chain_of(symbols, longest_chain(robot))
-    directions = directions_of_motion(symbols.model)
-    if linear is None or longest is None or directions is None:
+    linear, directions = linear_model_of(symbols), directions_of_motion(symbols.model)
+    if linear is None or directions is None:
         return None
     drawn = draw_impacts(robot, parameters, directions, CASES, seed=3)
     impacts = regular_impacts(linear, drawn)
+    if len(impacts) < FEWEST:
+        return None
     right = linear_forces(linear, impacts)
-    for masses in [order] if order else range(1, longest_chain(robot) + 1):
-        forces = chain_forces(longest, parameters, impacts, masses)
-        errors = errors_of_order(forces / right - 1)
-        if errors[1] <= GOOD_ENOUGH:
-            break
+    masses = order or _fewest_masses(symbols, impacts, right)
     chain = impact_chain_of(symbols, masses)
     assert chain is not None
-    reference = chain_forces(chain, parameters, impacts, masses, finer=FINER)
-    narrow = chain_forces(chain, parameters, impacts, masses, np.float32)
+    forces = chain_forces(chain, symbols, impacts, masses)
+    narrow = chain_forces(chain, symbols, impacts, masses, np.float32)
+    reference = chain_forces(chain, symbols, impacts, masses, finer=FINER)
+    ended = np.isfinite([right, forces, narrow, reference]).all(axis=0)
+    if ended.sum() < FEWEST:
+        return None
+    errors = errors_of_order((forces / right - 1)[ended])
     record = ImpactRecord(
         order=masses,
         flops=chain.flops,
         chain_error_mean=errors[0],
         chain_error_usual=errors[1],
         chain_error_worst=errors[2],
-        double_error=max(ACCURACY, rounded_up(float(abs(forces / reference - 1).max()))),
-        float_error=max(ACCURACY, rounded_up(float(abs(narrow / reference - 1).max()))),
+        unresolved=float(f"{1 - ended.mean():.2g}"),
+        double_error=_integration_error((forces / reference - 1)[ended]),
+        float_error=_integration_error((narrow / reference - 1)[ended]),
         steps=impact.STEPS,
         trials=impact.TRIALS,
     )
+    golden = np.flatnonzero(ended)[:GOLDEN_IMPACTS]
     return ImpactSource(
+        robot=robot,
         chain=CSource(prefix, robot.n, parameters, chain, _no_record(chain.name)),
         record=record,
-        golden=tuple(
-            (case, float(f"{force:.6g}"))
-            for case, force in zip(
-                impacts[:GOLDEN_IMPACTS], reference[:GOLDEN_IMPACTS].tolist(), strict=True
-            )
-        ),
+        golden=tuple((impacts[k], float(f"{reference[k]:.6g}")) for k in golden),
     )
+
+
+def _fewest_masses(symbols: Symbols, impacts: Sequence[Impact], right: Array) -> int:
+    """Return the order of the shortest chain that is good enough, or of the longest."""
+    longest = longest_chain(symbols.robot)
+    chain = impact_chain_of(symbols, longest)
+    assert chain is not None
+    for masses in range(1, longest):
+        off = chain_forces(chain, symbols, impacts, masses) / right - 1
+        ended = off[np.isfinite(off)]
+        if ended.size >= FEWEST and errors_of_order(ended)[1] <= GOOD_ENOUGH:
+            return masses
+    return longest
+
+
+def _integration_error(off: Array) -> float:
+    return max(ACCURACY, rounded_up(float(abs(off).max())))
 
 
 def _no_record(name: str) -> FunctionRecord:

@@ -51,6 +51,7 @@ class ImpactRecord:
             random configurations, directions, parameters, body regions and speeds.
         chain_error_usual: the same, not exceeded by 95 of 100 impacts.
         chain_error_worst: largest found.
+        unresolved: share of those impacts that do not end within the steps; errors are the others'.
         double_error: what integration adds, in double.
         float_error: the same in float.
         steps: most steps of an impact.
@@ -62,6 +63,7 @@ class ImpactRecord:
     chain_error_mean: float
     chain_error_usual: float
     chain_error_worst: float
+    unresolved: float
     double_error: float
     float_error: float
     steps: int
