@@ -71,6 +71,41 @@ def region_type(real: str) -> type[ctypes.Structure]:
     return type("Region", (ctypes.Structure,), {"_fields_": [*fields, ("clamped", ctypes.c_int)]})
 
 
+def selection(real: str) -> ctypes.Structure:
+    """Return an empty result."""
+    kind = KINDS[real][0]
+    fields = [(name, ctypes.c_int) for name in ("best", "second", "usable")]
+    fields += [(name, kind) for name in ("force", "margin")]
+    return type("Selection", (ctypes.Structure,), {"_fields_": fields})()
+
+
+def choose(
+    compiled: Impacts,
+    poses: Array,
+    n: Array,
+    speed: float,
+    parameters: Array,
+    allowed: Array | None = None,
+) -> tuple[int, ctypes.Structure]:
+    """Return status and choice among poses that strike a held chest."""
+    real, kind = KINDS[compiled.real]
+    out = selection(compiled.real)
+    rows, along, p = (np.ascontiguousarray(x, kind) for x in (poses, n, parameters))
+    mask = None if allowed is None else allowed.astype(np.uint8)
+    entry = getattr(compiled.library, f"{compiled.package.manifest.name}_select_configuration")
+    status = entry(
+        ctypes.c_void_p(rows.ctypes.data),
+        len(rows),
+        None if mask is None else ctypes.c_void_p(mask.ctypes.data),
+        ctypes.c_void_p(along.ctypes.data),
+        real(speed),
+        ctypes.byref(compiled.region("chest", clamped=True)),
+        ctypes.c_void_p(p.ctypes.data),
+        ctypes.byref(out),
+    )
+    return status, out
+
+
 def record_of(package: Generated) -> ImpactRecord:
     """Return what a package states of its impacts."""
     assert package.manifest.impact

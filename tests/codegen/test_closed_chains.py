@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from compiled_impacts import Impacts, choose
 from compiled_packages import KINDS, Generated, Library
 from mechanisms import FIVE_BAR, SIX_BAR, SPATIAL, four_bar, robot_of
 
@@ -143,6 +144,31 @@ def test_open_loops_are_refused(package: Callable[[str], Generated]) -> None:
         status, outputs = library.call(function, ajar)
         assert status == LOOP_OPEN
         assert all(np.isnan(output).all() for output in outputs)
+
+
+@pytest.mark.parametrize("real", ["double", "float"])
+def test_impacts_need_closed_loops(package: Callable[[str], Generated], real: str) -> None:
+    rmin = package("rmin")
+    compiled = Impacts(rmin, real)
+    samples = draw_samples(rmin.robot, parameters_of(rmin.robot), 8, seed=9)
+    sample, body = replace(samples[0], n=(1.0, 0.0, 0.5)), compiled.region("chest", clamped=True)
+    ajar = replace(sample, q=(sample.q[0], sample.q[1] + 0.01, *sample.q[2:]))
+    for function, number in (("peak_force", 0.5), ("safe_speed", 100.0)):
+        assert compiled.call(function, sample, number, body)[0] == OK
+        status, out = compiled.call(function, ajar, number, body)
+        assert status == LOOP_OPEN
+        assert np.isnan(out).all()
+    n, parameters = np.array(sample.n), np.array(sample.parameters)
+    poses = np.array([s.q for s in samples])
+    forces = [
+        compiled.call("peak_force", replace(sample, q=tuple(q)), 0.5, body)[1][0] for q in poses
+    ]
+    status, choice = choose(compiled, poses, n, 0.5, parameters)
+    assert (status, choice.best, choice.usable) == (OK, int(np.argmin(forces)), len(poses))
+    assert choice.margin == pytest.approx(np.sort(forces)[1] - min(forces), abs=1e-3)
+    poses[3] = ajar.q
+    status, choice = choose(compiled, poses, n, 0.5, parameters)
+    assert (status, choice.usable) == (LOOP_OPEN, 0)
 
 
 @pytest.mark.parametrize("name", ["four_bar", "five_bar", "spatial", "rmin"])

@@ -28,14 +28,35 @@ from softimpact.codegen import impact
 from softimpact.codegen.impact_error import Impact, draw_impacts
 from softimpact.codegen.inputs import is_elastic, parameters_of
 from softimpact.codegen.samples import Sample
-from softimpact.simulate import Approach, simulate_impact
-from softimpact.symbolic import REGIONS, Contact, Drives, ImpactModel, body_region
+from softimpact.simulate import Approach, Fidelity, ImpactHistory, simulate_impact
+from softimpact.symbolic import (
+    REGIONS,
+    Contact,
+    Drives,
+    ImpactModel,
+    Robot,
+    body_region,
+    closed_chain,
+    closed_near,
+)
+from softimpact.symbolic.chain import ChainEnd
+from softimpact.symbolic.rigid import Array
 
-SPACE, PLANE = np.eye(3), np.eye(3)[:2]
+AXES = {"rr": [0, 1], "rmin": [0, 2]}
+"""Base axes along which a contact point moves that does not move along all."""
 
 
 def sundials(package: Generated, case: Impact, tolerance: float = 1e-9) -> tuple[float, float]:
     """Return the first contact's peak force of the same chain, and its time."""
+    order = record_of(package).order
+    found = simulated(package, case, "chain", order, tolerance)
+    return found.first_contact, found.time_of_first_contact_peak
+
+
+def simulated(
+    package: Generated, case: Impact, fidelity: Fidelity, order: int, tolerance: float
+) -> ImpactHistory:
+    """Simulate an impact of a package's robot."""
     robot, sample = package.robot, case.sample
     elastic = is_elastic(robot)
     springs = parameter(package, sample, "joint_stiffness") if elastic else np.zeros(robot.n)
@@ -46,22 +67,27 @@ def sundials(package: Generated, case: Impact, tolerance: float = 1e-9) -> tuple
         ca.DM(parameter(package, sample, "position_gain") * np.array(robot.actuated)),
     )
     model = ImpactModel(robot, package.tip, drives, package.manifest.gravity)
-    approach = Approach(np.array(sample.q), np.array(sample.n), case.speed)
-    contact, order = Contact(case.region, case.clamped), record_of(package).order
-    end = "grounded" if order == model.size else None
-    found = simulate_impact(
-        model, approach, contact, "chain", order=order, end=end, tolerance=tolerance
+    approach = Approach(closed(robot, np.array(sample.q)), np.array(sample.n), case.speed)
+    contact = Contact(case.region, case.clamped)
+    end: ChainEnd | None = "grounded" if order == model.size else None
+    return simulate_impact(
+        model, approach, contact, fidelity, order=order, end=end, tolerance=tolerance
     )
-    return found.first_contact, found.time_of_first_contact_peak
+
+
+def closed(robot: Robot, q: Array) -> Array:
+    """Close loops that a configuration's rounding to float left open by a micrometre."""
+    independent = q[list(closed_chain(robot).independent)]
+    return np.array(closed_near(robot, ca.DM(independent), ca.DM(q)), dtype=float).ravel()
 
 
 def impacts(package: Generated, count: int, seed: int) -> list[Impact]:
     """Return random impacts."""
-    directions = PLANE if package.manifest.name == "rr" else SPACE
+    directions = np.eye(3)[AXES.get(package.manifest.name, [0, 1, 2])]
     return draw_impacts(package.robot, parameters_of(package.robot), directions, count, seed)
 
 
-@pytest.mark.parametrize(("robot", "count"), [("panda", 90), ("rr", 40)])
+@pytest.mark.parametrize(("robot", "count"), [("panda", 90), ("rr", 40), ("rmin", 40)])
 def test_peak_force_and_safe_speed_agree_with_sundials(
     package: Callable[[str], Generated], robot: str, count: int
 ) -> None:
@@ -122,6 +148,22 @@ def test_force_at_the_safe_speed_is_just_below_the_limit(
     assert found > 50
 
 
+def test_chain_of_a_closed_chain_is_as_near_to_the_linear_robot_as_it_says(
+    package: Callable[[str], Generated],
+) -> None:
+    rmin = package("rmin")
+    compiled, record = Impacts(rmin, "double"), record_of(rmin)
+    off = []
+    for case in impacts(rmin, 40, seed=17):
+        status, (force, _) = compiled.peak_force(case)
+        assert status == OK, case
+        whole = simulated(rmin, case, "linearised", record.order, 1e-9)
+        off.append(abs(force / whole.first_contact - 1))
+    assert np.mean(off) < 2 * record.chain_error_mean + 1e-3
+    assert np.quantile(off, 0.9) < record.chain_error_usual + 1e-3
+    assert max(off) < record.chain_error_worst + 1e-3
+
+
 def test_force_grows_with_speed_between_a_linear_and_a_hertz_contact(
     package: Callable[[str], Generated],
 ) -> None:
@@ -149,11 +191,12 @@ def test_regions_are_those_of_the_model(package: Callable[[str], Generated]) -> 
         assert ours.hertz_stiffness == Contact(theirs).hertz_stiffness
 
 
+@pytest.mark.parametrize("robot", ["panda", "rmin"])
 @pytest.mark.parametrize("function", ["peak_force", "safe_speed"])
 def test_bad_impacts_return_a_status_and_write_nothing(
-    package: Callable[[str], Generated], function: str
+    package: Callable[[str], Generated], function: str, robot: str
 ) -> None:
-    generated = package("panda")
+    generated = package(robot)
     compiled = Impacts(generated, "double")
     case = impacts(generated, 1, seed=3)[0]
     good = compiled.region("head", clamped=False)
@@ -171,7 +214,7 @@ def test_bad_impacts_return_a_status_and_write_nothing(
         (case.sample, -1.0, good, OUT_OF_RANGE),
         (case.sample, nan, good, NOT_FINITE),
         (replace(case.sample, n=(0.0, 0.0, 0.0)), 1.0, good, ZERO_DIRECTION),
-        (replace(case.sample, q=(nan,) * 7), 1.0, good, NOT_FINITE),
+        (replace(case.sample, q=(nan,) * generated.robot.n), 1.0, good, NOT_FINITE),
         (case.sample, 1.0, region(stiffness=0), OUT_OF_RANGE),
         (case.sample, 1.0, region(damping=-1), OUT_OF_RANGE),
         (case.sample, 1.0, region(effective_mass=0), OUT_OF_RANGE),
@@ -187,12 +230,14 @@ def test_bad_impacts_return_a_status_and_write_nothing(
     assert compiled.call(function, case.sample, 0.5, undamped)[0] == OK
 
 
+@pytest.mark.parametrize("robot", ["rr", "rmin"])
 def test_impacts_out_of_the_plane_of_motion_are_singular(
-    package: Callable[[str], Generated],
+    package: Callable[[str], Generated], robot: str
 ) -> None:
-    compiled = Impacts(package("rr"), "double")
+    compiled = Impacts(package(robot), "double")
     case = impacts(compiled.package, 1, seed=3)[0]
-    tilted = replace(case, sample=replace(case.sample, n=(*case.sample.n[:2], 0.1)))
+    beside = np.where(np.isin(range(3), AXES[robot]), case.sample.n, 0.1)
+    tilted = replace(case, sample=replace(case.sample, n=tuple(beside.tolist())))
     assert compiled.peak_force(case)[0] == OK
     assert compiled.peak_force(tilted)[0] == SINGULAR
 

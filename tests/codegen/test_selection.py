@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from compiled_impacts import OK, SINGULAR, Impacts, record_of
+from compiled_impacts import OK, SINGULAR, Impacts, choose, record_of
 from compiled_packages import KINDS, Generated
 
 from softimpact.codegen import generate_package
@@ -20,41 +20,6 @@ from softimpact.symbolic import InvalidValue, load_robot
 from softimpact.symbolic.rigid import Array
 
 STUDY = Path(__file__).parents[2] / "robots/studies/panda_24_poses.toml"
-
-
-def selection(real: str) -> ctypes.Structure:
-    """Return an empty result."""
-    kind = KINDS[real][0]
-    fields = [(name, ctypes.c_int) for name in ("best", "second", "usable")]
-    fields += [(name, kind) for name in ("force", "margin")]
-    return type("Selection", (ctypes.Structure,), {"_fields_": fields})()
-
-
-def choose(
-    compiled: Impacts,
-    poses: Array,
-    n: Array,
-    speed: float,
-    parameters: Array,
-    allowed: Array | None = None,
-) -> tuple[int, ctypes.Structure]:
-    """Return status and choice among poses that strike a held chest."""
-    real, kind = KINDS[compiled.real]
-    out = selection(compiled.real)
-    rows, along, p = (np.ascontiguousarray(x, kind) for x in (poses, n, parameters))
-    mask = None if allowed is None else allowed.astype(np.uint8)
-    entry = getattr(compiled.library, f"{compiled.package.manifest.name}_select_configuration")
-    status = entry(
-        ctypes.c_void_p(rows.ctypes.data),
-        len(rows),
-        None if mask is None else ctypes.c_void_p(mask.ctypes.data),
-        ctypes.c_void_p(along.ctypes.data),
-        real(speed),
-        ctypes.byref(compiled.region("chest", clamped=True)),
-        ctypes.c_void_p(p.ctypes.data),
-        ctypes.byref(out),
-    )
-    return status, out
 
 
 def select(
