@@ -174,16 +174,22 @@ def test_header_serves_cplusplus(package: Callable[[str], Generated], tmp_path: 
     run(tmp_path / "main")
 
 
-def test_example_of_the_readme_runs(package: Callable[[str], Generated], tmp_path: Path) -> None:
-    generated = package("panda")
+@pytest.mark.parametrize("name", ["panda", "rr", "rmin"])
+def test_examples_of_the_readme_run(
+    package: Callable[[str], Generated], tmp_path: Path, name: str
+) -> None:
+    generated = package(name)
     readme = (generated.folder / "README.md").read_text()
-    source = tmp_path / "main.c"
-    source.write_text(readme.split("```c\n")[1].split("```")[0])
+    main, *impacts = (part.split("```")[0] for part in readme.split("```c\n")[1:])
+    assert len(impacts) == 2
+    source, end = tmp_path / "main.c", "    return 0;\n"
+    checked = [part + f"if (status != {name.upper()}_OK) return 2;\n" for part in impacts]
+    source.write_text(main.replace(end, "{\n" + "".join(checked) + "}\n" + end))
     files = [source, *generated.folder.glob("src/*.c")]
     include = f"-I{generated.folder / 'include'}"
     run(tool("gcc"), "-std=c99", "-Wall", "-Wextra", "-Werror", include, *files,
         "-o", tmp_path / "main", "-lm")  # fmt: skip
-    assert re.match(r"m_c = [\d.]+ kg, k_r = [\d.]+ N/m, m_a = [\d.]+ kg", run(tmp_path / "main"))
+    assert re.match(r"m_c = [\d.]+ kg, k_r = [\d.e+]+ N/m, m_a = [\d.]+ kg", run(tmp_path / "main"))
 
 
 def test_finite_math_is_refused(package: Callable[[str], Generated], tmp_path: Path) -> None:
