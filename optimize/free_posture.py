@@ -12,7 +12,7 @@ from softimpact.symbolic.rigid import Array
 from .front import WORTH
 from .levels import NO_BOUND
 from .searches import Searches
-from .solve import Outcome, Start, better, preference, solve
+from .solve import Mode, Outcome, Start, better, preference, solve
 from .stiffest import Stiffest
 from .sweep import Level, rescaled
 
@@ -32,7 +32,8 @@ def softest_design(searches: Searches, ends: dict[str, Stiffest]) -> Outcome:
     """
     level = Level(NO_BOUND, searches.problem.numbers(NO_BOUND))
     springs = searches.problem.bounds.springs_lower
-    tasks = [(0, Start(name, "free", ((end.q, springs),))) for name, end in ends.items()]
+    mode = searches.problem.freest
+    tasks = [(0, Start(name, mode, ((end.q, springs),))) for name, end in ends.items()]
     best: dict[int, Outcome] = {}
     _improve(searches, "least force", [level], tasks, best)
     return best[0]
@@ -50,13 +51,13 @@ def first_forces(
         soft: the design of least force.
     """
     name, end = accurate
-    limits = searches.problem.bounds
+    limits, mode = searches.problem.bounds, searches.problem.freest
     tasks: list[Task] = []
     for i, level in enumerate(levels):
         stiffer = rescaled(end.springs, end.deflection, level.bound, limits)
         softer = rescaled(soft.springs, levels[-1].bound, level.bound, limits)
-        tasks.append((i, Start(name, "free", ((end.q, stiffer),))))
-        tasks.append((i, Start(soft.name, "free", ((soft.q, softer),))))
+        tasks.append((i, Start(name, mode, ((end.q, stiffer),))))
+        tasks.append((i, Start(soft.name, mode, ((soft.q, softer),))))
     best: dict[int, Outcome] = {}
     _improve(searches, "levels", levels, tasks, best)
     return np.array([best[i].force if best[i].solved else np.nan for i in range(len(levels))])
@@ -81,7 +82,8 @@ def free_outcomes(
     """
     name, end = accurate
     best: dict[int, Outcome] = {}
-    first = [(0, Start(name, "free", ((end.q, end.springs),))), *_from_held(held)]
+    mode = searches.problem.freest
+    first = [(0, Start(name, mode, ((end.q, end.springs),))), *_from_held(held, mode)]
     changed = _improve(searches, "free posture", levels, first, best)
     for _ in levels:
         tasks = _from_neighbours(searches, levels, best, changed)
@@ -91,12 +93,12 @@ def free_outcomes(
     return [best.get(i) for i in range(len(levels))]
 
 
-def _from_held(held: Sequence[Sequence[Outcome | None]]) -> list[Task]:
+def _from_held(held: Sequence[Sequence[Outcome | None]], mode: Mode) -> list[Task]:
     tasks = []
     for i, column in enumerate(zip(*held, strict=True)):
         solved = sorted((o for o in column if o is not None and o.solved), key=preference)
         for outcome in solved[:FIRST]:
-            tasks.append((i, Start(outcome.name, "free", ((outcome.q, outcome.springs),))))
+            tasks.append((i, Start(outcome.name, mode, ((outcome.q, outcome.springs),))))
     return tasks
 
 
@@ -104,7 +106,7 @@ def _from_neighbours(
     searches: Searches, levels: Sequence[Level], best: dict[int, Outcome], changed: set[int]
 ) -> list[Task]:
     """Start each level from its neighbours that changed, as stiff as it needs."""
-    tasks = []
+    tasks, mode = [], searches.problem.freest
     for j in sorted(changed):
         if not best[j].solved:
             continue
@@ -112,7 +114,7 @@ def _from_neighbours(
             if 0 <= i < len(levels):
                 bounds = levels[j].bound, levels[i].bound
                 springs = rescaled(best[j].springs, *bounds, searches.problem.bounds)
-                tasks.append((i, Start(best[j].name, "free", ((best[j].q, springs),))))
+                tasks.append((i, Start(best[j].name, mode, ((best[j].q, springs),))))
     return tasks
 
 

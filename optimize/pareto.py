@@ -103,7 +103,7 @@ def pareto_fronts(
     """
     problem = prepare(study)
     ends = {pose.pose.name: stiffest(study, pose.q, "table") for pose in problem.poses}
-    accurate = _most_accurate(study, ends)
+    accurate = _most_accurate(problem, ends)
     with workers(max(len(ends), study.levels.points), executor) as pool:
         searches = Searches(problem, pool, on_progress or (lambda *_: None))
         soft = softest_design(searches, ends)
@@ -115,9 +115,9 @@ def pareto_fronts(
     return _fronts(problem, [level.bound for level in levels], held, free)
 
 
-def _most_accurate(study: Study, ends: dict[str, Stiffest]) -> tuple[str, Stiffest]:
+def _most_accurate(problem: Problem, ends: dict[str, Stiffest]) -> tuple[str, Stiffest]:
     """Return the most accurate design of all, with the name of the pose that led to it."""
-    found = {name: stiffest(study, end.q, "free") for name, end in ends.items()}
+    found = {name: stiffest(problem.study, end.q, problem.freest) for name, end in ends.items()}
     return min(found.items(), key=lambda item: item[1].deflection)
 
 

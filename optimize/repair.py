@@ -16,6 +16,12 @@ from .nlp import deflections, tip_pose_error
 from .solve import quiet
 from .study import Study
 
+HELD = 1e-9
+"""Pose error [m, rad] up to which a posture holds the tip as it is."""
+
+POSE = 6
+"""Equations that a pose of the tip stands for; an arm of fewer joints has no posture to choose."""
+
 
 def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) -> Array | None:
     """Return the posture nearest to q that holds the tip at a pose; None if none was found.
@@ -26,12 +32,24 @@ def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) ->
         position: of the tip, length 3 [m].
         rotation: of the tip, 3×3.
     """
+    pose = np.concatenate([position, rotation.ravel(order="F")])
+    if abs(np.array(_pose_error(study.model)(q, pose))).max() < HELD:
+        return q
+    if study.robot.n < POSE:  # Ipopt refuses what has more equations than unknowns
+        return None
     solver = _posture_solver(study.model)
     lower, upper = study.robot.limits
-    pose = np.concatenate([position, rotation.ravel(order="F")])
     p = np.concatenate([q, pose])
     found = solver(x0=q, p=p, lbx=lower, ubx=upper, lbg=0, ubg=0)
     return np.array(found["x"]).ravel() if solver.stats()["success"] else None
+
+
+@lru_cache(maxsize=8)
+def _pose_error(model: ImpactModel) -> ca.Function:
+    q = ca.SX.sym("q", model.robot.n)
+    position, rotation = ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)
+    error = tip_pose_error(model, q, position, rotation)
+    return ca.Function("error", [q, ca.vertcat(position, ca.vec(rotation))], [error])
 
 
 @lru_cache(maxsize=8)

@@ -171,18 +171,30 @@ def _robot(section: RobotSection, source: Path) -> Robot:
         if chain.n == 0:
             raise InvalidValue("tip", f"frame '{tip}' is fixed to the base; name one that moves")
     with _naming(source, "robot", "model"):
+        _require_open(chain)
         for joint in chain.joints:
             _require_drive(joint)
     return chain
 
 
-def _require_drive(joint: Joint) -> None:
-    if not joint.actuated or joint.stiffness:
+def _require_open(chain: Robot) -> None:
+    if chain.loops:
+        names = ", ".join(f"'{loop.name}'" for loop in chain.loops)
         raise InvalidValue(
-            "model",
-            f"joint '{joint.name}' has no motor or a spring of its own; a study gives every joint "
-            "a motor and a spring",
+            "model", f"'{chain.name}' has a loop ({names}); a study needs an open chain to the tip"
         )
+
+
+def _require_drive(joint: Joint) -> None:
+    """A study puts a spring between each joint's motor and its link; the file must not."""
+    if joint.actuated and not joint.stiffness:
+        return
+    fault = "has a spring of its own" if joint.stiffness else "has no motor"
+    raise InvalidValue(
+        "model",
+        f"joint '{joint.name}' {fault}; give the rigid arm, in which every joint has a motor: the "
+        "study adds a spring to each",
+    )
 
 
 def _model(robot: Robot, section: RobotSection, nominal: Array) -> ImpactModel:

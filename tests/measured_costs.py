@@ -26,17 +26,19 @@ class Call:
         text: the call in C, of an input ``in`` and, for impacts, of a ``region``.
         inputs: name of the array that ``in`` points into.
         region: type of the region; None where there is none.
+        rounds: how often each input is repeated.
     """
 
     function: str
     text: str
     inputs: str
     region: str | None = None
+    rounds: int = 200
 
     @property
     def defines(self) -> list[str]:
         """What ``count.c`` needs to know."""
-        defines = [f"-DCALL={self.text}", f"-DINPUTS={self.inputs}"]
+        defines = [f"-DCALL={self.text}", f"-DINPUTS={self.inputs}", f"-DROUNDS={self.rounds}u"]
         if self.region:
             prefix = self.region.removesuffix("_region")
             defines += [f"-DREGION={self.region}", f"-DBODY_REGION={prefix}_body_region"]
@@ -68,6 +70,11 @@ def calls(package: Generated) -> list[Call]:
             full = f"{name}_{short}"
             text = f"{full}(in->q, in->n, {number}, &region, &in->p, &({full}_t){{0}})"
             found.append(Call(full, text, f"{name}_golden_impacts", f"{name}_region"))
+    if package.manifest.poses:
+        full = f"{name}_select_configuration"
+        table = f"{name}_candidates, {name.upper()}_CANDIDATES, NULL"
+        text = f"{full}({table}, in->n, in->speed, &region, &in->p, &({name}_selection_t){{0}})"
+        found.append(Call(full, text, f"{name}_golden_impacts", f"{name}_region", rounds=4))
     return found
 
 

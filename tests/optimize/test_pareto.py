@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studies import PANDA_24, InProcess, study_of
+from studies import PANDA_24, InProcess, study_of, written
 
 from softimpact.optimize import (
     Front,
@@ -156,7 +156,7 @@ def small(folder: Path, region: str, free: tuple[int, ...], poses: tuple[str, ..
 def tried(study: Study, result: Pareto, postures: list[Array], springs: Array) -> Any:
     """Deflection and force of every posture with every stiffness."""
     timing = result.timing
-    nlp = build_nlp(study.model, 3, timing.nodes, timing.substeps)
+    nlp = build_nlp(study.model, len(study.forces), timing.nodes, timing.substeps)
     for q in postures:
         for k in springs:
             yield largest_deflection(study, q, k), peak_force(study, nlp, timing, q, k)
@@ -258,6 +258,40 @@ def test_one_design_is_a_front_of_one_point(tmp_path: Path) -> None:
     result = pareto_fronts(study, InProcess())
     assert len(result.task.points) == 1
     assert result.task.points[0].force == pytest.approx(result.reference.force, rel=1e-6)
+
+
+TWO_JOINTS = """
+<mujoco><compiler angle="radian"/><worldbody><body name="upper">
+<joint name="shoulder" axis="0 0 1" armature="0.3"/>
+<inertial pos="0.2 0 0" mass="3" diaginertia="0.05 0.05 0.05"/>
+<body name="lower" pos="0.4 0 0"><joint name="elbow" axis="0 0 1" armature="0.2"/>
+<inertial pos="0.15 0 0" mass="2" diaginertia="0.03 0.03 0.03"/>
+<site name="tip" pos="0.3 0 0"/></body></body></worldbody>
+<actuator><motor joint="shoulder"/><motor joint="elbow"/></actuator></mujoco>
+"""
+
+
+def test_an_arm_without_a_choice_of_posture(tmp_path: Path) -> None:
+    """Two joints cannot hold a pose in two ways: the free front is that of the posture held."""
+    (tmp_path / "two.xml").write_text(TWO_JOINTS)
+    content: dict[str, Any] = {
+        "robot": {"model": "two.xml", "tip": "tip"},
+        "impact": {"region": "chest", "direction": [1.0, 0.0, 0.0], "speed": 0.5},
+        "stiffness": {"lower": 500.0, "upper": 5e4, "nominal": 1e4},
+        "accuracy": {"forces": [[30.0, 0.0, 0.0], [0.0, 30.0, 0.0]], "max_deflection": 5e-3},
+        "pareto": {"points": 4},
+        "task": {"pose_of": "bent"},
+        "poses": [{"name": "bent", "q": [0.5, 1.2]}],
+    }
+    study = load_study(written(tmp_path, content))
+    result = pareto_fronts(study, InProcess())
+    assert len(result.free.points) >= 4
+    for a, b in zip(result.free.points, result.task.points, strict=True):
+        assert a.force == pytest.approx(b.force, rel=WORTH)
+    axis = np.geomspace(500.0, 5e4, 25)
+    springs = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+    grid = tried(study, result, [study.task_pose.q], springs)
+    assert_no_better(result, result.free, grid)
 
 
 def test_nothing_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -123,6 +123,19 @@ def test_bad_study(study: Path, old: str, new: str, reason: str) -> None:
     assert reason in refusal("select", study)
 
 
+@pytest.mark.parametrize(
+    ("robot", "reason"),
+    [
+        ("rmin", "has a loop ('end_point'); a study needs an open chain"),
+        ("rr", "joint 'q2' has a spring of its own; give the rigid arm"),
+    ],
+)
+def test_robots_that_a_study_cannot_hold(study: Path, robot: str, reason: str) -> None:
+    text = SMALL.replace('model = "panda"', f'model = "{robot}"')
+    study.write_text(text.replace('rotor_inertia = "menagerie_fr3"\n', ""))
+    assert reason in refusal("select", study)
+
+
 def test_bad_options(tmp_path: Path, study: Path) -> None:
     assert "no such study file" in refusal("select", tmp_path / "none.toml")
     assert "unknown criterion 'luck'; known: peak_force" in refusal("select", study, "--by", "luck")

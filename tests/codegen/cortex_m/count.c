@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Counts the instructions of one call of CALL, on average over the golden inputs and at most: with
  * "-icount shift=0" QEMU's 25 MHz SysTick advances once in 40 instructions. CALL names an input
- * `in` of INPUTS and, for impacts, the body region `region` that goes with it. */
+ * `in` of INPUTS, each of which is repeated ROUNDS times, and, for impacts, the body region `region`
+ * that goes with it. */
 #include <stdint.h>
 #include <stdio.h>
 
@@ -12,7 +13,6 @@
 #define CURRENT (*(volatile uint32_t *)0xE000E018u)
 #define WRAPPED (1u << 16)
 #define PER_TICK 40u
-#define ROUNDS 200u
 #define CASES (sizeof(INPUTS)/sizeof(INPUTS[0]))
 
 typedef __typeof__(INPUTS[0]) input_type;
