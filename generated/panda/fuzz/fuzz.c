@@ -17,6 +17,9 @@ typedef struct {
     panda_real q[7];
     panda_real n[3];
     panda_params p;
+    panda_real speed;
+    panda_real restitution;
+    panda_real other_mobility;
     panda_real region[4];
     panda_real number;
 } inputs;
@@ -131,6 +134,42 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         const int status = panda_absorption_extremes(in.q, &in.p, &out);
         check(status, &out, sizeof out);
     }
+    {
+        panda_manipulability_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_manipulability(in.q, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        panda_real omega_f;
+        memset(&omega_f, 0xA5, sizeof omega_f);
+        const int status = panda_force_measure(in.q, &omega_f);
+        check(status, &omega_f, sizeof omega_f);
+    }
+    {
+        panda_impact_measure_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_impact_measure(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        panda_rotor_influence_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_rotor_influence(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        panda_real giaf[7];
+        memset(&giaf, 0xA5, sizeof giaf);
+        const int status = panda_single_joint_giaf(in.q, &in.p, giaf);
+        check(status, &giaf, sizeof giaf);
+    }
+    {
+        panda_joint_impulse_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
     panda_region region;
     if (panda_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != PANDA_OK) {
         return 0;
@@ -150,6 +189,21 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         panda_safe_speed_t out;
         memset(&out, 0xA5, sizeof out);
         check(panda_safe_speed(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    {
+        panda_real poses[2][7];
+        panda_selection_t out;
+        for (int i = 0; i < 7; ++i) {
+            poses[0][i] = in.q[i];
+            poses[1][i] = -in.q[i];
+        }
+        memset(&out, 0xA5, sizeof out);
+        const int status = panda_select_configuration((const panda_real (*)[7])poses, 2, NULL, in.n, in.number, &region, &in.p, &out);
+        check(status, &out.force, sizeof out.force);
+        check(status, &out.margin, sizeof out.margin);
+        if (status == PANDA_OK && !(out.best >= 0 && out.best < 2 && out.usable > 0 && out.margin >= 0)) {
+            abort();
+        }
     }
     return 0;
 }

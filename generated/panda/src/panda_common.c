@@ -14,7 +14,7 @@ const char *panda_status_text(int status)
     case PANDA_ZERO_DIRECTION:
         return "the direction is zero";
     case PANDA_OUT_OF_RANGE:
-        return "a parameter is out of range";
+        return "an input is out of range";
     case PANDA_SINGULAR:
         return "the configuration is singular";
     case PANDA_LOOP_OPEN:
@@ -66,7 +66,8 @@ void panda_sine_cosine(float x, float *s, float *c)
         *c = cosf(x);
         return;
     }
-    const int nearest = (int)(x*0.636619772f + (x < 0.0f ? -0.5f : 0.5f));
+    const float quarters = x*0.636619772f + (x < 0.0f ? -0.5f : 0.5f);
+    const int nearest = (int)quarters;
     const unsigned int quarter = (unsigned int)nearest;
     const float k = (float)nearest;
     const float about = (x - k*1.5703125f) - k*0.00048375129699707f;

@@ -11,22 +11,28 @@ int panda_giaf(const panda_real q[7], const panda_params *p, panda_giaf_t *out)
     if (!panda_all_finite(q, 7)) {
         return PANDA_NOT_FINITE;
     }
-    int status = panda_check_positive(p->rotor_inertia);
+    int status = panda_check_positive(p->rotor_inertia, 7);
     if (status != PANDA_OK) {
         return status;
     }
 
-    panda_real s2, c2;
+    panda_real s2;
+    panda_real c2;
     panda_sine_cosine(q[1], &s2, &c2);
-    panda_real s3, c3;
+    panda_real s3;
+    panda_real c3;
     panda_sine_cosine(q[2], &s3, &c3);
-    panda_real s4, c4;
+    panda_real s4;
+    panda_real c4;
     panda_sine_cosine(q[3], &s4, &c4);
-    panda_real s5, c5;
+    panda_real s5;
+    panda_real c5;
     panda_sine_cosine(q[4], &s5, &c5);
-    panda_real s6, c6;
+    panda_real s6;
+    panda_real c6;
     panda_sine_cosine(q[5], &s6, &c6);
-    panda_real s7, c7;
+    panda_real s7;
+    panda_real c7;
     panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = s3*s2;
     const panda_real t2 = PANDA_R(0.384) + PANDA_R(0.088)*s6;

@@ -13,30 +13,56 @@ typedef struct {
     panda_real mass[7]; /* kg; the contact force acts on the first */
     panda_real stiffness[7]; /* N/m; to the next, last to ground */
     panda_real velocity[7]; /* m/s; at first touch, for an approach of 1 m/s */
-} panda_impact_chain_t; /* Chain of 7 masses as it arrives at an impact; it may end before its last. */
+} panda_impact_chain_t;
+
+/* Chain of 7 masses as it arrives at an impact; it may end before its last. */
 int panda_impact_chain(
     const panda_real q[7],
     const panda_real n[3],
     const panda_params *p,
-    panda_impact_chain_t *out); /* A mode's step h: 2 - 2 cos(omega h), and what the force at the node does. */
+    panda_impact_chain_t *out);
+
+/* A mode's step h: 2 - 2 cos(omega h), and what the force at the node does. */
 typedef struct {
-    panda_real kappa, middle;
-} panda_mode_step; /*
+    panda_real kappa;
+    panda_real middle;
+} panda_mode_step;
+
+/* Steps of one length, of all modes and of the node between skin and body. */
+typedef struct {
+    panda_real h;         /* step, s */
+    panda_real rate;      /* the body's damping over it, N/m */
+    panda_real soft;      /* what a force moves at once by the modes, m/N */
+    panda_real hold[2];   /* compliance of the body for the two backward differences */
+    panda_mode_step mode[PANDA_MODES];
+    panda_real edge[PANDA_MODES]; /* what forces at both ends do */
+} panda_level;
+
+/*
  * Robot and body as modes that only meet in the contact force, ready to be stepped. All numbers
  * are for an approach of 1 m/s; spacing doubles from one level to the next.
  */
 typedef struct {
     int modes;
-    panda_real stiffness, damping, skin; /* k_h, c_h and k_f */
+    panda_real stiffness; /* k_h */
+    panda_real damping; /* c_h */
+    panda_real skin; /* k_f */
     panda_real mobility; /* of the contact, 1/kg */
+    panda_real compliance; /* of modes that stand, m/N */
     panda_real step; /* at level 0, s */
+    panda_real squared[PANDA_MODES]; /* frequency, 1/s^2 */
+    panda_real weight[PANDA_MODES]; /* share of the mobility */
+    panda_real velocity[PANDA_MODES]; /* share of the velocity at first touch */
     panda_real start[PANDA_MODES]; /* displacement at the first node */
     panda_real start_edge[PANDA_MODES]; /* share of the force there */
-    panda_mode_step step_of[PANDA_LEVELS + 1][PANDA_MODES];
-    panda_real edge[PANDA_LEVELS + 1][PANDA_MODES]; /* what forces at both sides do */
-} panda_impact; /* Prepares the impacts of a configuration; checks everything but the speed. */
+    panda_level level[PANDA_LEVELS + 1];
+} panda_impact;
+
+/* Prepares the impacts of a configuration; checks everything but the speed. */
 int panda_impact_prepare(const panda_real q[7], const panda_real n[3],
-    const panda_region *region, const panda_params *p, panda_impact *impact); /* Integrates one impact. */
+    const panda_region *region, const panda_params *p, panda_impact *impact);
+
+/* Integrates one impact. */
 int panda_impact_run(const panda_impact *impact, panda_real speed, panda_peak_force_t *out);
 
 #endif

@@ -20,32 +20,39 @@ int panda_impact_chain(
     if (status != PANDA_OK) {
         return status;
     }
-    status = panda_check_positive(p->joint_stiffness);
+    status = panda_check_positive(p->joint_stiffness, 7);
     if (status != PANDA_OK) {
         return status;
     }
-    status = panda_check_positive(p->rotor_inertia);
+    status = panda_check_positive(p->rotor_inertia, 7);
     if (status != PANDA_OK) {
         return status;
     }
-    status = panda_check_not_negative(p->position_gain);
+    status = panda_check_not_negative(p->position_gain, 7);
     if (status != PANDA_OK) {
         return status;
     }
 
-    panda_real s1, c1;
+    panda_real s1;
+    panda_real c1;
     panda_sine_cosine(q[0], &s1, &c1);
-    panda_real s2, c2;
+    panda_real s2;
+    panda_real c2;
     panda_sine_cosine(q[1], &s2, &c2);
-    panda_real s3, c3;
+    panda_real s3;
+    panda_real c3;
     panda_sine_cosine(q[2], &s3, &c3);
-    panda_real s4, c4;
+    panda_real s4;
+    panda_real c4;
     panda_sine_cosine(q[3], &s4, &c4);
-    panda_real s5, c5;
+    panda_real s5;
+    panda_real c5;
     panda_sine_cosine(q[4], &s5, &c5);
-    panda_real s6, c6;
+    panda_real s6;
+    panda_real c6;
     panda_sine_cosine(q[5], &s6, &c6);
-    panda_real s7, c7;
+    panda_real s7;
+    panda_real c7;
     panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = c1*u[1] - s1*u[0];
     const panda_real t2 = c1*u[0] + s1*u[1];

@@ -5,6 +5,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "panda.h"
@@ -45,21 +46,21 @@ static inline void panda_sine_cosine(double x, double *s, double *c)
 }
 #endif
 
-/* 1 if all numbers are finite; a comparison with a NaN is false. */
-static inline int panda_all_finite(const panda_real *x, int count)
+/* Whether all numbers are finite; a comparison with a NaN is false. */
+static inline bool panda_all_finite(const panda_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
         if (!(PANDA_FABS(x[i]) <= PANDA_REAL_MAX)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-/* Status of a parameter that must be positive. */
-static inline int panda_check_positive(const panda_real x[7])
+/* Status of inputs that must be greater than 0. */
+static inline int panda_check_positive(const panda_real *x, int count)
 {
-    for (int i = 0; i < 7; ++i) {
+    for (int i = 0; i < count; ++i) {
         if (!(x[i] > PANDA_R(0.0) && x[i] <= PANDA_REAL_MAX)) {
             return panda_all_finite(&x[i], 1) ? PANDA_OUT_OF_RANGE : PANDA_NOT_FINITE;
         }
@@ -67,15 +68,32 @@ static inline int panda_check_positive(const panda_real x[7])
     return PANDA_OK;
 }
 
-/* Status of a parameter that must not be negative. */
-static inline int panda_check_not_negative(const panda_real x[7])
+/* Status of inputs that must be 0 or greater. */
+static inline int panda_check_not_negative(const panda_real *x, int count)
 {
-    for (int i = 0; i < 7; ++i) {
+    for (int i = 0; i < count; ++i) {
         if (!(x[i] >= PANDA_R(0.0) && x[i] <= PANDA_REAL_MAX)) {
             return panda_all_finite(&x[i], 1) ? PANDA_OUT_OF_RANGE : PANDA_NOT_FINITE;
         }
     }
     return PANDA_OK;
+}
+
+/* Status of inputs that must be from 0 to 1. */
+static inline int panda_check_share(const panda_real *x, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        if (!(x[i] >= PANDA_R(0.0) && x[i] <= PANDA_R(1.0))) {
+            return panda_all_finite(&x[i], 1) ? PANDA_OUT_OF_RANGE : PANDA_NOT_FINITE;
+        }
+    }
+    return PANDA_OK;
+}
+
+/* Status of inputs that may be any number. */
+static inline int panda_check_finite(const panda_real *x, int count)
+{
+    return panda_all_finite(x, count) ? PANDA_OK : PANDA_NOT_FINITE;
 }
 
 /* Unit vector u along n; scaled first, so that no square over- or underflows. */

@@ -11,24 +11,31 @@ int panda_osim(const panda_real q[7], const panda_params *p, panda_osim_t *out)
     if (!panda_all_finite(q, 7)) {
         return PANDA_NOT_FINITE;
     }
-    int status = panda_check_positive(p->rotor_inertia);
+    int status = panda_check_positive(p->rotor_inertia, 7);
     if (status != PANDA_OK) {
         return status;
     }
 
-    panda_real s1, c1;
+    panda_real s1;
+    panda_real c1;
     panda_sine_cosine(q[0], &s1, &c1);
-    panda_real s2, c2;
+    panda_real s2;
+    panda_real c2;
     panda_sine_cosine(q[1], &s2, &c2);
-    panda_real s3, c3;
+    panda_real s3;
+    panda_real c3;
     panda_sine_cosine(q[2], &s3, &c3);
-    panda_real s4, c4;
+    panda_real s4;
+    panda_real c4;
     panda_sine_cosine(q[3], &s4, &c4);
-    panda_real s5, c5;
+    panda_real s5;
+    panda_real c5;
     panda_sine_cosine(q[4], &s5, &c5);
-    panda_real s6, c6;
+    panda_real s6;
+    panda_real c6;
     panda_sine_cosine(q[5], &s6, &c6);
-    panda_real s7, c7;
+    panda_real s7;
+    panda_real c7;
     panda_sine_cosine(q[6], &s7, &c7);
     const panda_real t1 = c2*c1;
     const panda_real t2 = c3*t1 - s3*s1;
@@ -427,16 +434,22 @@ int panda_osim(const panda_real q[7], const panda_params *p, panda_osim_t *out)
         return PANDA_SINGULAR;
     }
     out->Lambda[0][0] = Lambda_11;
-    out->Lambda[0][1] = out->Lambda[1][0] = Lambda_21;
+    out->Lambda[0][1] = Lambda_21;
+    out->Lambda[1][0] = Lambda_21;
     out->Lambda[1][1] = Lambda_22;
-    out->Lambda[0][2] = out->Lambda[2][0] = Lambda_31;
-    out->Lambda[1][2] = out->Lambda[2][1] = Lambda_32;
+    out->Lambda[0][2] = Lambda_31;
+    out->Lambda[2][0] = Lambda_31;
+    out->Lambda[1][2] = Lambda_32;
+    out->Lambda[2][1] = Lambda_32;
     out->Lambda[2][2] = Lambda_33;
     out->Lambda_F[0][0] = Lambda_F_11;
-    out->Lambda_F[0][1] = out->Lambda_F[1][0] = Lambda_F_21;
+    out->Lambda_F[0][1] = Lambda_F_21;
+    out->Lambda_F[1][0] = Lambda_F_21;
     out->Lambda_F[1][1] = Lambda_F_22;
-    out->Lambda_F[0][2] = out->Lambda_F[2][0] = Lambda_F_31;
-    out->Lambda_F[1][2] = out->Lambda_F[2][1] = Lambda_F_32;
+    out->Lambda_F[0][2] = Lambda_F_31;
+    out->Lambda_F[2][0] = Lambda_F_31;
+    out->Lambda_F[1][2] = Lambda_F_32;
+    out->Lambda_F[2][1] = Lambda_F_32;
     out->Lambda_F[2][2] = Lambda_F_33;
     return PANDA_OK;
 }

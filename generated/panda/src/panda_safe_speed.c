@@ -4,13 +4,23 @@
 #include "panda_impact.h"
 
 /*
- * Twice the energy of skin and body, times the body's stiffness, at a static force: the square of
- * speed grows about like it, also where the skin's stiffness changes with the force.
+ * About the speed that leads to a force: all energy is in skin and body, and modes count the less
+ * the faster they are than the contact. Close where robots are simple, and always of the right trend.
  */
-static panda_real energy(const panda_impact *impact, panda_real force)
+static panda_real speed_of(const panda_impact *impact, panda_real force)
 {
-    const panda_real depth = PANDA_POW(force/impact->skin, PANDA_R(0.6666666666666666));
-    return force*(force + PANDA_R(0.8)*impact->stiffness*depth);
+    const panda_real k = impact->stiffness;
+    const panda_real skin = PANDA_POW(force/impact->skin, PANDA_R(0.6666666666666666));
+    const panda_real slow = PANDA_R(1.5)*(force + k*skin)/(force*k*impact->mobility);
+    panda_real mobility = PANDA_R(0.0);
+    panda_real velocity = PANDA_R(0.0);
+    for (int i = 0; i < impact->modes; ++i) {
+        const panda_real share = PANDA_R(1.0)/(PANDA_R(1.0) + slow*impact->squared[i]);
+        mobility += share*impact->weight[i];
+        velocity += share*impact->velocity[i];
+    }
+    const panda_real energy = force*(force + PANDA_R(0.8)*k*skin); /* 2 k times it */
+    return PANDA_SQRT(energy*mobility/k)/velocity;
 }
 
 int panda_safe_speed(
@@ -35,17 +45,16 @@ int panda_safe_speed(
     if (status != PANDA_OK) {
         return status;
     }
-    const panda_real aim = limit*PANDA_R(0.9994);
-    const panda_real most = limit*PANDA_R(0.9996999999999999);
-    const panda_real least = limit*PANDA_R(0.9991);
-    const panda_real wanted = energy(&impact, aim);
-    /* a first guess: the masses at the contact alone, and some of those behind them */
-    panda_real v = PANDA_R(0.8)*PANDA_SQRT(wanted*impact.mobility/impact.stiffness);
+    const panda_real aim = limit*PANDA_R(0.9993);
+    const panda_real most = limit*PANDA_R(0.99959);
+    const panda_real least = limit*PANDA_R(0.99901);
+    const panda_real about = speed_of(&impact, aim);
+    panda_real v = PANDA_R(1.05)*PANDA_FABS(about);
     panda_real low = PANDA_R(0.0);  /* safe */
     panda_real high = PANDA_R(0.0); /* not safe; 0 while unknown */
     panda_real low_force = PANDA_R(0.0);
-    panda_real before = PANDA_R(0.0);
-    panda_real before_ratio = PANDA_R(1.0);
+    panda_real before = PANDA_R(0.0); /* force of the last trial, and what it says of speed_of */
+    panda_real before_off = PANDA_R(1.0);
     for (int k = 0; k < 16; ++k) {
         panda_peak_force_t peak;
         if (!(panda_all_finite(&v, 1) && v > PANDA_R(0.0))) {
@@ -61,23 +70,22 @@ int panda_safe_speed(
         } else {
             high = v;
         }
-        const int jumps = low > PANDA_R(0.0) && high > PANDA_R(0.0)
-            && high - low <= PANDA_R(0.0003)*low;
+        const bool jumps = low > PANDA_R(0.0) && high > PANDA_R(0.0)
+            && high - low <= PANDA_R(0.00029)*low;
         if ((peak.force >= least && peak.force <= most) || jumps) {
             out->speed = low;
             out->force = low_force;
             return PANDA_OK;
         }
-        /* power of the energy's ratio that the last two speeds tell */
-        const panda_real ratio = PANDA_SQRT(wanted/energy(&impact, peak.force));
-        panda_real power = PANDA_R(1.002);
-        if (before > PANDA_R(0.0)) {
-            const panda_real told = PANDA_LOG(v/before)/PANDA_LOG(before_ratio/ratio);
-            power = told > PANDA_R(0.5) && told < PANDA_R(2.0) ? told : power;
+        /* what speed_of is off by changes little with the force, and about linearly */
+        const panda_real off = v/speed_of(&impact, peak.force);
+        panda_real next = off;
+        if (k > 0) {
+            next += (off - before_off)*(aim - peak.force)/(peak.force - before);
         }
-        before = v;
-        before_ratio = ratio;
-        v *= PANDA_POW(ratio, power);
+        before = peak.force;
+        before_off = off;
+        v = about*(next > PANDA_R(0.5)*off && next < PANDA_R(2.0)*off ? next : off);
         if (!(v > low && (v < high || !(high > PANDA_R(0.0))))) {
             v = PANDA_R(0.5)*(low + high);
         }

@@ -11,11 +11,11 @@ int panda_stiffness_matrix(const panda_real q[7], const panda_params *p, panda_r
     if (!panda_all_finite(q, 7)) {
         return PANDA_NOT_FINITE;
     }
-    int status = panda_check_positive(p->joint_stiffness);
+    int status = panda_check_positive(p->joint_stiffness, 7);
     if (status != PANDA_OK) {
         return status;
     }
-    status = panda_check_not_negative(p->position_gain);
+    status = panda_check_not_negative(p->position_gain, 7);
     if (status != PANDA_OK) {
         return status;
     }

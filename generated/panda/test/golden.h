@@ -11,21 +11,31 @@ typedef struct {
     panda_real q[7];
     panda_real n[3];
     panda_params p;
+    panda_real speed;
+    panda_real restitution;
+    panda_real other_mobility;
 } panda_golden_input;
 
 extern const panda_golden_input panda_golden_inputs[PANDA_GOLDEN_CASES];
-extern const double panda_golden_mass_matrix[PANDA_GOLDEN_CASES][28];
-extern const double panda_golden_jacobian[PANDA_GOLDEN_CASES][21];
-extern const double panda_golden_generalised_mass_matrix[PANDA_GOLDEN_CASES][105];
-extern const double panda_golden_stiffness_matrix[PANDA_GOLDEN_CASES][105];
-extern const double panda_golden_contact_jacobian[PANDA_GOLDEN_CASES][14];
-extern const double panda_golden_reflected_mass[PANDA_GOLDEN_CASES][1];
-extern const double panda_golden_reduced_model[PANDA_GOLDEN_CASES][3];
-extern const double panda_golden_chain[PANDA_GOLDEN_CASES][6];
-extern const double panda_golden_osim[PANDA_GOLDEN_CASES][12];
-extern const double panda_golden_giaf[PANDA_GOLDEN_CASES][2];
-extern const double panda_golden_directional_giaf[PANDA_GOLDEN_CASES][1];
-extern const double panda_golden_absorption_extremes[PANDA_GOLDEN_CASES][8];
+/* Right entries of each output, and what its errors are stated over. */
+extern const double panda_golden_mass_matrix[PANDA_GOLDEN_CASES][29];
+extern const double panda_golden_jacobian[PANDA_GOLDEN_CASES][22];
+extern const double panda_golden_generalised_mass_matrix[PANDA_GOLDEN_CASES][106];
+extern const double panda_golden_stiffness_matrix[PANDA_GOLDEN_CASES][106];
+extern const double panda_golden_contact_jacobian[PANDA_GOLDEN_CASES][15];
+extern const double panda_golden_reflected_mass[PANDA_GOLDEN_CASES][2];
+extern const double panda_golden_reduced_model[PANDA_GOLDEN_CASES][6];
+extern const double panda_golden_chain[PANDA_GOLDEN_CASES][8];
+extern const double panda_golden_osim[PANDA_GOLDEN_CASES][14];
+extern const double panda_golden_giaf[PANDA_GOLDEN_CASES][4];
+extern const double panda_golden_directional_giaf[PANDA_GOLDEN_CASES][2];
+extern const double panda_golden_absorption_extremes[PANDA_GOLDEN_CASES][12];
+extern const double panda_golden_manipulability[PANDA_GOLDEN_CASES][9];
+extern const double panda_golden_force_measure[PANDA_GOLDEN_CASES][2];
+extern const double panda_golden_impact_measure[PANDA_GOLDEN_CASES][9];
+extern const double panda_golden_rotor_influence[PANDA_GOLDEN_CASES][16];
+extern const double panda_golden_single_joint_giaf[PANDA_GOLDEN_CASES][8];
+extern const double panda_golden_joint_impulse[PANDA_GOLDEN_CASES][26];
 
 typedef struct {
     panda_real q[7];

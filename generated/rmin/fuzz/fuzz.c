@@ -17,6 +17,8 @@ typedef struct {
     rmin_real q[6];
     rmin_real n[3];
     rmin_params p;
+    rmin_real region[4];
+    rmin_real number;
 } inputs;
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -57,6 +59,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     inputs in;
     decode(data, size, &in);
+    {
+        const rmin_real *const start = size > 0 && (data[0] & 8u) != 0u ? in.q : NULL;
+        rmin_real q[6];
+        memset(q, 0xA5, sizeof q);
+        const int status = rmin_configuration(&in.q[4], start, q);
+        check(status, q, sizeof q);
+        if (status == RMIN_OK) {
+            memcpy(in.q, q, sizeof q); /* else the loops are open, and all the others refuse */
+        }
+    }
     {
         rmin_real M[4][4];
         memset(&M, 0xA5, sizeof M);
@@ -104,6 +116,41 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         memset(&out, 0xA5, sizeof out);
         const int status = rmin_chain(in.q, in.n, &in.p, &out);
         check(status, &out, sizeof out);
+    }
+    rmin_region region;
+    if (rmin_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != RMIN_OK) {
+        return 0;
+    }
+    if (size > 0 && (data[0] & 4u) != 0u) {
+        region.stiffness = in.region[0];
+        region.damping = in.region[1];
+        region.effective_mass = in.region[2];
+        region.hertz_stiffness = in.region[3];
+    }
+    {
+        rmin_peak_force_t out;
+        memset(&out, 0xA5, sizeof out);
+        check(rmin_peak_force(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    {
+        rmin_safe_speed_t out;
+        memset(&out, 0xA5, sizeof out);
+        check(rmin_safe_speed(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    {
+        rmin_real poses[2][6];
+        rmin_selection_t out;
+        for (int i = 0; i < 6; ++i) {
+            poses[0][i] = in.q[i];
+            poses[1][i] = in.q[i]; /* any other would open the loops */
+        }
+        memset(&out, 0xA5, sizeof out);
+        const int status = rmin_select_configuration((const rmin_real (*)[6])poses, 2, NULL, in.n, in.number, &region, &in.p, &out);
+        check(status, &out.force, sizeof out.force);
+        check(status, &out.margin, sizeof out.margin);
+        if (status == RMIN_OK && !(out.best >= 0 && out.best < 2 && out.usable > 0 && out.margin >= 0)) {
+            abort();
+        }
     }
     return 0;
 }

@@ -14,7 +14,7 @@ const char *rmin_status_text(int status)
     case RMIN_ZERO_DIRECTION:
         return "the direction is zero";
     case RMIN_OUT_OF_RANGE:
-        return "a parameter is out of range";
+        return "an input is out of range";
     case RMIN_SINGULAR:
         return "the configuration is singular";
     case RMIN_LOOP_OPEN:
@@ -57,7 +57,8 @@ void rmin_sine_cosine(float x, float *s, float *c)
         *c = cosf(x);
         return;
     }
-    const int nearest = (int)(x*0.636619772f + (x < 0.0f ? -0.5f : 0.5f));
+    const float quarters = x*0.636619772f + (x < 0.0f ? -0.5f : 0.5f);
+    const int nearest = (int)quarters;
     const unsigned int quarter = (unsigned int)nearest;
     const float k = (float)nearest;
     const float about = (x - k*1.5703125f) - k*0.00048375129699707f;

@@ -17,32 +17,27 @@
 #define LAST_STEP RMIN_R(1e-09)
 #endif
 
-static const int motor_joint[MOTORS] = {0, 3};
-static const int passive_joint[PASSIVE] = {1, 2, 4, 5};
-static const rmin_real home[6] = {
-    RMIN_R(-2.279400529),
-    RMIN_R(1.602358817),
-    RMIN_R(0.000556635),
-    RMIN_R(-0.872665446),
-    RMIN_R(-1.597951136),
-    RMIN_R(-0.000560502)
-};
-
 /* Unbalanced torques and gaps of the loops, and their derivatives. */
 static void equations(const rmin_real q[6], const rmin_real force[FORCES],
                       rmin_real residual[UNKNOWNS], rmin_real matrix[UNKNOWNS][UNKNOWNS])
 {
-    rmin_real s1, c1;
+    rmin_real s1;
+    rmin_real c1;
     rmin_sine_cosine(q[0], &s1, &c1);
-    rmin_real s2, c2;
+    rmin_real s2;
+    rmin_real c2;
     rmin_sine_cosine(q[1], &s2, &c2);
-    rmin_real s3, c3;
+    rmin_real s3;
+    rmin_real c3;
     rmin_sine_cosine(q[2], &s3, &c3);
-    rmin_real s4, c4;
+    rmin_real s4;
+    rmin_real c4;
     rmin_sine_cosine(q[3], &s4, &c4);
-    rmin_real s5, c5;
+    rmin_real s5;
+    rmin_real c5;
     rmin_sine_cosine(q[4], &s5, &c5);
-    rmin_real s6, c6;
+    rmin_real s6;
+    rmin_real c6;
     rmin_sine_cosine(q[5], &s6, &c6);
     const rmin_real t1 = RMIN_R(0.2)*force[1];
     const rmin_real t2 = c3*t1;
@@ -197,20 +192,26 @@ static void equations(const rmin_real q[6], const rmin_real force[FORCES],
     matrix[5][5] = RMIN_R(0.0);
 }
 
-/* 1 if the rest is stable and the chain is assembled as the model is. */
-static int is_sound(const rmin_real q[6])
+/* Whether the rest is stable and the chain is assembled as the model is. */
+static bool is_sound(const rmin_real q[6])
 {
-    rmin_real s1, c1;
+    rmin_real s1;
+    rmin_real c1;
     rmin_sine_cosine(q[0], &s1, &c1);
-    rmin_real s2, c2;
+    rmin_real s2;
+    rmin_real c2;
     rmin_sine_cosine(q[1], &s2, &c2);
-    rmin_real s3, c3;
+    rmin_real s3;
+    rmin_real c3;
     rmin_sine_cosine(q[2], &s3, &c3);
-    rmin_real s4, c4;
+    rmin_real s4;
+    rmin_real c4;
     rmin_sine_cosine(q[3], &s4, &c4);
-    rmin_real s5, c5;
+    rmin_real s5;
+    rmin_real c5;
     rmin_sine_cosine(q[4], &s5, &c5);
-    rmin_real s6, c6;
+    rmin_real s6;
+    rmin_real c6;
     rmin_sine_cosine(q[5], &s6, &c6);
     const rmin_real t1 = RMIN_R(0.2)*s3;
     const rmin_real t2 = RMIN_R(0.2)*c3 + RMIN_R(0.2);
@@ -342,9 +343,10 @@ static void solve(rmin_real a[UNKNOWNS][UNKNOWNS], rmin_real b[UNKNOWNS])
     }
 }
 
-/* Balance the passive joints with the motors where they are; 0 if Newton's method fails. */
-static int balance(rmin_real q[6], rmin_real force[FORCES])
+/* Balance the passive joints with the motors where they are; false if Newton's method fails. */
+static bool balance(rmin_real q[6], rmin_real force[FORCES])
 {
+    static const int passive_joint[PASSIVE] = {1, 2, 4, 5};
     for (int count = 0; count < NEWTON_STEPS; ++count) {
         rmin_real step[UNKNOWNS];
         rmin_real matrix[UNKNOWNS][UNKNOWNS];
@@ -353,7 +355,7 @@ static int balance(rmin_real q[6], rmin_real force[FORCES])
         rmin_real longest = RMIN_R(0.0);
         for (int i = 0; i < PASSIVE; ++i) {
             if (!(RMIN_FABS(step[i]) <= FARTHEST)) {
-                return 0;
+                return false;
             }
             longest = RMIN_FMAX(longest, RMIN_FABS(step[i]));
             q[passive_joint[i]] -= step[i];
@@ -365,11 +367,20 @@ static int balance(rmin_real q[6], rmin_real force[FORCES])
             return rmin_all_finite(force, FORCES);
         }
     }
-    return 0;
+    return false;
 }
 
 int rmin_configuration(const rmin_real motors[MOTORS], const rmin_real start[6], rmin_real q[6])
 {
+    static const int motor_joint[MOTORS] = {0, 3};
+    static const rmin_real home[6] = {
+        RMIN_R(-2.279400529),
+        RMIN_R(1.602358817),
+        RMIN_R(0.000556635),
+        RMIN_R(-0.872665446),
+        RMIN_R(-1.597951136),
+        RMIN_R(-0.000560502)
+    };
     if (motors == NULL || q == NULL) {
         return RMIN_NULL_POINTER;
     }
@@ -394,7 +405,10 @@ int rmin_configuration(const rmin_real motors[MOTORS], const rmin_real start[6],
     while ((rmin_real)moves*MOVE < farthest) {
         ++moves;
     }
-    rmin_real force[FORCES] = {RMIN_R(0.0)};
+    rmin_real force[FORCES];
+    for (int i = 0; i < FORCES; ++i) {
+        force[i] = RMIN_R(0.0);
+    }
     for (int move = 1; move <= moves; ++move) {
         const rmin_real share = (rmin_real)move/(rmin_real)moves;
         for (int i = 0; i < MOTORS; ++i) {

@@ -17,17 +17,23 @@ int rmin_contact_jacobian(const rmin_real q[6], const rmin_real n[3], rmin_real 
         return status;
     }
 
-    rmin_real s1, c1;
+    rmin_real s1;
+    rmin_real c1;
     rmin_sine_cosine(q[0], &s1, &c1);
-    rmin_real s2, c2;
+    rmin_real s2;
+    rmin_real c2;
     rmin_sine_cosine(q[1], &s2, &c2);
-    rmin_real s3, c3;
+    rmin_real s3;
+    rmin_real c3;
     rmin_sine_cosine(q[2], &s3, &c3);
-    rmin_real s4, c4;
+    rmin_real s4;
+    rmin_real c4;
     rmin_sine_cosine(q[3], &s4, &c4);
-    rmin_real s5, c5;
+    rmin_real s5;
+    rmin_real c5;
     rmin_sine_cosine(q[4], &s5, &c5);
-    rmin_real s6, c6;
+    rmin_real s6;
+    rmin_real c6;
     rmin_sine_cosine(q[5], &s6, &c6);
     const rmin_real t1 = c1*u[2] - s1*u[0];
     const rmin_real t2 = c1*u[0] + s1*u[2];

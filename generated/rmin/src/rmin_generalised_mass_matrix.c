@@ -11,22 +11,28 @@ int rmin_generalised_mass_matrix(const rmin_real q[6], const rmin_params *p, rmi
     if (!rmin_all_finite(q, 6)) {
         return RMIN_NOT_FINITE;
     }
-    int status = rmin_check_not_negative(p->rotor_inertia);
+    int status = rmin_check_not_negative(p->rotor_inertia, 6);
     if (status != RMIN_OK) {
         return status;
     }
 
-    rmin_real s1, c1;
+    rmin_real s1;
+    rmin_real c1;
     rmin_sine_cosine(q[0], &s1, &c1);
-    rmin_real s2, c2;
+    rmin_real s2;
+    rmin_real c2;
     rmin_sine_cosine(q[1], &s2, &c2);
-    rmin_real s3, c3;
+    rmin_real s3;
+    rmin_real c3;
     rmin_sine_cosine(q[2], &s3, &c3);
-    rmin_real s4, c4;
+    rmin_real s4;
+    rmin_real c4;
     rmin_sine_cosine(q[3], &s4, &c4);
-    rmin_real s5, c5;
+    rmin_real s5;
+    rmin_real c5;
     rmin_sine_cosine(q[4], &s5, &c5);
-    rmin_real s6, c6;
+    rmin_real s6;
+    rmin_real c6;
     rmin_sine_cosine(q[5], &s6, &c6);
     const rmin_real t1 = RMIN_R(0.013844) + (RMIN_R(0.0036) + RMIN_R(0.008)*c3);
     const rmin_real t2 = RMIN_R(0.02)*c3;
@@ -129,14 +135,20 @@ int rmin_generalised_mass_matrix(const rmin_real q[6], const rmin_params *p, rmi
         return RMIN_SINGULAR;
     }
     M0[0][0] = M0_11;
-    M0[0][1] = M0[1][0] = M0_21;
+    M0[0][1] = M0_21;
+    M0[1][0] = M0_21;
     M0[1][1] = M0_22;
-    M0[0][2] = M0[2][0] = M0_31;
-    M0[1][2] = M0[2][1] = M0_32;
+    M0[0][2] = M0_31;
+    M0[2][0] = M0_31;
+    M0[1][2] = M0_32;
+    M0[2][1] = M0_32;
     M0[2][2] = M0_33;
-    M0[0][3] = M0[3][0] = M0_41;
-    M0[1][3] = M0[3][1] = M0_42;
-    M0[2][3] = M0[3][2] = M0_43;
+    M0[0][3] = M0_41;
+    M0[3][0] = M0_41;
+    M0[1][3] = M0_42;
+    M0[3][1] = M0_42;
+    M0[2][3] = M0_43;
+    M0[3][2] = M0_43;
     M0[3][3] = M0_44;
     return RMIN_OK;
 }

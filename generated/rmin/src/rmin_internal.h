@@ -5,6 +5,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "rmin.h"
@@ -45,21 +46,21 @@ static inline void rmin_sine_cosine(double x, double *s, double *c)
 }
 #endif
 
-/* 1 if all numbers are finite; a comparison with a NaN is false. */
-static inline int rmin_all_finite(const rmin_real *x, int count)
+/* Whether all numbers are finite; a comparison with a NaN is false. */
+static inline bool rmin_all_finite(const rmin_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
         if (!(RMIN_FABS(x[i]) <= RMIN_REAL_MAX)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-/* Status of a parameter that must be positive. */
-static inline int rmin_check_positive(const rmin_real x[6])
+/* Status of inputs that must be greater than 0. */
+static inline int rmin_check_positive(const rmin_real *x, int count)
 {
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < count; ++i) {
         if (!(x[i] > RMIN_R(0.0) && x[i] <= RMIN_REAL_MAX)) {
             return rmin_all_finite(&x[i], 1) ? RMIN_OUT_OF_RANGE : RMIN_NOT_FINITE;
         }
@@ -67,15 +68,32 @@ static inline int rmin_check_positive(const rmin_real x[6])
     return RMIN_OK;
 }
 
-/* Status of a parameter that must not be negative. */
-static inline int rmin_check_not_negative(const rmin_real x[6])
+/* Status of inputs that must be 0 or greater. */
+static inline int rmin_check_not_negative(const rmin_real *x, int count)
 {
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < count; ++i) {
         if (!(x[i] >= RMIN_R(0.0) && x[i] <= RMIN_REAL_MAX)) {
             return rmin_all_finite(&x[i], 1) ? RMIN_OUT_OF_RANGE : RMIN_NOT_FINITE;
         }
     }
     return RMIN_OK;
+}
+
+/* Status of inputs that must be from 0 to 1. */
+static inline int rmin_check_share(const rmin_real *x, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        if (!(x[i] >= RMIN_R(0.0) && x[i] <= RMIN_R(1.0))) {
+            return rmin_all_finite(&x[i], 1) ? RMIN_OUT_OF_RANGE : RMIN_NOT_FINITE;
+        }
+    }
+    return RMIN_OK;
+}
+
+/* Status of inputs that may be any number. */
+static inline int rmin_check_finite(const rmin_real *x, int count)
+{
+    return rmin_all_finite(x, count) ? RMIN_OK : RMIN_NOT_FINITE;
 }
 
 /* Unit vector u along n; scaled first, so that no square over- or underflows. */

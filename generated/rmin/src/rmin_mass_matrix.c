@@ -12,17 +12,23 @@ int rmin_mass_matrix(const rmin_real q[6], rmin_real M[4][4])
         return RMIN_NOT_FINITE;
     }
 
-    rmin_real s1, c1;
+    rmin_real s1;
+    rmin_real c1;
     rmin_sine_cosine(q[0], &s1, &c1);
-    rmin_real s2, c2;
+    rmin_real s2;
+    rmin_real c2;
     rmin_sine_cosine(q[1], &s2, &c2);
-    rmin_real s3, c3;
+    rmin_real s3;
+    rmin_real c3;
     rmin_sine_cosine(q[2], &s3, &c3);
-    rmin_real s4, c4;
+    rmin_real s4;
+    rmin_real c4;
     rmin_sine_cosine(q[3], &s4, &c4);
-    rmin_real s5, c5;
+    rmin_real s5;
+    rmin_real c5;
     rmin_sine_cosine(q[4], &s5, &c5);
-    rmin_real s6, c6;
+    rmin_real s6;
+    rmin_real c6;
     rmin_sine_cosine(q[5], &s6, &c6);
     const rmin_real t1 = RMIN_R(0.013844) + (RMIN_R(0.0036) + RMIN_R(0.008)*c3);
     const rmin_real t2 = RMIN_R(0.02)*c3;
@@ -114,14 +120,20 @@ int rmin_mass_matrix(const rmin_real q[6], rmin_real M[4][4])
         return RMIN_SINGULAR;
     }
     M[0][0] = M_11;
-    M[0][1] = M[1][0] = M_21;
+    M[0][1] = M_21;
+    M[1][0] = M_21;
     M[1][1] = M_22;
-    M[0][2] = M[2][0] = M_31;
-    M[1][2] = M[2][1] = M_32;
+    M[0][2] = M_31;
+    M[2][0] = M_31;
+    M[1][2] = M_32;
+    M[2][1] = M_32;
     M[2][2] = M_33;
-    M[0][3] = M[3][0] = M_41;
-    M[1][3] = M[3][1] = M_42;
-    M[2][3] = M[3][2] = M_43;
+    M[0][3] = M_41;
+    M[3][0] = M_41;
+    M[1][3] = M_42;
+    M[3][1] = M_42;
+    M[2][3] = M_43;
+    M[3][2] = M_43;
     M[3][3] = M_44;
     return RMIN_OK;
 }

@@ -11,22 +11,28 @@ int rmin_stiffness_matrix(const rmin_real q[6], const rmin_params *p, rmin_real 
     if (!rmin_all_finite(q, 6)) {
         return RMIN_NOT_FINITE;
     }
-    int status = rmin_check_not_negative(p->position_gain);
+    int status = rmin_check_not_negative(p->position_gain, 6);
     if (status != RMIN_OK) {
         return status;
     }
 
-    rmin_real s1, c1;
+    rmin_real s1;
+    rmin_real c1;
     rmin_sine_cosine(q[0], &s1, &c1);
-    rmin_real s2, c2;
+    rmin_real s2;
+    rmin_real c2;
     rmin_sine_cosine(q[1], &s2, &c2);
-    rmin_real s3, c3;
+    rmin_real s3;
+    rmin_real c3;
     rmin_sine_cosine(q[2], &s3, &c3);
-    rmin_real s4, c4;
+    rmin_real s4;
+    rmin_real c4;
     rmin_sine_cosine(q[3], &s4, &c4);
-    rmin_real s5, c5;
+    rmin_real s5;
+    rmin_real c5;
     rmin_sine_cosine(q[4], &s5, &c5);
-    rmin_real s6, c6;
+    rmin_real s6;
+    rmin_real c6;
     rmin_sine_cosine(q[5], &s6, &c6);
     const rmin_real t1 = RMIN_R(0.2)*s3;
     const rmin_real t2 = RMIN_R(0.2)*c3 + RMIN_R(0.2);
@@ -199,14 +205,20 @@ int rmin_stiffness_matrix(const rmin_real q[6], const rmin_params *p, rmin_real 
         return RMIN_SINGULAR;
     }
     K0[0][0] = K0_11;
-    K0[0][1] = K0[1][0] = K0_21;
+    K0[0][1] = K0_21;
+    K0[1][0] = K0_21;
     K0[1][1] = K0_22;
-    K0[0][2] = K0[2][0] = K0_31;
-    K0[1][2] = K0[2][1] = K0_32;
+    K0[0][2] = K0_31;
+    K0[2][0] = K0_31;
+    K0[1][2] = K0_32;
+    K0[2][1] = K0_32;
     K0[2][2] = K0_33;
-    K0[0][3] = K0[3][0] = K0_41;
-    K0[1][3] = K0[3][1] = K0_42;
-    K0[2][3] = K0[3][2] = K0_43;
+    K0[0][3] = K0_41;
+    K0[3][0] = K0_41;
+    K0[1][3] = K0_42;
+    K0[3][1] = K0_42;
+    K0[2][3] = K0_43;
+    K0[3][2] = K0_43;
     K0[3][3] = K0_44;
     return RMIN_OK;
 }

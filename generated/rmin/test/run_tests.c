@@ -25,17 +25,15 @@ static void expect(int holds, const char *function, const char *what)
     }
 }
 
-/* Largest difference over the largest right entry, or absolute for shares of 1. */
-static double error_of(const double *found, const double *right, size_t count, int share)
+/* Largest difference over the scale that follows the right entries. */
+static double error_of(const double *found, const double *right, size_t count)
 {
     double difference = 0.0;
-    double scale = share ? 1.0 : 0.0;
     for (size_t i = 0; i < count; ++i) {
         const double d = fabs(found[i] - right[i]);
         difference = d <= difference ? difference : d;
-        scale = share ? scale : fmax(scale, fabs(right[i]));
     }
-    return difference > 0.0 ? difference/scale : 0.0;
+    return difference > 0.0 ? difference/right[count] : 0.0;
 }
 
 static int is_same(rmin_real a, rmin_real b)
@@ -75,8 +73,7 @@ static void test_mass_matrix(void)
                            name, "M is symmetric");
                 }
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 2e-06);
@@ -119,8 +116,7 @@ static void test_jacobian(void)
                     found[at++] = (double)J[i][j];
                 }
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 3e-06);
@@ -165,8 +161,7 @@ static void test_generalised_mass_matrix(void)
                            name, "M0 is symmetric");
                 }
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 3e-06);
@@ -187,9 +182,9 @@ static void test_generalised_mass_matrix(void)
     expect(rmin_generalised_mass_matrix(in.q, &in.p, M0) == RMIN_NOT_FINITE,
            name, "rotor_inertia is not a number");
     in = rmin_golden_inputs[0];
-    in.p.rotor_inertia[5] = -1;
+    in.p.rotor_inertia[5] = -1.0;
     expect(rmin_generalised_mass_matrix(in.q, &in.p, M0) == RMIN_OUT_OF_RANGE,
-           name, "rotor_inertia is negative");
+           name, "rotor_inertia is -1.0");
     in = rmin_golden_inputs[0];
     expect(rmin_generalised_mass_matrix(NULL, &in.p, M0) == RMIN_NULL_POINTER,
            name, "q is NULL");
@@ -221,8 +216,7 @@ static void test_stiffness_matrix(void)
                            name, "K0 is symmetric");
                 }
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 5e-07);
@@ -243,9 +237,9 @@ static void test_stiffness_matrix(void)
     expect(rmin_stiffness_matrix(in.q, &in.p, K0) == RMIN_NOT_FINITE,
            name, "position_gain is not a number");
     in = rmin_golden_inputs[0];
-    in.p.position_gain[5] = -1;
+    in.p.position_gain[5] = -1.0;
     expect(rmin_stiffness_matrix(in.q, &in.p, K0) == RMIN_OUT_OF_RANGE,
-           name, "position_gain is negative");
+           name, "position_gain is -1.0");
     in = rmin_golden_inputs[0];
     expect(rmin_stiffness_matrix(NULL, &in.p, K0) == RMIN_NULL_POINTER,
            name, "q is NULL");
@@ -272,8 +266,7 @@ static void test_contact_jacobian(void)
             for (size_t i = 0; i < 4; ++i) {
                 found[i] = (double)J_c[i];
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 3e-06);
@@ -321,8 +314,7 @@ static void test_reflected_mass(void)
         {
             double found[1];
             found[0] = (double)m_c;
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 4e-06);
@@ -351,9 +343,9 @@ static void test_reflected_mass(void)
     expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_NOT_FINITE,
            name, "rotor_inertia is not a number");
     in = rmin_golden_inputs[0];
-    in.p.rotor_inertia[5] = -1;
+    in.p.rotor_inertia[5] = -1.0;
     expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_OUT_OF_RANGE,
-           name, "rotor_inertia is negative");
+           name, "rotor_inertia is -1.0");
     in = rmin_golden_inputs[0];
     expect(rmin_reflected_mass(NULL, in.n, &in.p, &m_c) == RMIN_NULL_POINTER,
            name, "q is NULL");
@@ -380,20 +372,19 @@ static void test_reduced_model(void)
         {
             double found[1];
             found[0] = (double)out.m_c;
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+            right += LENGTH(found) + 1;
         }
         {
             double found[1];
             found[0] = (double)out.k_r;
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+            right += LENGTH(found) + 1;
         }
         {
             double found[1];
             found[0] = (double)out.m_a;
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 7e-05);
@@ -422,17 +413,17 @@ static void test_reduced_model(void)
     expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
            name, "rotor_inertia is not a number");
     in = rmin_golden_inputs[0];
-    in.p.rotor_inertia[5] = -1;
+    in.p.rotor_inertia[5] = -1.0;
     expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_OUT_OF_RANGE,
-           name, "rotor_inertia is negative");
+           name, "rotor_inertia is -1.0");
     in = rmin_golden_inputs[0];
     in.p.position_gain[0] = (rmin_real)NAN;
     expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
            name, "position_gain is not a number");
     in = rmin_golden_inputs[0];
-    in.p.position_gain[5] = -1;
+    in.p.position_gain[5] = -1.0;
     expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_OUT_OF_RANGE,
-           name, "position_gain is negative");
+           name, "position_gain is -1.0");
     in = rmin_golden_inputs[0];
     expect(rmin_reduced_model(NULL, in.n, &in.p, &out) == RMIN_NULL_POINTER,
            name, "q is NULL");
@@ -461,16 +452,15 @@ static void test_chain(void)
             for (size_t i = 0; i < 3; ++i) {
                 found[i] = (double)out.mass[i];
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+            right += LENGTH(found) + 1;
         }
         {
             double found[3];
             for (size_t i = 0; i < 3; ++i) {
                 found[i] = (double)out.stiffness[i];
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 0.0003);
@@ -499,17 +489,17 @@ static void test_chain(void)
     expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
            name, "rotor_inertia is not a number");
     in = rmin_golden_inputs[0];
-    in.p.rotor_inertia[5] = -1;
+    in.p.rotor_inertia[5] = -1.0;
     expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_OUT_OF_RANGE,
-           name, "rotor_inertia is negative");
+           name, "rotor_inertia is -1.0");
     in = rmin_golden_inputs[0];
     in.p.position_gain[0] = (rmin_real)NAN;
     expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
            name, "position_gain is not a number");
     in = rmin_golden_inputs[0];
-    in.p.position_gain[5] = -1;
+    in.p.position_gain[5] = -1.0;
     expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_OUT_OF_RANGE,
-           name, "position_gain is negative");
+           name, "position_gain is -1.0");
     in = rmin_golden_inputs[0];
     expect(rmin_chain(NULL, in.n, &in.p, &out) == RMIN_NULL_POINTER,
            name, "q is NULL");
@@ -536,7 +526,7 @@ static void test_configuration(void)
             for (size_t i = 0; i < 6; ++i) {
                 found[i] = (double)q[i];
             }
-            worst = fmax(worst, error_of(found, rmin_golden_configurations[k], 6, 0));
+            worst = fmax(worst, error_of(found, rmin_golden_configurations[k], 6));
             expect(rmin_configuration(motors, q, q) == RMIN_OK, name, "status from its own result");
         }
     }
@@ -558,6 +548,164 @@ static void test_configuration(void)
     motors[0] = (rmin_real)1e6;
     expect(rmin_configuration(motors, NULL, q) == RMIN_NO_EQUILIBRIUM, name, "out of reach");
     expect(is_untouched(q, sizeof q), name, "nothing written for bad inputs");
+}
+
+static void test_impacts(void)
+{
+    const rmin_real bound = (rmin_real)BOUND(0.001, 0.001);
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rmin_golden_impacts); ++k) {
+        const rmin_golden_impact *const in = &rmin_golden_impacts[k];
+        rmin_region region;
+        rmin_peak_force_t peak = {0, 0};
+        rmin_peak_force_t again = {0, 0};
+        rmin_safe_speed_t safe = {0, 0};
+        expect(rmin_body_region(in->part, in->clamped, &region) == RMIN_OK, "rmin_body_region", "status");
+        expect(rmin_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak) == RMIN_OK,
+               "rmin_peak_force", "status of a golden impact");
+        worst = fmax(worst, fabs((double)peak.force/in->force - 1.0));
+        expect(peak.time > 0, "rmin_peak_force", "time of the peak");
+        expect(rmin_safe_speed(in->q, in->n, peak.force, &region, &in->p, &safe) == RMIN_OK,
+               "rmin_safe_speed", "status of a golden impact");
+        expect(rmin_peak_force(in->q, in->n, safe.speed, &region, &in->p, &again) == RMIN_OK
+                   && is_same(again.force, safe.force),
+               "rmin_safe_speed", "force at the speed found");
+        expect(safe.force <= peak.force && safe.speed <= in->speed, "rmin_safe_speed", "is safe");
+    }
+    printf("%-40s error %.1e, bound %.1e\n", "rmin_peak_force", worst, (double)bound);
+    expect(worst <= (double)bound, "rmin_peak_force", "error within its bound");
+}
+
+static void test_bad_impacts(void)
+{
+    const rmin_golden_impact in = rmin_golden_impacts[0];
+    rmin_region good;
+    rmin_peak_force_t peak;
+    rmin_safe_speed_t safe;
+    memset(&peak, 0xA5, sizeof peak);
+    memset(&safe, 0xA5, sizeof safe);
+    expect(rmin_body_region(-1, 0, &good) == RMIN_OUT_OF_RANGE, "rmin_body_region", "no such part");
+    expect(rmin_body_region(12, 0, &good) == RMIN_OUT_OF_RANGE, "rmin_body_region", "no such part");
+    expect(rmin_body_region(0, 0, NULL) == RMIN_NULL_POINTER, "rmin_body_region", "NULL");
+    expect(rmin_body_region(0, 0, &good) == RMIN_OK, "rmin_body_region", "status");
+    expect(rmin_peak_force(in.q, in.n, 0, &good, &in.p, &peak) == RMIN_OUT_OF_RANGE,
+           "rmin_peak_force", "speed or limit is zero");
+    expect(rmin_safe_speed(in.q, in.n, 0, &good, &in.p, &safe) == RMIN_OUT_OF_RANGE,
+           "rmin_safe_speed", "speed or limit is zero");
+    expect(rmin_peak_force(in.q, in.n, -1, &good, &in.p, &peak) == RMIN_OUT_OF_RANGE,
+           "rmin_peak_force", "speed or limit is negative");
+    expect(rmin_safe_speed(in.q, in.n, -1, &good, &in.p, &safe) == RMIN_OUT_OF_RANGE,
+           "rmin_safe_speed", "speed or limit is negative");
+    expect(rmin_peak_force(in.q, in.n, (rmin_real)NAN, &good, &in.p, &peak) == RMIN_NOT_FINITE,
+           "rmin_peak_force", "speed or limit is not a number");
+    expect(rmin_safe_speed(in.q, in.n, (rmin_real)NAN, &good, &in.p, &safe) == RMIN_NOT_FINITE,
+           "rmin_safe_speed", "speed or limit is not a number");
+    expect(rmin_peak_force(in.q, in.n, 1, NULL, &in.p, &peak) == RMIN_NULL_POINTER,
+           "rmin_peak_force", "region is NULL");
+    expect(rmin_safe_speed(in.q, in.n, 1, NULL, &in.p, &safe) == RMIN_NULL_POINTER,
+           "rmin_safe_speed", "region is NULL");
+
+    {
+        rmin_region bad = good;
+        bad.stiffness = 0;
+    expect(rmin_peak_force(in.q, in.n, 1, &bad, &in.p, &peak) == RMIN_OUT_OF_RANGE,
+               "rmin_peak_force", "stiffness is 0");
+        expect(rmin_safe_speed(in.q, in.n, 1, &bad, &in.p, &safe) == RMIN_OUT_OF_RANGE,
+               "rmin_safe_speed", "stiffness is 0");
+
+    }
+    {
+        rmin_region bad = good;
+        bad.damping = -1;
+    expect(rmin_peak_force(in.q, in.n, 1, &bad, &in.p, &peak) == RMIN_OUT_OF_RANGE,
+               "rmin_peak_force", "damping is -1");
+        expect(rmin_safe_speed(in.q, in.n, 1, &bad, &in.p, &safe) == RMIN_OUT_OF_RANGE,
+               "rmin_safe_speed", "damping is -1");
+
+    }
+    {
+        rmin_region bad = good;
+        bad.effective_mass = 0;
+    expect(rmin_peak_force(in.q, in.n, 1, &bad, &in.p, &peak) == RMIN_OUT_OF_RANGE,
+               "rmin_peak_force", "effective_mass is 0");
+        expect(rmin_safe_speed(in.q, in.n, 1, &bad, &in.p, &safe) == RMIN_OUT_OF_RANGE,
+               "rmin_safe_speed", "effective_mass is 0");
+
+    }
+    {
+        rmin_region bad = good;
+        bad.hertz_stiffness = (rmin_real)INFINITY;
+    expect(rmin_peak_force(in.q, in.n, 1, &bad, &in.p, &peak) == RMIN_NOT_FINITE,
+               "rmin_peak_force", "hertz_stiffness is (rmin_real)INFINITY");
+        expect(rmin_safe_speed(in.q, in.n, 1, &bad, &in.p, &safe) == RMIN_NOT_FINITE,
+               "rmin_safe_speed", "hertz_stiffness is (rmin_real)INFINITY");
+
+    }
+    const rmin_real nowhere[3] = {0, 0, 0};
+    expect(rmin_peak_force(in.q, nowhere, 1, &good, &in.p, &peak) == RMIN_ZERO_DIRECTION,
+           "rmin_peak_force", "n is zero");
+    expect(is_untouched(&peak, sizeof peak) && is_untouched(&safe, sizeof safe), "impacts", "nothing written for bad inputs");
+}
+
+#define POSES LENGTH(rmin_golden_impacts)
+
+/* The best of some poses, one call of rmin_peak_force after the other; -1 if none is usable. */
+static int best_of(const rmin_real poses[][6], int count, const unsigned char *allowed,
+    const rmin_golden_impact *in, const rmin_region *region, rmin_real *force)
+{
+    int best = -1;
+    for (int i = 0; i < count; ++i) {
+        rmin_peak_force_t peak;
+        if (allowed[i] != 0 && rmin_peak_force(poses[i], in->n, in->speed, region, &in->p, &peak) == RMIN_OK
+            && (best < 0 || peak.force < *force)) {
+            best = i;
+            *force = peak.force;
+        }
+    }
+    return best;
+}
+
+static void check_selection(const rmin_real poses[][6], int count, const rmin_golden_impact *in)
+{
+    unsigned char allowed[12];
+    rmin_region region;
+    rmin_selection_t found;
+    rmin_selection_t rest;
+    rmin_real force = 0;
+    rmin_real next = 0;
+    memset(allowed, 1, sizeof allowed);
+    expect(rmin_body_region(in->part, in->clamped, &region) == RMIN_OK, "rmin_body_region", "status");
+    const int best = best_of(poses, count, allowed, in, &region, &force);
+    expect(rmin_select_configuration(poses, count, NULL, in->n, in->speed, &region, &in->p, &found) == RMIN_OK,
+           "rmin_select_configuration", "status");
+    expect(found.best == best && is_same(found.force, force), "rmin_select_configuration", "is the best");
+    allowed[best] = 0;
+    const int second = best_of(poses, count, allowed, in, &region, &next);
+    expect(found.second == second && is_same(found.margin, next - force), "rmin_select_configuration", "second best");
+    expect(rmin_select_configuration(poses, count, allowed, in->n, in->speed, &region, &in->p, &rest) == RMIN_OK
+               && rest.best == second && rest.usable == found.usable - 1,
+           "rmin_select_configuration", "leaves out what is not allowed");
+    memset(allowed, 0, sizeof allowed);
+    memset(&rest, 0xA5, sizeof rest);
+    expect(rmin_select_configuration(poses, count, allowed, in->n, in->speed, &region, &in->p, &rest) == RMIN_SINGULAR
+               && rmin_select_configuration(poses, 0, NULL, in->n, in->speed, &region, &in->p, &rest) == RMIN_SINGULAR,
+           "rmin_select_configuration", "no pose is left");
+    expect(rmin_select_configuration(NULL, 1, NULL, in->n, in->speed, &region, &in->p, &rest) == RMIN_NULL_POINTER
+               && rmin_select_configuration(poses, count, NULL, in->n, 0, &region, &in->p, &rest) == RMIN_OUT_OF_RANGE,
+           "rmin_select_configuration", "bad inputs");
+    expect(is_untouched(&rest, sizeof rest), "rmin_select_configuration", "nothing written for bad inputs");
+}
+
+static void test_selection(void)
+{
+    static rmin_real poses[POSES][6];
+    for (size_t k = 0; k < POSES; ++k) {
+        memcpy(poses[k], rmin_golden_impacts[k].q, sizeof poses[k]);
+    }
+    for (size_t k = 0; k < POSES; ++k) {
+        const rmin_golden_impact *const in = &rmin_golden_impacts[k];
+        check_selection((const rmin_real (*)[6])poses, (int)POSES, in);
+    }
 }
 
 static void test_common(void)
@@ -586,6 +734,9 @@ int main(void)
     test_reflected_mass();
     test_reduced_model();
     test_chain();
+    test_impacts();
+    test_bad_impacts();
+    test_selection();
     printf(failures == 0 ? "all passed\n" : "%d failed\n", failures);
     return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -17,6 +17,9 @@ typedef struct {
     rr_real q[4];
     rr_real n[3];
     rr_params p;
+    rr_real speed;
+    rr_real restitution;
+    rr_real other_mobility;
     rr_real region[4];
     rr_real number;
 } inputs;
@@ -107,6 +110,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         const int status = rr_chain(in.q, in.n, &in.p, &out);
         check(status, &out, sizeof out);
     }
+    {
+        rr_joint_impulse_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
     rr_region region;
     if (rr_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != RR_OK) {
         return 0;
@@ -126,6 +135,21 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         rr_safe_speed_t out;
         memset(&out, 0xA5, sizeof out);
         check(rr_safe_speed(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    {
+        rr_real poses[2][4];
+        rr_selection_t out;
+        for (int i = 0; i < 4; ++i) {
+            poses[0][i] = in.q[i];
+            poses[1][i] = -in.q[i];
+        }
+        memset(&out, 0xA5, sizeof out);
+        const int status = rr_select_configuration((const rr_real (*)[4])poses, 2, NULL, in.n, in.number, &region, &in.p, &out);
+        check(status, &out.force, sizeof out.force);
+        check(status, &out.margin, sizeof out.margin);
+        if (status == RR_OK && !(out.best >= 0 && out.best < 2 && out.usable > 0 && out.margin >= 0)) {
+            abort();
+        }
     }
     return 0;
 }

@@ -11,14 +11,16 @@ int rr_generalised_mass_matrix(const rr_real q[4], const rr_params *p, rr_real M
     if (!rr_all_finite(q, 4)) {
         return RR_NOT_FINITE;
     }
-    int status = rr_check_not_negative(p->rotor_inertia);
+    int status = rr_check_not_negative(p->rotor_inertia, 4);
     if (status != RR_OK) {
         return status;
     }
 
-    rr_real s3, c3;
+    rr_real s3;
+    rr_real c3;
     rr_sine_cosine(q[2], &s3, &c3);
-    rr_real s4, c4;
+    rr_real s4;
+    rr_real c4;
     rr_sine_cosine(q[3], &s4, &c4);
     const rr_real t1 = c3*(RR_R(0.86372)*c4) - s3*(RR_R(0.86372)*s4);
     const rr_real M0_21 = RR_R(2.5044576) + (RR_R(1.03951196) + t1);
@@ -36,14 +38,20 @@ int rr_generalised_mass_matrix(const rr_real q[4], const rr_params *p, rr_real M
         return RR_SINGULAR;
     }
     M0[0][0] = M0_11;
-    M0[0][1] = M0[1][0] = M0_21;
+    M0[0][1] = M0_21;
+    M0[1][0] = M0_21;
     M0[1][1] = M0_22;
-    M0[0][2] = M0[2][0] = M0_31;
-    M0[1][2] = M0[2][1] = M0_31;
+    M0[0][2] = M0_31;
+    M0[2][0] = M0_31;
+    M0[1][2] = M0_31;
+    M0[2][1] = M0_31;
     M0[2][2] = M0_33;
-    M0[0][3] = M0[3][0] = M0_41;
-    M0[1][3] = M0[3][1] = M0_41;
-    M0[2][3] = M0[3][2] = RR_R(0.20951196);
+    M0[0][3] = M0_41;
+    M0[3][0] = M0_41;
+    M0[1][3] = M0_41;
+    M0[3][1] = M0_41;
+    M0[2][3] = RR_R(0.20951196);
+    M0[3][2] = RR_R(0.20951196);
     M0[3][3] = M0_44;
     return RR_OK;
 }

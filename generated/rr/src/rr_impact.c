@@ -12,214 +12,6 @@
  * depth that it would have without it. The node between skin and body is a backward difference.
  */
 
-/* x0 + x1 t + x2 t^2 + x3 t^3 */
-static inline rr_real polynomial(rr_real t, rr_real x0, rr_real x1, rr_real x2,
-    rr_real x3)
-{
-    return x0 + t*(x1 + t*(x2 + t*x3));
-}
-
-static int check_region(const rr_region *region)
-{
-    const rr_real numbers[4] = {region->stiffness, region->damping, region->effective_mass,
-        region->hertz_stiffness};
-    if (!rr_all_finite(numbers, 4)) {
-        return RR_NOT_FINITE;
-    }
-    const int holds = region->stiffness > RR_R(0.0) && region->damping >= RR_R(0.0)
-        && region->hertz_stiffness > RR_R(0.0)
-        && (region->clamped != 0 || region->effective_mass > RR_R(0.0));
-    return holds ? RR_OK : RR_OUT_OF_RANGE;
-}
-
-/* Number of masses before which the chain ends. */
-static int chain_length(const rr_impact_chain_t *chain)
-{
-    int i = 1;
-    for (; i < RR_MASSES; ++i) {
-        const rr_real next = chain->stiffness[i - 1];
-        const rr_real own = next + (i > 1 ? chain->stiffness[i - 2] : RR_R(0.0));
-        const rr_real share = next*next*chain->mass[i - 1]/(chain->mass[i]*own*own);
-        if (!(share > RR_R(1e-10) && chain->mass[i] > RR_R(0.0))) {
-            break;
-        }
-    }
-    return i;
-}
-
-/*
- * Eigenvalues d of a symmetric tridiagonal matrix (d, e), and two rows of numbers in its
- * eigenvectors: QL steps with implicit shifts. 0 if 30 steps an eigenvalue do not do.
- */
-static int eigenvalues(int count, rr_real *d, rr_real *e, rr_real *x, rr_real *y)
-{
-    for (int l = 0; l < count; ++l) {
-        for (int step = 0;; ++step) {
-            int m = l;
-            while (m + 1 < count
-                   && RR_FABS(e[m]) > RR_R(1e-06)*(RR_FABS(d[m]) + RR_FABS(d[m + 1]))) {
-                ++m;
-            }
-            if (m == l) {
-                break;
-            }
-            if (step == 30) {
-                return 0;
-            }
-            const rr_real half = (d[l + 1] - d[l])/(e[l] + e[l]);
-            const rr_real length = RR_SQRT(half*half + RR_R(1.0));
-            rr_real g = d[m] - d[l] + e[l]/(half + (half < RR_R(0.0) ? -length : length));
-            rr_real s = RR_R(1.0);
-            rr_real c = RR_R(1.0);
-            rr_real p = RR_R(0.0);
-            int i = m - 1;
-            for (; i >= l; --i) {
-                const rr_real f = s*e[i];
-                const rr_real b = c*e[i];
-                const rr_real r = RR_SQRT(f*f + g*g);
-                e[i + 1] = r;
-                if (!(r > RR_R(0.0))) {
-                    break;
-                }
-                const rr_real inverse = RR_R(1.0)/r;
-                s = f*inverse;
-                c = g*inverse;
-                g = d[i + 1] - p;
-                const rr_real t = (d[i] - g)*s + RR_R(2.0)*c*b;
-                p = s*t;
-                d[i + 1] = g + p;
-                g = c*t - b;
-                const rr_real x1 = x[i + 1];
-                x[i + 1] = s*x[i] + c*x1;
-                x[i] = c*x[i] - s*x1;
-                const rr_real y1 = y[i + 1];
-                y[i + 1] = s*y[i] + c*y1;
-                y[i] = c*y[i] - s*y1;
-            }
-            if (i >= l) { /* the rotation is none: the matrix falls apart here */
-                d[i + 1] -= p;
-                e[m] = RR_R(0.0);
-                continue;
-            }
-            d[l] -= p;
-            e[l] = g;
-            e[m] = RR_R(0.0);
-        }
-    }
-    return 1;
-}
-
-/* Modes of the chain: squared frequency, mobility and velocity at the contact point. */
-static int modes_of(rr_impact_chain_t *chain, int held, rr_real *squared, rr_real *weight,
-    rr_real *velocity)
-{
-    const int count = chain_length(chain);
-    if (count == RR_MASSES && RR_MASSES < RR_COORDINATES && !held) {
-        chain->stiffness[count - 1] = RR_R(0.0);
-    }
-    rr_real off[RR_MASSES];
-    rr_real before = RR_R(0.0);
-    rr_real root = RR_SQRT(chain->mass[0]);
-    const rr_real first = RR_R(1.0)/root;
-    for (int i = 0; i < count; ++i) {
-        const rr_real after = chain->stiffness[i];
-        squared[i] = (before + after)/chain->mass[i];
-        weight[i] = i == 0 ? first : RR_R(0.0);
-        velocity[i] = root*chain->velocity[i];
-        off[i] = RR_R(0.0);
-        if (i + 1 < count) {
-            const rr_real next = RR_SQRT(chain->mass[i + 1]);
-            off[i] = -after/(root*next);
-            root = next;
-        }
-        before = after;
-    }
-    if (!eigenvalues(count, squared, off, weight, velocity)) {
-        return 0;
-    }
-    for (int i = 0; i < count; ++i) {
-        velocity[i] *= weight[i];
-        weight[i] *= weight[i];
-    }
-    return count;
-}
-
-/* Coefficients of all levels. */
-static void prepare_steps(rr_impact *impact, const rr_real *squared, const rr_real *weight,
-    const rr_real *velocity)
-{
-    for (int i = 0; i < impact->modes; ++i) {
-        rr_real h2 = impact->step*impact->step;
-        rr_real theta2 = squared[i]*h2;
-        const rr_real lean = polynomial(theta2, RR_R(0.16666666666666666),
-            RR_R(-0.008333333333333333), RR_R(0.0001984126984126984), RR_R(0.0));
-        impact->start[i] = velocity[i]*impact->step*(RR_R(1.0) - theta2*lean);
-        impact->start_edge[i] = weight[i]*h2*lean;
-        rr_real alpha = polynomial(theta2, RR_R(0.08333333333333333), RR_R(-0.002777777777777778),
-            RR_R(4.96031746031746e-05), RR_R(-5.511463844797178e-07));
-        for (int level = 0; level <= RR_LEVELS; ++level) {
-            const rr_real psi = RR_R(1.0) - alpha*theta2;
-            const rr_real push = weight[i]*h2;
-            impact->step_of[level][i].kappa = theta2*psi;
-            impact->step_of[level][i].middle = push*(psi - theta2*psi*alpha);
-            impact->edge[level][i] = push*alpha;
-            alpha = RR_R(0.25)*alpha + RR_R(0.0625)*psi*psi;
-            theta2 *= RR_R(4.0);
-            h2 *= RR_R(4.0);
-        }
-    }
-}
-
-int rr_impact_prepare(const rr_real q[4], const rr_real n[3],
-    const rr_region *region, const rr_params *p, rr_impact *impact)
-{
-    rr_impact_chain_t chain;
-    int status = rr_impact_chain(q, n, p, &chain);
-    if (status != RR_OK) {
-        return status;
-    }
-    status = check_region(region);
-    if (status != RR_OK) {
-        return status;
-    }
-    int held = 0;
-    for (int i = 0; i < 4; ++i) {
-        held |= p->position_gain[i] > RR_R(0.0);
-    }
-    rr_real squared[RR_MODES];
-    rr_real weight[RR_MODES];
-    rr_real velocity[RR_MODES];
-    impact->modes = modes_of(&chain, held, squared, weight, velocity);
-    if (impact->modes == 0) {
-        return RR_UNRESOLVED;
-    }
-    if (region->clamped == 0) {
-        squared[impact->modes] = RR_R(0.0);
-        weight[impact->modes] = RR_R(1.0)/region->effective_mass;
-        velocity[impact->modes] = RR_R(0.0);
-        ++impact->modes;
-    }
-    rr_real mobility = RR_R(0.0);
-    rr_real fastest = RR_R(0.0);
-    for (int i = 0; i < impact->modes; ++i) {
-        mobility += weight[i];
-        fastest = RR_FMAX(fastest, squared[i]);
-    }
-    /* at most 0.16 rad of the contact's vibration and 2.5 rad of any mode's in the last level's step */
-    const rr_real contact = region->stiffness*mobility*RR_R(39.0625);
-    const rr_real rate2 = RR_FMAX(contact, fastest*RR_R(0.16));
-    impact->stiffness = region->stiffness;
-    impact->damping = region->damping;
-    impact->skin = region->hertz_stiffness;
-    impact->mobility = mobility;
-    impact->step = RR_R(0.125)/RR_SQRT(rate2);
-    if (!(impact->step > RR_R(0.0))) {
-        return RR_SINGULAR;
-    }
-    prepare_steps(impact, squared, weight, velocity);
-    return RR_OK;
-}
-
 /* The u > 0 with u^2 + cubic u^3 = depth, from a guess; 0 if there is none. */
 static rr_real root_of_depth(rr_real depth, rr_real cubic, rr_real guess)
 {
@@ -227,12 +19,12 @@ static rr_real root_of_depth(rr_real depth, rr_real cubic, rr_real guess)
         return RR_R(0.0);
     }
     rr_real u = guess;
-    for (int k = 0; k < 12; ++k) {
+    for (int k = 0; k < 32; ++k) {
         const rr_real cu = cubic*u;
         const rr_real change =
             (u*u*(RR_R(1.0) + cu) - depth)/(u*(RR_R(2.0) + RR_R(3.0)*cu));
         u -= change;
-        if (RR_FABS(change) <= RR_R(0.001)*u) {
+        if (RR_FABS(change) <= RR_R(0.003)*u) {
             break;
         }
     }
@@ -241,17 +33,23 @@ static rr_real root_of_depth(rr_real depth, rr_real cubic, rr_real guess)
 
 /* Displacement of a mode, with what the force at the same node does, and its last change. */
 typedef struct {
-    rr_real g, d;
+    rr_real g;
+    rr_real d;
 } motion;
 
-/* Where an integration is. Index 0 is the last node, index 1 the one before. */
+/* Force, root of the skin's depth, and place of what is between skin and body. */
+typedef struct {
+    rr_real f;
+    rr_real u;
+    rr_real s;
+} node;
+
+/* Where an integration is. */
 typedef struct {
     motion mode[RR_MODES];
-    rr_real f[2];            /* force */
-    rr_real u[2];            /* root of the skin's depth */
-    rr_real s[3];            /* node between skin and body */
+    node last[3];                /* nodes, the newest first */
+    int even;                    /* how many of them are evenly spaced */
     rr_real depth;           /* that skin and body would have without the last force */
-    int past;                    /* how many of s are evenly spaced */
     rr_real time;
     rr_real best;            /* largest force, and when */
     rr_real best_time;
@@ -262,107 +60,103 @@ static void first_node(const rr_impact *impact, rr_real skin, state *at)
     rr_real depth = RR_R(0.0);
     rr_real soft = RR_R(1.0)/(impact->stiffness + impact->damping/impact->step);
     const rr_real hold = soft;
+    soft += impact->compliance;
     for (int i = 0; i < impact->modes; ++i) {
         depth += impact->start[i];
         soft += impact->start_edge[i];
     }
-    const rr_real u = root_of_depth(depth, soft*skin, RR_SQRT(depth));
+    /* from above: either term alone would be the depth at a greater u */
+    const rr_real light = RR_SQRT(depth);
+    const rr_real guess = light/RR_SQRT(RR_SQRT(RR_R(1.0) + soft*skin*light));
+    const rr_real u = root_of_depth(depth, soft*skin, guess);
     const rr_real f = skin*u*u*u;
     for (int i = 0; i < impact->modes; ++i) {
-        at->mode[i].g = impact->start[i] + (impact->edge[0][i] - impact->start_edge[i])*f;
+        at->mode[i].g = impact->start[i] + (impact->level[0].edge[i] - impact->start_edge[i])*f;
         at->mode[i].d = at->mode[i].g;
     }
-    at->f[0] = f;
-    at->u[0] = u;
-    at->s[0] = f*hold;
-    at->f[1] = at->u[1] = at->s[1] = at->s[2] = RR_R(0.0);
-    at->past = 1;
-    at->time = at->best_time = impact->step;
+    const node touch = {RR_R(0.0), RR_R(0.0), RR_R(0.0)};
+    const node first = {f, u, f*hold};
+    at->last[0] = first;
+    at->last[1] = touch;
+    at->last[2] = touch;
+    at->even = 1;
+    at->time = impact->step;
+    at->best_time = impact->step;
     at->best = f;
 }
 
-/* Notes the force at a new node, and the top of the parabola through the last three. */
+/* Notes the largest force near the last node, before force f: of a cubic, or first of a parabola. */
 static void note_peak(state *at, rr_real h, rr_real f)
 {
-    const rr_real here = at->f[0];
-    if (here >= at->f[1] && here > f) {
-        const rr_real bend = RR_R(2.0)*here - f - at->f[1];
-        const rr_real lean = f - at->f[1];
-        const rr_real top = here + lean*lean/(RR_R(8.0)*bend);
-        if (top > at->best) {
-            at->best = top;
-            at->best_time = at->time + h*lean/(RR_R(2.0)*bend);
-        }
+    const rr_real here = at->last[0].f;
+    const rr_real before = at->last[1].f;
+    if (!(here >= before && here > f)) {
+        return;
     }
-    if (f > at->best) {
-        at->best = f;
-        at->best_time = at->time + h;
+    const rr_real third = at->even >= 3
+        ? f - RR_R(3.0)*(here - before) - at->last[2].f : RR_R(0.0);
+    const rr_real bend = (f - here) + (before - here);
+    const rr_real lean = RR_R(0.5)*(f - before) - RR_R(0.16666666666666666)*third;
+    rr_real x = -lean/bend;
+    x -= (lean + x*(bend + RR_R(0.5)*x*third))/(bend + x*third);
+    if (!(x > RR_R(-1.0) && x < RR_R(1.0))) {
+        x = RR_R(0.0);
+    }
+    const rr_real rise = x*(lean + x*(RR_R(0.5)*bend + RR_R(0.16666666666666666)*x*third));
+    const rr_real top = RR_FMAX(here, here + rise);
+    if (top > at->best) {
+        at->best = top;
+        at->best_time = at->time + h*x;
     }
 }
 
-/* Constants of a level. */
-typedef struct {
-    rr_real h, rate, soft; /* step, damping over it, what a force moves by the modes alone */
-    rr_real hold[2];       /* compliance of the body for the two backward differences */
-} pace;
-
-static pace pace_of(const rr_impact *impact, int level, rr_real h)
+/* Takes a step; if `doubles`, the next is of the next level. Returns the force, 0 at the end. */
+static rr_real step(const rr_level *level, int modes, rr_real skin, bool doubles, state *at)
 {
-    pace now = {h, impact->damping/h, RR_R(0.0), {RR_R(0.0), RR_R(0.0)}};
-    for (int i = 0; i < impact->modes; ++i) {
-        now.soft += impact->edge[level][i];
-    }
-    now.hold[0] = RR_R(1.0)/(impact->stiffness + RR_R(1.5)*now.rate);
-    now.hold[1] = RR_R(1.0)/(impact->stiffness + RR_R(1.8333333333333333)*now.rate);
-    return now;
-}
-
-/* Takes a step; if `doubles`, the next has twice its length. Returns the force, 0 at the end. */
-static rr_real step(const rr_impact *impact, rr_real skin, int level, const pace *now, int doubles,
-    state *at)
-{
-    const rr_mode_step *const by = impact->step_of[level];
-    const rr_real f0 = at->f[0];
+    node *const last = at->last;
     rr_real depth = RR_R(0.0);
     motion earlier[RR_MODES];
     if (doubles) {
-        memcpy(earlier, at->mode, sizeof earlier);
+        (void)memcpy(earlier, at->mode, sizeof earlier);
     }
-    for (int i = 0; i < impact->modes; ++i) {
+    for (int i = 0; i < modes; ++i) {
         motion *const mode = &at->mode[i];
-        mode->d -= by[i].kappa*mode->g + by[i].middle*f0;
+        mode->d -= level->mode[i].kappa*mode->g;
+        mode->d -= level->mode[i].middle*last[0].f;
         mode->g += mode->d;
         depth += mode->g;
     }
-    const int third = at->past >= 3;
-    const rr_real hold = now->hold[third];
-    const rr_real memory = now->rate
-        *(third ? RR_R(3.0)*at->s[0] - RR_R(1.5)*at->s[1] + RR_R(0.3333333333333333)*at->s[2]
-                : RR_R(2.0)*at->s[0] - RR_R(0.5)*at->s[1]);
-    const rr_real guess =
-        RR_FMAX(RR_R(2.0)*at->u[0] - at->u[1], RR_R(0.5)*at->u[0]);
-    const rr_real u = root_of_depth(depth - memory*hold, (now->soft + hold)*skin, guess);
-    const rr_real f = skin*u*u*u;
-    at->depth = depth;
-    note_peak(at, now->h, f);
-    if (doubles) {
-        for (int i = 0; i < impact->modes; ++i) {
-            const rr_real more = impact->edge[level + 1][i] - impact->edge[level][i];
-            at->mode[i].g += more*f;
-            at->mode[i].d += earlier[i].d + more*(f - at->f[1]);
-        }
-        at->past = 2;
+    const bool even = at->even >= 3;
+    const rr_real hold = level->hold[even ? 1 : 0];
+    rr_real memory;
+    rr_real guess = RR_R(2.0)*last[0].u - last[1].u;
+    if (even) {
+        memory = RR_R(3.0)*last[0].s - RR_R(1.5)*last[1].s + RR_R(0.3333333333333333)*last[2].s;
+        guess += last[0].u - RR_R(2.0)*last[1].u + last[2].u;
     } else {
-        at->f[1] = f0;
-        at->u[1] = at->u[0];
-        at->s[2] = at->s[1];
-        at->s[1] = at->s[0];
-        ++at->past;
+        memory = RR_R(2.0)*last[0].s - RR_R(0.5)*last[1].s;
     }
-    at->f[0] = f;
-    at->u[0] = u;
-    at->s[0] = (f + memory)*hold;
-    at->time += now->h;
+    memory *= level->rate;
+    const rr_real least = RR_R(0.5)*last[0].u;
+    const rr_real u = root_of_depth(depth - memory*hold, (level->soft + hold)*skin, guess > least ? guess : least);
+    const rr_real f = skin*u*u*u;
+    const node next = {f, u, (f + memory)*hold};
+    at->depth = depth;
+    note_peak(at, level->h, f);
+    if (doubles) {
+        for (int i = 0; i < modes; ++i) {
+            const rr_real more = level[1].edge[i] - level[0].edge[i];
+            at->mode[i].g += more*f;
+            at->mode[i].d += earlier[i].d + more*(f - last[1].f);
+        }
+        at->even = 2;
+    } else {
+        last[2] = last[1];
+        last[1] = last[0];
+        ++at->even;
+    }
+    last[0] = next;
+    at->time += level->h;
     return f;
 }
 
@@ -371,21 +165,19 @@ int rr_impact_run(const rr_impact *impact, rr_real speed, rr_peak_force_t *out)
     state at;
     const rr_real skin = impact->skin*RR_SQRT(speed);
     first_node(impact, skin, &at);
-    rr_real h = impact->step;
-    int parted = 0;
-    for (int level = 0; level <= RR_LEVELS && !parted; ++level) {
-        const pace now = pace_of(impact, level, h);
-        const int last = level == RR_LEVELS;
-        const int nodes = last ? 1024 : (level == 0 ? 3 : 2);
-        for (int k = 1; k <= nodes && !parted; ++k) {
-            parted = !(step(impact, skin, level, &now, !last && k == nodes, &at) > RR_R(0.0));
+    bool parted = false;
+    for (int k = 0; k <= RR_LEVELS && !parted; ++k) {
+        const bool last = k == RR_LEVELS;
+        const int nodes = last ? 1024 : (k == 0 ? 1 : 2);
+        for (int left = nodes - 1; left >= 0 && !parted; --left) {
+            const bool doubles = !last && left == 0;
+            parted = !(step(&impact->level[k], impact->modes, skin, doubles, &at) > RR_R(0.0));
         }
-        h += h;
     }
     if (!parted) {
         return RR_UNRESOLVED;
     }
-    const rr_real found[4] = {at.best*speed, at.best_time, at.depth, at.f[0]};
+    const rr_real found[4] = {at.best*speed, at.best_time, at.depth, at.last[0].f};
     if (!(rr_all_finite(found, 4) && found[0] > RR_R(0.0))) {
         return RR_SINGULAR;
     }

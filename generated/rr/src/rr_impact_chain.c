@@ -20,22 +20,26 @@ int rr_impact_chain(
     if (status != RR_OK) {
         return status;
     }
-    status = rr_check_not_negative(p->rotor_inertia);
+    status = rr_check_not_negative(p->rotor_inertia, 4);
     if (status != RR_OK) {
         return status;
     }
-    status = rr_check_not_negative(p->position_gain);
+    status = rr_check_not_negative(p->position_gain, 4);
     if (status != RR_OK) {
         return status;
     }
 
-    rr_real s1, c1;
+    rr_real s1;
+    rr_real c1;
     rr_sine_cosine(q[0], &s1, &c1);
-    rr_real s2, c2;
+    rr_real s2;
+    rr_real c2;
     rr_sine_cosine(q[1], &s2, &c2);
-    rr_real s3, c3;
+    rr_real s3;
+    rr_real c3;
     rr_sine_cosine(q[2], &s3, &c3);
-    rr_real s4, c4;
+    rr_real s4;
+    rr_real c4;
     rr_sine_cosine(q[3], &s4, &c4);
     const rr_real t1 = c1*u[1] - s1*u[0];
     const rr_real t2 = c1*u[0] + s1*u[1];

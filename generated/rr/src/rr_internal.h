@@ -5,6 +5,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "rr.h"
@@ -45,21 +46,21 @@ static inline void rr_sine_cosine(double x, double *s, double *c)
 }
 #endif
 
-/* 1 if all numbers are finite; a comparison with a NaN is false. */
-static inline int rr_all_finite(const rr_real *x, int count)
+/* Whether all numbers are finite; a comparison with a NaN is false. */
+static inline bool rr_all_finite(const rr_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
         if (!(RR_FABS(x[i]) <= RR_REAL_MAX)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-/* Status of a parameter that must be positive. */
-static inline int rr_check_positive(const rr_real x[4])
+/* Status of inputs that must be greater than 0. */
+static inline int rr_check_positive(const rr_real *x, int count)
 {
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < count; ++i) {
         if (!(x[i] > RR_R(0.0) && x[i] <= RR_REAL_MAX)) {
             return rr_all_finite(&x[i], 1) ? RR_OUT_OF_RANGE : RR_NOT_FINITE;
         }
@@ -67,15 +68,32 @@ static inline int rr_check_positive(const rr_real x[4])
     return RR_OK;
 }
 
-/* Status of a parameter that must not be negative. */
-static inline int rr_check_not_negative(const rr_real x[4])
+/* Status of inputs that must be 0 or greater. */
+static inline int rr_check_not_negative(const rr_real *x, int count)
 {
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < count; ++i) {
         if (!(x[i] >= RR_R(0.0) && x[i] <= RR_REAL_MAX)) {
             return rr_all_finite(&x[i], 1) ? RR_OUT_OF_RANGE : RR_NOT_FINITE;
         }
     }
     return RR_OK;
+}
+
+/* Status of inputs that must be from 0 to 1. */
+static inline int rr_check_share(const rr_real *x, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        if (!(x[i] >= RR_R(0.0) && x[i] <= RR_R(1.0))) {
+            return rr_all_finite(&x[i], 1) ? RR_OUT_OF_RANGE : RR_NOT_FINITE;
+        }
+    }
+    return RR_OK;
+}
+
+/* Status of inputs that may be any number. */
+static inline int rr_check_finite(const rr_real *x, int count)
+{
+    return rr_all_finite(x, count) ? RR_OK : RR_NOT_FINITE;
 }
 
 /* Unit vector u along n; scaled first, so that no square over- or underflows. */

@@ -12,13 +12,17 @@ int rr_jacobian(const rr_real q[4], rr_real J[3][4])
         return RR_NOT_FINITE;
     }
 
-    rr_real s1, c1;
+    rr_real s1;
+    rr_real c1;
     rr_sine_cosine(q[0], &s1, &c1);
-    rr_real s2, c2;
+    rr_real s2;
+    rr_real c2;
     rr_sine_cosine(q[1], &s2, &c2);
-    rr_real s3, c3;
+    rr_real s3;
+    rr_real c3;
     rr_sine_cosine(q[2], &s3, &c3);
-    rr_real s4, c4;
+    rr_real s4;
+    rr_real c4;
     rr_sine_cosine(q[3], &s4, &c4);
     const rr_real t1 = c2*s1 + s2*c1;
     const rr_real t2 = c2*c1 - s2*s1;

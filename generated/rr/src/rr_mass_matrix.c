@@ -12,9 +12,11 @@ int rr_mass_matrix(const rr_real q[4], rr_real M[4][4])
         return RR_NOT_FINITE;
     }
 
-    rr_real s3, c3;
+    rr_real s3;
+    rr_real c3;
     rr_sine_cosine(q[2], &s3, &c3);
-    rr_real s4, c4;
+    rr_real s4;
+    rr_real c4;
     rr_sine_cosine(q[3], &s4, &c4);
     const rr_real t1 = c3*(RR_R(0.86372)*c4) - s3*(RR_R(0.86372)*s4);
     const rr_real M_21 = RR_R(2.5044576) + (RR_R(1.03951196) + t1);
@@ -23,14 +25,20 @@ int rr_mass_matrix(const rr_real q[4], rr_real M[4][4])
     const rr_real M_31 = RR_R(1.03951196) + t2;
     const rr_real M_41 = RR_R(0.20951196) + t2;
     M[0][0] = M_11;
-    M[0][1] = M[1][0] = M_21;
+    M[0][1] = M_21;
+    M[1][0] = M_21;
     M[1][1] = M_21;
-    M[0][2] = M[2][0] = M_31;
-    M[1][2] = M[2][1] = M_31;
+    M[0][2] = M_31;
+    M[2][0] = M_31;
+    M[1][2] = M_31;
+    M[2][1] = M_31;
     M[2][2] = RR_R(1.03951196);
-    M[0][3] = M[3][0] = M_41;
-    M[1][3] = M[3][1] = M_41;
-    M[2][3] = M[3][2] = RR_R(0.20951196);
+    M[0][3] = M_41;
+    M[3][0] = M_41;
+    M[1][3] = M_41;
+    M[3][1] = M_41;
+    M[2][3] = RR_R(0.20951196);
+    M[3][2] = RR_R(0.20951196);
     M[3][3] = RR_R(0.20951196);
     return RR_OK;
 }

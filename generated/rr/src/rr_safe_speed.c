@@ -4,13 +4,23 @@
 #include "rr_impact.h"
 
 /*
- * Twice the energy of skin and body, times the body's stiffness, at a static force: the square of
- * speed grows about like it, also where the skin's stiffness changes with the force.
+ * About the speed that leads to a force: all energy is in skin and body, and modes count the less
+ * the faster they are than the contact. Close where robots are simple, and always of the right trend.
  */
-static rr_real energy(const rr_impact *impact, rr_real force)
+static rr_real speed_of(const rr_impact *impact, rr_real force)
 {
-    const rr_real depth = RR_POW(force/impact->skin, RR_R(0.6666666666666666));
-    return force*(force + RR_R(0.8)*impact->stiffness*depth);
+    const rr_real k = impact->stiffness;
+    const rr_real skin = RR_POW(force/impact->skin, RR_R(0.6666666666666666));
+    const rr_real slow = RR_R(1.5)*(force + k*skin)/(force*k*impact->mobility);
+    rr_real mobility = RR_R(0.0);
+    rr_real velocity = RR_R(0.0);
+    for (int i = 0; i < impact->modes; ++i) {
+        const rr_real share = RR_R(1.0)/(RR_R(1.0) + slow*impact->squared[i]);
+        mobility += share*impact->weight[i];
+        velocity += share*impact->velocity[i];
+    }
+    const rr_real energy = force*(force + RR_R(0.8)*k*skin); /* 2 k times it */
+    return RR_SQRT(energy*mobility/k)/velocity;
 }
 
 int rr_safe_speed(
@@ -35,17 +45,16 @@ int rr_safe_speed(
     if (status != RR_OK) {
         return status;
     }
-    const rr_real aim = limit*RR_R(0.9994);
-    const rr_real most = limit*RR_R(0.9996999999999999);
-    const rr_real least = limit*RR_R(0.9991);
-    const rr_real wanted = energy(&impact, aim);
-    /* a first guess: the masses at the contact alone, and some of those behind them */
-    rr_real v = RR_R(0.8)*RR_SQRT(wanted*impact.mobility/impact.stiffness);
+    const rr_real aim = limit*RR_R(0.9993);
+    const rr_real most = limit*RR_R(0.99959);
+    const rr_real least = limit*RR_R(0.99901);
+    const rr_real about = speed_of(&impact, aim);
+    rr_real v = RR_R(1.05)*RR_FABS(about);
     rr_real low = RR_R(0.0);  /* safe */
     rr_real high = RR_R(0.0); /* not safe; 0 while unknown */
     rr_real low_force = RR_R(0.0);
-    rr_real before = RR_R(0.0);
-    rr_real before_ratio = RR_R(1.0);
+    rr_real before = RR_R(0.0); /* force of the last trial, and what it says of speed_of */
+    rr_real before_off = RR_R(1.0);
     for (int k = 0; k < 16; ++k) {
         rr_peak_force_t peak;
         if (!(rr_all_finite(&v, 1) && v > RR_R(0.0))) {
@@ -61,23 +70,22 @@ int rr_safe_speed(
         } else {
             high = v;
         }
-        const int jumps = low > RR_R(0.0) && high > RR_R(0.0)
-            && high - low <= RR_R(0.0003)*low;
+        const bool jumps = low > RR_R(0.0) && high > RR_R(0.0)
+            && high - low <= RR_R(0.00029)*low;
         if ((peak.force >= least && peak.force <= most) || jumps) {
             out->speed = low;
             out->force = low_force;
             return RR_OK;
         }
-        /* power of the energy's ratio that the last two speeds tell */
-        const rr_real ratio = RR_SQRT(wanted/energy(&impact, peak.force));
-        rr_real power = RR_R(1.002);
-        if (before > RR_R(0.0)) {
-            const rr_real told = RR_LOG(v/before)/RR_LOG(before_ratio/ratio);
-            power = told > RR_R(0.5) && told < RR_R(2.0) ? told : power;
+        /* what speed_of is off by changes little with the force, and about linearly */
+        const rr_real off = v/speed_of(&impact, peak.force);
+        rr_real next = off;
+        if (k > 0) {
+            next += (off - before_off)*(aim - peak.force)/(peak.force - before);
         }
-        before = v;
-        before_ratio = ratio;
-        v *= RR_POW(ratio, power);
+        before = peak.force;
+        before_off = off;
+        v = about*(next > RR_R(0.5)*off && next < RR_R(2.0)*off ? next : off);
         if (!(v > low && (v < high || !(high > RR_R(0.0))))) {
             v = RR_R(0.5)*(low + high);
         }

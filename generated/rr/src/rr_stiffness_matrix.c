@@ -11,7 +11,7 @@ int rr_stiffness_matrix(const rr_real q[4], const rr_params *p, rr_real K0[4][4]
     if (!rr_all_finite(q, 4)) {
         return RR_NOT_FINITE;
     }
-    int status = rr_check_not_negative(p->position_gain);
+    int status = rr_check_not_negative(p->position_gain, 4);
     if (status != RR_OK) {
         return status;
     }

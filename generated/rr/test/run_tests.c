@@ -25,17 +25,15 @@ static void expect(int holds, const char *function, const char *what)
     }
 }
 
-/* Largest difference over the largest right entry, or absolute for shares of 1. */
-static double error_of(const double *found, const double *right, size_t count, int share)
+/* Largest difference over the scale that follows the right entries. */
+static double error_of(const double *found, const double *right, size_t count)
 {
     double difference = 0.0;
-    double scale = share ? 1.0 : 0.0;
     for (size_t i = 0; i < count; ++i) {
         const double d = fabs(found[i] - right[i]);
         difference = d <= difference ? difference : d;
-        scale = share ? scale : fmax(scale, fabs(right[i]));
     }
-    return difference > 0.0 ? difference/scale : 0.0;
+    return difference > 0.0 ? difference/right[count] : 0.0;
 }
 
 static int is_same(rr_real a, rr_real b)
@@ -75,8 +73,7 @@ static void test_mass_matrix(void)
                            name, "M is symmetric");
                 }
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 5e-07);
@@ -119,8 +116,7 @@ static void test_jacobian(void)
                     found[at++] = (double)J[i][j];
                 }
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 9e-07);
@@ -165,8 +161,7 @@ static void test_generalised_mass_matrix(void)
                            name, "M0 is symmetric");
                 }
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 5e-07);
@@ -187,9 +182,9 @@ static void test_generalised_mass_matrix(void)
     expect(rr_generalised_mass_matrix(in.q, &in.p, M0) == RR_NOT_FINITE,
            name, "rotor_inertia is not a number");
     in = rr_golden_inputs[0];
-    in.p.rotor_inertia[3] = -1;
+    in.p.rotor_inertia[3] = -1.0;
     expect(rr_generalised_mass_matrix(in.q, &in.p, M0) == RR_OUT_OF_RANGE,
-           name, "rotor_inertia is negative");
+           name, "rotor_inertia is -1.0");
     in = rr_golden_inputs[0];
     expect(rr_generalised_mass_matrix(NULL, &in.p, M0) == RR_NULL_POINTER,
            name, "q is NULL");
@@ -221,8 +216,7 @@ static void test_stiffness_matrix(void)
                            name, "K0 is symmetric");
                 }
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 5e-07);
@@ -243,9 +237,9 @@ static void test_stiffness_matrix(void)
     expect(rr_stiffness_matrix(in.q, &in.p, K0) == RR_NOT_FINITE,
            name, "position_gain is not a number");
     in = rr_golden_inputs[0];
-    in.p.position_gain[3] = -1;
+    in.p.position_gain[3] = -1.0;
     expect(rr_stiffness_matrix(in.q, &in.p, K0) == RR_OUT_OF_RANGE,
-           name, "position_gain is negative");
+           name, "position_gain is -1.0");
     in = rr_golden_inputs[0];
     expect(rr_stiffness_matrix(NULL, &in.p, K0) == RR_NULL_POINTER,
            name, "q is NULL");
@@ -272,8 +266,7 @@ static void test_contact_jacobian(void)
             for (size_t i = 0; i < 4; ++i) {
                 found[i] = (double)J_c[i];
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 6e-06);
@@ -321,8 +314,7 @@ static void test_reflected_mass(void)
         {
             double found[1];
             found[0] = (double)m_c;
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 8e-06);
@@ -351,9 +343,9 @@ static void test_reflected_mass(void)
     expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_NOT_FINITE,
            name, "rotor_inertia is not a number");
     in = rr_golden_inputs[0];
-    in.p.rotor_inertia[3] = -1;
+    in.p.rotor_inertia[3] = -1.0;
     expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_OUT_OF_RANGE,
-           name, "rotor_inertia is negative");
+           name, "rotor_inertia is -1.0");
     in = rr_golden_inputs[0];
     expect(rr_reflected_mass(NULL, in.n, &in.p, &m_c) == RR_NULL_POINTER,
            name, "q is NULL");
@@ -380,20 +372,19 @@ static void test_reduced_model(void)
         {
             double found[1];
             found[0] = (double)out.m_c;
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+            right += LENGTH(found) + 1;
         }
         {
             double found[1];
             found[0] = (double)out.k_r;
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+            right += LENGTH(found) + 1;
         }
         {
             double found[1];
             found[0] = (double)out.m_a;
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 2e-05);
@@ -422,17 +413,17 @@ static void test_reduced_model(void)
     expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
            name, "rotor_inertia is not a number");
     in = rr_golden_inputs[0];
-    in.p.rotor_inertia[3] = -1;
+    in.p.rotor_inertia[3] = -1.0;
     expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_OUT_OF_RANGE,
-           name, "rotor_inertia is negative");
+           name, "rotor_inertia is -1.0");
     in = rr_golden_inputs[0];
     in.p.position_gain[0] = (rr_real)NAN;
     expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
            name, "position_gain is not a number");
     in = rr_golden_inputs[0];
-    in.p.position_gain[3] = -1;
+    in.p.position_gain[3] = -1.0;
     expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_OUT_OF_RANGE,
-           name, "position_gain is negative");
+           name, "position_gain is -1.0");
     in = rr_golden_inputs[0];
     expect(rr_reduced_model(NULL, in.n, &in.p, &out) == RR_NULL_POINTER,
            name, "q is NULL");
@@ -461,16 +452,15 @@ static void test_chain(void)
             for (size_t i = 0; i < 3; ++i) {
                 found[i] = (double)out.mass[i];
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+            right += LENGTH(found) + 1;
         }
         {
             double found[3];
             for (size_t i = 0; i < 3; ++i) {
                 found[i] = (double)out.stiffness[i];
             }
-            worst = fmax(worst, error_of(found, right, LENGTH(found), 0));
-            right += LENGTH(found);
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
     const double bound = BOUND(1e-12, 0.0003);
@@ -499,17 +489,17 @@ static void test_chain(void)
     expect(rr_chain(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
            name, "rotor_inertia is not a number");
     in = rr_golden_inputs[0];
-    in.p.rotor_inertia[3] = -1;
+    in.p.rotor_inertia[3] = -1.0;
     expect(rr_chain(in.q, in.n, &in.p, &out) == RR_OUT_OF_RANGE,
-           name, "rotor_inertia is negative");
+           name, "rotor_inertia is -1.0");
     in = rr_golden_inputs[0];
     in.p.position_gain[0] = (rr_real)NAN;
     expect(rr_chain(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
            name, "position_gain is not a number");
     in = rr_golden_inputs[0];
-    in.p.position_gain[3] = -1;
+    in.p.position_gain[3] = -1.0;
     expect(rr_chain(in.q, in.n, &in.p, &out) == RR_OUT_OF_RANGE,
-           name, "position_gain is negative");
+           name, "position_gain is -1.0");
     in = rr_golden_inputs[0];
     expect(rr_chain(NULL, in.n, &in.p, &out) == RR_NULL_POINTER,
            name, "q is NULL");
@@ -523,9 +513,123 @@ static void test_chain(void)
            name, "nothing written for bad inputs");
 }
 
+static void test_joint_impulse(void)
+{
+    const char *const name = "rr_joint_impulse";
+    rr_joint_impulse_t out;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(rr_golden_inputs); ++k) {
+        const rr_golden_input *const in = &rr_golden_inputs[k];
+        const double *right = rr_golden_joint_impulse[k];
+        expect(rr_joint_impulse(in->q, in->n, in->speed, in->restitution, in->other_mobility, &in->p, &out) == RR_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)out.contact;
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+            right += LENGTH(found) + 1;
+        }
+        {
+            double found[4];
+            for (size_t i = 0; i < 4; ++i) {
+                found[i] = (double)out.joints[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+            right += LENGTH(found) + 1;
+        }
+        {
+            double found[4];
+            for (size_t i = 0; i < 4; ++i) {
+                found[i] = (double)out.gears[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+            right += LENGTH(found) + 1;
+        }
+        {
+            double found[4];
+            for (size_t i = 0; i < 4; ++i) {
+                found[i] = (double)out.velocity_change[i];
+            }
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+        }
+    }
+    const double bound = BOUND(1e-12, 2e-05);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    rr_golden_input in = rr_golden_inputs[0];
+    memset(&out, 0xA5, sizeof out);
+    in.q[0] = (rr_real)NAN;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NOT_FINITE,
+           name, "q is not a number");
+    in = rr_golden_inputs[0];
+    in.q[3] = (rr_real)INFINITY;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NOT_FINITE,
+           name, "q is infinite");
+    in = rr_golden_inputs[0];
+    in.n[1] = (rr_real)NAN;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NOT_FINITE,
+           name, "n is not a number");
+    in = rr_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_ZERO_DIRECTION,
+           name, "n is zero");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[0] = (rr_real)NAN;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NOT_FINITE,
+           name, "rotor_inertia is not a number");
+    in = rr_golden_inputs[0];
+    in.p.rotor_inertia[3] = -1.0;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "rotor_inertia is -1.0");
+    in = rr_golden_inputs[0];
+    in.speed = (rr_real)NAN;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NOT_FINITE,
+           name, "speed is not a number");
+    in = rr_golden_inputs[0];
+    in.speed = -1.0;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "speed is -1.0");
+    in = rr_golden_inputs[0];
+    in.speed = 0.0;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "speed is 0.0");
+    in = rr_golden_inputs[0];
+    in.restitution = (rr_real)NAN;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NOT_FINITE,
+           name, "restitution is not a number");
+    in = rr_golden_inputs[0];
+    in.restitution = -1.0;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "restitution is -1.0");
+    in = rr_golden_inputs[0];
+    in.restitution = 2.0;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "restitution is 2.0");
+    in = rr_golden_inputs[0];
+    in.other_mobility = (rr_real)NAN;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NOT_FINITE,
+           name, "other_mobility is not a number");
+    in = rr_golden_inputs[0];
+    in.other_mobility = -1.0;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_OUT_OF_RANGE,
+           name, "other_mobility is -1.0");
+    in = rr_golden_inputs[0];
+    expect(rr_joint_impulse(NULL, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NULL_POINTER,
+           name, "q is NULL");
+    expect(rr_joint_impulse(in.q, NULL, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NULL_POINTER,
+           name, "n is NULL");
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, NULL, &out) == RR_NULL_POINTER,
+           name, "p is NULL");
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, NULL) == RR_NULL_POINTER,
+           name, "out is NULL");
+    expect(is_untouched(&out, sizeof out),
+           name, "nothing written for bad inputs");
+}
+
 static void test_impacts(void)
 {
-    const rr_real bound = (rr_real)BOUND(0.002, 0.002);
+    const rr_real bound = (rr_real)BOUND(0.001, 0.001);
     double worst = 0.0;
     for (size_t k = 0; k < LENGTH(rr_golden_impacts); ++k) {
         const rr_golden_impact *const in = &rr_golden_impacts[k];
@@ -620,6 +724,67 @@ static void test_bad_impacts(void)
     expect(is_untouched(&peak, sizeof peak) && is_untouched(&safe, sizeof safe), "impacts", "nothing written for bad inputs");
 }
 
+#define POSES LENGTH(rr_golden_impacts)
+
+/* The best of some poses, one call of rr_peak_force after the other; -1 if none is usable. */
+static int best_of(const rr_real poses[][4], int count, const unsigned char *allowed,
+    const rr_golden_impact *in, const rr_region *region, rr_real *force)
+{
+    int best = -1;
+    for (int i = 0; i < count; ++i) {
+        rr_peak_force_t peak;
+        if (allowed[i] != 0 && rr_peak_force(poses[i], in->n, in->speed, region, &in->p, &peak) == RR_OK
+            && (best < 0 || peak.force < *force)) {
+            best = i;
+            *force = peak.force;
+        }
+    }
+    return best;
+}
+
+static void check_selection(const rr_real poses[][4], int count, const rr_golden_impact *in)
+{
+    unsigned char allowed[12];
+    rr_region region;
+    rr_selection_t found;
+    rr_selection_t rest;
+    rr_real force = 0;
+    rr_real next = 0;
+    memset(allowed, 1, sizeof allowed);
+    expect(rr_body_region(in->part, in->clamped, &region) == RR_OK, "rr_body_region", "status");
+    const int best = best_of(poses, count, allowed, in, &region, &force);
+    expect(rr_select_configuration(poses, count, NULL, in->n, in->speed, &region, &in->p, &found) == RR_OK,
+           "rr_select_configuration", "status");
+    expect(found.best == best && is_same(found.force, force), "rr_select_configuration", "is the best");
+    allowed[best] = 0;
+    const int second = best_of(poses, count, allowed, in, &region, &next);
+    expect(found.second == second && is_same(found.margin, next - force), "rr_select_configuration", "second best");
+    expect(rr_select_configuration(poses, count, allowed, in->n, in->speed, &region, &in->p, &rest) == RR_OK
+               && rest.best == second && rest.usable == found.usable - 1,
+           "rr_select_configuration", "leaves out what is not allowed");
+    memset(allowed, 0, sizeof allowed);
+    memset(&rest, 0xA5, sizeof rest);
+    expect(rr_select_configuration(poses, count, allowed, in->n, in->speed, &region, &in->p, &rest) == RR_SINGULAR
+               && rr_select_configuration(poses, 0, NULL, in->n, in->speed, &region, &in->p, &rest) == RR_SINGULAR,
+           "rr_select_configuration", "no pose is left");
+    expect(rr_select_configuration(NULL, 1, NULL, in->n, in->speed, &region, &in->p, &rest) == RR_NULL_POINTER
+               && rr_select_configuration(poses, count, NULL, in->n, 0, &region, &in->p, &rest) == RR_OUT_OF_RANGE,
+           "rr_select_configuration", "bad inputs");
+    expect(is_untouched(&rest, sizeof rest), "rr_select_configuration", "nothing written for bad inputs");
+}
+
+static void test_selection(void)
+{
+    static rr_real poses[POSES][4];
+    for (size_t k = 0; k < POSES; ++k) {
+        memcpy(poses[k], rr_golden_impacts[k].q, sizeof poses[k]);
+    }
+    for (size_t k = 0; k < POSES; ++k) {
+        const rr_golden_impact *const in = &rr_golden_impacts[k];
+        check_selection((const rr_real (*)[4])poses, (int)POSES, in);
+    }
+}
+
 static void test_common(void)
 {
     rr_params p;
@@ -645,8 +810,10 @@ int main(void)
     test_reflected_mass();
     test_reduced_model();
     test_chain();
+    test_joint_impulse();
     test_impacts();
     test_bad_impacts();
+    test_selection();
     printf(failures == 0 ? "all passed\n" : "%d failed\n", failures);
     return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -17,6 +17,9 @@ typedef struct {
     ur5e_real q[6];
     ur5e_real n[3];
     ur5e_params p;
+    ur5e_real speed;
+    ur5e_real restitution;
+    ur5e_real other_mobility;
     ur5e_real region[4];
     ur5e_real number;
 } inputs;
@@ -131,6 +134,42 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         const int status = ur5e_absorption_extremes(in.q, &in.p, &out);
         check(status, &out, sizeof out);
     }
+    {
+        ur5e_manipulability_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_manipulability(in.q, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        ur5e_real omega_f;
+        memset(&omega_f, 0xA5, sizeof omega_f);
+        const int status = ur5e_force_measure(in.q, &omega_f);
+        check(status, &omega_f, sizeof omega_f);
+    }
+    {
+        ur5e_impact_measure_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_impact_measure(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        ur5e_rotor_influence_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_rotor_influence(in.q, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
+    {
+        ur5e_real giaf[6];
+        memset(&giaf, 0xA5, sizeof giaf);
+        const int status = ur5e_single_joint_giaf(in.q, &in.p, giaf);
+        check(status, &giaf, sizeof giaf);
+    }
+    {
+        ur5e_joint_impulse_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out);
+        check(status, &out, sizeof out);
+    }
     ur5e_region region;
     if (ur5e_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != UR5E_OK) {
         return 0;
@@ -150,6 +189,21 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         ur5e_safe_speed_t out;
         memset(&out, 0xA5, sizeof out);
         check(ur5e_safe_speed(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    {
+        ur5e_real poses[2][6];
+        ur5e_selection_t out;
+        for (int i = 0; i < 6; ++i) {
+            poses[0][i] = in.q[i];
+            poses[1][i] = -in.q[i];
+        }
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_select_configuration((const ur5e_real (*)[6])poses, 2, NULL, in.n, in.number, &region, &in.p, &out);
+        check(status, &out.force, sizeof out.force);
+        check(status, &out.margin, sizeof out.margin);
+        if (status == UR5E_OK && !(out.best >= 0 && out.best < 2 && out.usable > 0 && out.margin >= 0)) {
+            abort();
+        }
     }
     return 0;
 }

@@ -20,22 +20,28 @@ int ur5e_directional_giaf(
     if (status != UR5E_OK) {
         return status;
     }
-    status = ur5e_check_positive(p->rotor_inertia);
+    status = ur5e_check_positive(p->rotor_inertia, 6);
     if (status != UR5E_OK) {
         return status;
     }
 
-    ur5e_real s1, c1;
+    ur5e_real s1;
+    ur5e_real c1;
     ur5e_sine_cosine(q[0], &s1, &c1);
-    ur5e_real s2, c2;
+    ur5e_real s2;
+    ur5e_real c2;
     ur5e_sine_cosine(q[1], &s2, &c2);
-    ur5e_real s3, c3;
+    ur5e_real s3;
+    ur5e_real c3;
     ur5e_sine_cosine(q[2], &s3, &c3);
-    ur5e_real s4, c4;
+    ur5e_real s4;
+    ur5e_real c4;
     ur5e_sine_cosine(q[3], &s4, &c4);
-    ur5e_real s5, c5;
+    ur5e_real s5;
+    ur5e_real c5;
     ur5e_sine_cosine(q[4], &s5, &c5);
-    ur5e_real s6, c6;
+    ur5e_real s6;
+    ur5e_real c6;
     ur5e_sine_cosine(q[5], &s6, &c6);
     const ur5e_real t1 = c2*c1;
     const ur5e_real t2 = UR5E_R(0.425)*t1;

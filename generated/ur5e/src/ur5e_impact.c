@@ -12,216 +12,6 @@
  * depth that it would have without it. The node between skin and body is a backward difference.
  */
 
-/* x0 + x1 t + x2 t^2 + x3 t^3 */
-static inline ur5e_real polynomial(ur5e_real t, ur5e_real x0, ur5e_real x1, ur5e_real x2,
-    ur5e_real x3)
-{
-    return x0 + t*(x1 + t*(x2 + t*x3));
-}
-
-static int check_region(const ur5e_region *region)
-{
-    const ur5e_real numbers[4] = {region->stiffness, region->damping, region->effective_mass,
-        region->hertz_stiffness};
-    if (!ur5e_all_finite(numbers, 4)) {
-        return UR5E_NOT_FINITE;
-    }
-    const int holds = region->stiffness > UR5E_R(0.0) && region->damping >= UR5E_R(0.0)
-        && region->hertz_stiffness > UR5E_R(0.0)
-        && (region->clamped != 0 || region->effective_mass > UR5E_R(0.0));
-    return holds ? UR5E_OK : UR5E_OUT_OF_RANGE;
-}
-
-/* Number of masses before which the chain ends. */
-static int chain_length(const ur5e_impact_chain_t *chain)
-{
-    int i = 1;
-    for (; i < UR5E_MASSES; ++i) {
-        const ur5e_real next = chain->stiffness[i - 1];
-        const ur5e_real own = next + (i > 1 ? chain->stiffness[i - 2] : UR5E_R(0.0));
-        const ur5e_real share = next*next*chain->mass[i - 1]/(chain->mass[i]*own*own);
-        if (!(share > UR5E_R(1e-10) && chain->mass[i] > UR5E_R(0.0))) {
-            break;
-        }
-    }
-    return i;
-}
-
-/*
- * Eigenvalues d of a symmetric tridiagonal matrix (d, e), and two rows of numbers in its
- * eigenvectors: QL steps with implicit shifts. 0 if 30 steps an eigenvalue do not do.
- */
-static int eigenvalues(int count, ur5e_real *d, ur5e_real *e, ur5e_real *x, ur5e_real *y)
-{
-    for (int l = 0; l < count; ++l) {
-        for (int step = 0;; ++step) {
-            int m = l;
-            while (m + 1 < count
-                   && UR5E_FABS(e[m]) > UR5E_R(1e-06)*(UR5E_FABS(d[m]) + UR5E_FABS(d[m + 1]))) {
-                ++m;
-            }
-            if (m == l) {
-                break;
-            }
-            if (step == 30) {
-                return 0;
-            }
-            const ur5e_real half = (d[l + 1] - d[l])/(e[l] + e[l]);
-            const ur5e_real length = UR5E_SQRT(half*half + UR5E_R(1.0));
-            ur5e_real g = d[m] - d[l] + e[l]/(half + (half < UR5E_R(0.0) ? -length : length));
-            ur5e_real s = UR5E_R(1.0);
-            ur5e_real c = UR5E_R(1.0);
-            ur5e_real p = UR5E_R(0.0);
-            int i = m - 1;
-            for (; i >= l; --i) {
-                const ur5e_real f = s*e[i];
-                const ur5e_real b = c*e[i];
-                const ur5e_real r = UR5E_SQRT(f*f + g*g);
-                e[i + 1] = r;
-                if (!(r > UR5E_R(0.0))) {
-                    break;
-                }
-                const ur5e_real inverse = UR5E_R(1.0)/r;
-                s = f*inverse;
-                c = g*inverse;
-                g = d[i + 1] - p;
-                const ur5e_real t = (d[i] - g)*s + UR5E_R(2.0)*c*b;
-                p = s*t;
-                d[i + 1] = g + p;
-                g = c*t - b;
-                const ur5e_real x1 = x[i + 1];
-                x[i + 1] = s*x[i] + c*x1;
-                x[i] = c*x[i] - s*x1;
-                const ur5e_real y1 = y[i + 1];
-                y[i + 1] = s*y[i] + c*y1;
-                y[i] = c*y[i] - s*y1;
-            }
-            if (i >= l) { /* the rotation is none: the matrix falls apart here */
-                d[i + 1] -= p;
-                e[m] = UR5E_R(0.0);
-                continue;
-            }
-            d[l] -= p;
-            e[l] = g;
-            e[m] = UR5E_R(0.0);
-        }
-    }
-    return 1;
-}
-
-/* Modes of the chain: squared frequency, mobility and velocity at the contact point. */
-static int modes_of(ur5e_impact_chain_t *chain, int held, ur5e_real *squared, ur5e_real *weight,
-    ur5e_real *velocity)
-{
-    const int count = chain_length(chain);
-    if (count == UR5E_MASSES && UR5E_MASSES < UR5E_COORDINATES && !held) {
-        chain->stiffness[count - 1] = UR5E_R(0.0);
-    }
-    ur5e_real off[UR5E_MASSES];
-    ur5e_real before = UR5E_R(0.0);
-    ur5e_real root = UR5E_SQRT(chain->mass[0]);
-    const ur5e_real first = UR5E_R(1.0)/root;
-    off[count - 1] = UR5E_R(0.0);
-    for (int i = 0; i < count; ++i) {
-        /* the soft end comes first: QL keeps slow modes accurate if numbers grow downwards */
-        const int row = count - 1 - i;
-        const ur5e_real after = chain->stiffness[i];
-        squared[row] = (before + after)/chain->mass[i];
-        weight[row] = i == 0 ? first : UR5E_R(0.0);
-        velocity[row] = root*chain->velocity[i];
-        if (row > 0) {
-            const ur5e_real next = UR5E_SQRT(chain->mass[i + 1]);
-            off[row - 1] = -after/(root*next);
-            root = next;
-        }
-        before = after;
-    }
-    if (!eigenvalues(count, squared, off, weight, velocity)) {
-        return 0;
-    }
-    for (int i = 0; i < count; ++i) {
-        velocity[i] *= weight[i];
-        weight[i] *= weight[i];
-    }
-    return count;
-}
-
-/* Coefficients of all levels. */
-static void prepare_steps(ur5e_impact *impact, const ur5e_real *squared, const ur5e_real *weight,
-    const ur5e_real *velocity)
-{
-    for (int i = 0; i < impact->modes; ++i) {
-        ur5e_real h2 = impact->step*impact->step;
-        ur5e_real theta2 = squared[i]*h2;
-        const ur5e_real lean = polynomial(theta2, UR5E_R(0.16666666666666666),
-            UR5E_R(-0.008333333333333333), UR5E_R(0.0001984126984126984), UR5E_R(0.0));
-        impact->start[i] = velocity[i]*impact->step*(UR5E_R(1.0) - theta2*lean);
-        impact->start_edge[i] = weight[i]*h2*lean;
-        ur5e_real alpha = polynomial(theta2, UR5E_R(0.08333333333333333), UR5E_R(-0.002777777777777778),
-            UR5E_R(4.96031746031746e-05), UR5E_R(-5.511463844797178e-07));
-        for (int level = 0; level <= UR5E_LEVELS; ++level) {
-            const ur5e_real psi = UR5E_R(1.0) - alpha*theta2;
-            const ur5e_real push = weight[i]*h2;
-            impact->step_of[level][i].kappa = theta2*psi;
-            impact->step_of[level][i].middle = push*(psi - theta2*psi*alpha);
-            impact->edge[level][i] = push*alpha;
-            alpha = UR5E_R(0.25)*alpha + UR5E_R(0.0625)*psi*psi;
-            theta2 *= UR5E_R(4.0);
-            h2 *= UR5E_R(4.0);
-        }
-    }
-}
-
-int ur5e_impact_prepare(const ur5e_real q[6], const ur5e_real n[3],
-    const ur5e_region *region, const ur5e_params *p, ur5e_impact *impact)
-{
-    ur5e_impact_chain_t chain;
-    int status = ur5e_impact_chain(q, n, p, &chain);
-    if (status != UR5E_OK) {
-        return status;
-    }
-    status = check_region(region);
-    if (status != UR5E_OK) {
-        return status;
-    }
-    int held = 0;
-    for (int i = 0; i < 6; ++i) {
-        held |= p->position_gain[i] > UR5E_R(0.0);
-    }
-    ur5e_real squared[UR5E_MODES];
-    ur5e_real weight[UR5E_MODES];
-    ur5e_real velocity[UR5E_MODES];
-    impact->modes = modes_of(&chain, held, squared, weight, velocity);
-    if (impact->modes == 0) {
-        return UR5E_UNRESOLVED;
-    }
-    if (region->clamped == 0) {
-        squared[impact->modes] = UR5E_R(0.0);
-        weight[impact->modes] = UR5E_R(1.0)/region->effective_mass;
-        velocity[impact->modes] = UR5E_R(0.0);
-        ++impact->modes;
-    }
-    ur5e_real mobility = UR5E_R(0.0);
-    ur5e_real fastest = UR5E_R(0.0);
-    for (int i = 0; i < impact->modes; ++i) {
-        mobility += weight[i];
-        fastest = UR5E_FMAX(fastest, squared[i]);
-    }
-    /* at most 0.16 rad of the contact's vibration and 2.5 rad of any mode's in the last level's step */
-    const ur5e_real contact = region->stiffness*mobility*UR5E_R(39.0625);
-    const ur5e_real rate2 = UR5E_FMAX(contact, fastest*UR5E_R(0.16));
-    impact->stiffness = region->stiffness;
-    impact->damping = region->damping;
-    impact->skin = region->hertz_stiffness;
-    impact->mobility = mobility;
-    impact->step = UR5E_R(0.125)/UR5E_SQRT(rate2);
-    if (!(impact->step > UR5E_R(0.0))) {
-        return UR5E_SINGULAR;
-    }
-    prepare_steps(impact, squared, weight, velocity);
-    return UR5E_OK;
-}
-
 /* The u > 0 with u^2 + cubic u^3 = depth, from a guess; 0 if there is none. */
 static ur5e_real root_of_depth(ur5e_real depth, ur5e_real cubic, ur5e_real guess)
 {
@@ -229,12 +19,12 @@ static ur5e_real root_of_depth(ur5e_real depth, ur5e_real cubic, ur5e_real guess
         return UR5E_R(0.0);
     }
     ur5e_real u = guess;
-    for (int k = 0; k < 12; ++k) {
+    for (int k = 0; k < 32; ++k) {
         const ur5e_real cu = cubic*u;
         const ur5e_real change =
             (u*u*(UR5E_R(1.0) + cu) - depth)/(u*(UR5E_R(2.0) + UR5E_R(3.0)*cu));
         u -= change;
-        if (UR5E_FABS(change) <= UR5E_R(0.001)*u) {
+        if (UR5E_FABS(change) <= UR5E_R(0.003)*u) {
             break;
         }
     }
@@ -243,17 +33,23 @@ static ur5e_real root_of_depth(ur5e_real depth, ur5e_real cubic, ur5e_real guess
 
 /* Displacement of a mode, with what the force at the same node does, and its last change. */
 typedef struct {
-    ur5e_real g, d;
+    ur5e_real g;
+    ur5e_real d;
 } motion;
 
-/* Where an integration is. Index 0 is the last node, index 1 the one before. */
+/* Force, root of the skin's depth, and place of what is between skin and body. */
+typedef struct {
+    ur5e_real f;
+    ur5e_real u;
+    ur5e_real s;
+} node;
+
+/* Where an integration is. */
 typedef struct {
     motion mode[UR5E_MODES];
-    ur5e_real f[2];            /* force */
-    ur5e_real u[2];            /* root of the skin's depth */
-    ur5e_real s[3];            /* node between skin and body */
+    node last[3];                /* nodes, the newest first */
+    int even;                    /* how many of them are evenly spaced */
     ur5e_real depth;           /* that skin and body would have without the last force */
-    int past;                    /* how many of s are evenly spaced */
     ur5e_real time;
     ur5e_real best;            /* largest force, and when */
     ur5e_real best_time;
@@ -264,107 +60,103 @@ static void first_node(const ur5e_impact *impact, ur5e_real skin, state *at)
     ur5e_real depth = UR5E_R(0.0);
     ur5e_real soft = UR5E_R(1.0)/(impact->stiffness + impact->damping/impact->step);
     const ur5e_real hold = soft;
+    soft += impact->compliance;
     for (int i = 0; i < impact->modes; ++i) {
         depth += impact->start[i];
         soft += impact->start_edge[i];
     }
-    const ur5e_real u = root_of_depth(depth, soft*skin, UR5E_SQRT(depth));
+    /* from above: either term alone would be the depth at a greater u */
+    const ur5e_real light = UR5E_SQRT(depth);
+    const ur5e_real guess = light/UR5E_SQRT(UR5E_SQRT(UR5E_R(1.0) + soft*skin*light));
+    const ur5e_real u = root_of_depth(depth, soft*skin, guess);
     const ur5e_real f = skin*u*u*u;
     for (int i = 0; i < impact->modes; ++i) {
-        at->mode[i].g = impact->start[i] + (impact->edge[0][i] - impact->start_edge[i])*f;
+        at->mode[i].g = impact->start[i] + (impact->level[0].edge[i] - impact->start_edge[i])*f;
         at->mode[i].d = at->mode[i].g;
     }
-    at->f[0] = f;
-    at->u[0] = u;
-    at->s[0] = f*hold;
-    at->f[1] = at->u[1] = at->s[1] = at->s[2] = UR5E_R(0.0);
-    at->past = 1;
-    at->time = at->best_time = impact->step;
+    const node touch = {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
+    const node first = {f, u, f*hold};
+    at->last[0] = first;
+    at->last[1] = touch;
+    at->last[2] = touch;
+    at->even = 1;
+    at->time = impact->step;
+    at->best_time = impact->step;
     at->best = f;
 }
 
-/* Notes the force at a new node, and the top of the parabola through the last three. */
+/* Notes the largest force near the last node, before force f: of a cubic, or first of a parabola. */
 static void note_peak(state *at, ur5e_real h, ur5e_real f)
 {
-    const ur5e_real here = at->f[0];
-    if (here >= at->f[1] && here > f) {
-        const ur5e_real bend = UR5E_R(2.0)*here - f - at->f[1];
-        const ur5e_real lean = f - at->f[1];
-        const ur5e_real top = here + lean*lean/(UR5E_R(8.0)*bend);
-        if (top > at->best) {
-            at->best = top;
-            at->best_time = at->time + h*lean/(UR5E_R(2.0)*bend);
-        }
+    const ur5e_real here = at->last[0].f;
+    const ur5e_real before = at->last[1].f;
+    if (!(here >= before && here > f)) {
+        return;
     }
-    if (f > at->best) {
-        at->best = f;
-        at->best_time = at->time + h;
+    const ur5e_real third = at->even >= 3
+        ? f - UR5E_R(3.0)*(here - before) - at->last[2].f : UR5E_R(0.0);
+    const ur5e_real bend = (f - here) + (before - here);
+    const ur5e_real lean = UR5E_R(0.5)*(f - before) - UR5E_R(0.16666666666666666)*third;
+    ur5e_real x = -lean/bend;
+    x -= (lean + x*(bend + UR5E_R(0.5)*x*third))/(bend + x*third);
+    if (!(x > UR5E_R(-1.0) && x < UR5E_R(1.0))) {
+        x = UR5E_R(0.0);
+    }
+    const ur5e_real rise = x*(lean + x*(UR5E_R(0.5)*bend + UR5E_R(0.16666666666666666)*x*third));
+    const ur5e_real top = UR5E_FMAX(here, here + rise);
+    if (top > at->best) {
+        at->best = top;
+        at->best_time = at->time + h*x;
     }
 }
 
-/* Constants of a level. */
-typedef struct {
-    ur5e_real h, rate, soft; /* step, damping over it, what a force moves by the modes alone */
-    ur5e_real hold[2];       /* compliance of the body for the two backward differences */
-} pace;
-
-static pace pace_of(const ur5e_impact *impact, int level, ur5e_real h)
+/* Takes a step; if `doubles`, the next is of the next level. Returns the force, 0 at the end. */
+static ur5e_real step(const ur5e_level *level, int modes, ur5e_real skin, bool doubles, state *at)
 {
-    pace now = {h, impact->damping/h, UR5E_R(0.0), {UR5E_R(0.0), UR5E_R(0.0)}};
-    for (int i = 0; i < impact->modes; ++i) {
-        now.soft += impact->edge[level][i];
-    }
-    now.hold[0] = UR5E_R(1.0)/(impact->stiffness + UR5E_R(1.5)*now.rate);
-    now.hold[1] = UR5E_R(1.0)/(impact->stiffness + UR5E_R(1.8333333333333333)*now.rate);
-    return now;
-}
-
-/* Takes a step; if `doubles`, the next has twice its length. Returns the force, 0 at the end. */
-static ur5e_real step(const ur5e_impact *impact, ur5e_real skin, int level, const pace *now, int doubles,
-    state *at)
-{
-    const ur5e_mode_step *const by = impact->step_of[level];
-    const ur5e_real f0 = at->f[0];
+    node *const last = at->last;
     ur5e_real depth = UR5E_R(0.0);
     motion earlier[UR5E_MODES];
     if (doubles) {
-        memcpy(earlier, at->mode, sizeof earlier);
+        (void)memcpy(earlier, at->mode, sizeof earlier);
     }
-    for (int i = 0; i < impact->modes; ++i) {
+    for (int i = 0; i < modes; ++i) {
         motion *const mode = &at->mode[i];
-        mode->d -= by[i].kappa*mode->g + by[i].middle*f0;
+        mode->d -= level->mode[i].kappa*mode->g;
+        mode->d -= level->mode[i].middle*last[0].f;
         mode->g += mode->d;
         depth += mode->g;
     }
-    const int third = at->past >= 3;
-    const ur5e_real hold = now->hold[third];
-    const ur5e_real memory = now->rate
-        *(third ? UR5E_R(3.0)*at->s[0] - UR5E_R(1.5)*at->s[1] + UR5E_R(0.3333333333333333)*at->s[2]
-                : UR5E_R(2.0)*at->s[0] - UR5E_R(0.5)*at->s[1]);
-    const ur5e_real guess =
-        UR5E_FMAX(UR5E_R(2.0)*at->u[0] - at->u[1], UR5E_R(0.5)*at->u[0]);
-    const ur5e_real u = root_of_depth(depth - memory*hold, (now->soft + hold)*skin, guess);
-    const ur5e_real f = skin*u*u*u;
-    at->depth = depth;
-    note_peak(at, now->h, f);
-    if (doubles) {
-        for (int i = 0; i < impact->modes; ++i) {
-            const ur5e_real more = impact->edge[level + 1][i] - impact->edge[level][i];
-            at->mode[i].g += more*f;
-            at->mode[i].d += earlier[i].d + more*(f - at->f[1]);
-        }
-        at->past = 2;
+    const bool even = at->even >= 3;
+    const ur5e_real hold = level->hold[even ? 1 : 0];
+    ur5e_real memory;
+    ur5e_real guess = UR5E_R(2.0)*last[0].u - last[1].u;
+    if (even) {
+        memory = UR5E_R(3.0)*last[0].s - UR5E_R(1.5)*last[1].s + UR5E_R(0.3333333333333333)*last[2].s;
+        guess += last[0].u - UR5E_R(2.0)*last[1].u + last[2].u;
     } else {
-        at->f[1] = f0;
-        at->u[1] = at->u[0];
-        at->s[2] = at->s[1];
-        at->s[1] = at->s[0];
-        ++at->past;
+        memory = UR5E_R(2.0)*last[0].s - UR5E_R(0.5)*last[1].s;
     }
-    at->f[0] = f;
-    at->u[0] = u;
-    at->s[0] = (f + memory)*hold;
-    at->time += now->h;
+    memory *= level->rate;
+    const ur5e_real least = UR5E_R(0.5)*last[0].u;
+    const ur5e_real u = root_of_depth(depth - memory*hold, (level->soft + hold)*skin, guess > least ? guess : least);
+    const ur5e_real f = skin*u*u*u;
+    const node next = {f, u, (f + memory)*hold};
+    at->depth = depth;
+    note_peak(at, level->h, f);
+    if (doubles) {
+        for (int i = 0; i < modes; ++i) {
+            const ur5e_real more = level[1].edge[i] - level[0].edge[i];
+            at->mode[i].g += more*f;
+            at->mode[i].d += earlier[i].d + more*(f - last[1].f);
+        }
+        at->even = 2;
+    } else {
+        last[2] = last[1];
+        last[1] = last[0];
+        ++at->even;
+    }
+    last[0] = next;
+    at->time += level->h;
     return f;
 }
 
@@ -373,21 +165,19 @@ int ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_peak_force_
     state at;
     const ur5e_real skin = impact->skin*UR5E_SQRT(speed);
     first_node(impact, skin, &at);
-    ur5e_real h = impact->step;
-    int parted = 0;
-    for (int level = 0; level <= UR5E_LEVELS && !parted; ++level) {
-        const pace now = pace_of(impact, level, h);
-        const int last = level == UR5E_LEVELS;
-        const int nodes = last ? 1024 : (level == 0 ? 3 : 2);
-        for (int k = 1; k <= nodes && !parted; ++k) {
-            parted = !(step(impact, skin, level, &now, !last && k == nodes, &at) > UR5E_R(0.0));
+    bool parted = false;
+    for (int k = 0; k <= UR5E_LEVELS && !parted; ++k) {
+        const bool last = k == UR5E_LEVELS;
+        const int nodes = last ? 1024 : (k == 0 ? 1 : 2);
+        for (int left = nodes - 1; left >= 0 && !parted; --left) {
+            const bool doubles = !last && left == 0;
+            parted = !(step(&impact->level[k], impact->modes, skin, doubles, &at) > UR5E_R(0.0));
         }
-        h += h;
     }
     if (!parted) {
         return UR5E_UNRESOLVED;
     }
-    const ur5e_real found[4] = {at.best*speed, at.best_time, at.depth, at.f[0]};
+    const ur5e_real found[4] = {at.best*speed, at.best_time, at.depth, at.last[0].f};
     if (!(ur5e_all_finite(found, 4) && found[0] > UR5E_R(0.0))) {
         return UR5E_SINGULAR;
     }

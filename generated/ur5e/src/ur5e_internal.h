@@ -5,6 +5,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "ur5e.h"
@@ -45,21 +46,21 @@ static inline void ur5e_sine_cosine(double x, double *s, double *c)
 }
 #endif
 
-/* 1 if all numbers are finite; a comparison with a NaN is false. */
-static inline int ur5e_all_finite(const ur5e_real *x, int count)
+/* Whether all numbers are finite; a comparison with a NaN is false. */
+static inline bool ur5e_all_finite(const ur5e_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
         if (!(UR5E_FABS(x[i]) <= UR5E_REAL_MAX)) {
-            return 0;
+            return false;
         }
     }
-    return 1;
+    return true;
 }
 
-/* Status of a parameter that must be positive. */
-static inline int ur5e_check_positive(const ur5e_real x[6])
+/* Status of inputs that must be greater than 0. */
+static inline int ur5e_check_positive(const ur5e_real *x, int count)
 {
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < count; ++i) {
         if (!(x[i] > UR5E_R(0.0) && x[i] <= UR5E_REAL_MAX)) {
             return ur5e_all_finite(&x[i], 1) ? UR5E_OUT_OF_RANGE : UR5E_NOT_FINITE;
         }
@@ -67,15 +68,32 @@ static inline int ur5e_check_positive(const ur5e_real x[6])
     return UR5E_OK;
 }
 
-/* Status of a parameter that must not be negative. */
-static inline int ur5e_check_not_negative(const ur5e_real x[6])
+/* Status of inputs that must be 0 or greater. */
+static inline int ur5e_check_not_negative(const ur5e_real *x, int count)
 {
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < count; ++i) {
         if (!(x[i] >= UR5E_R(0.0) && x[i] <= UR5E_REAL_MAX)) {
             return ur5e_all_finite(&x[i], 1) ? UR5E_OUT_OF_RANGE : UR5E_NOT_FINITE;
         }
     }
     return UR5E_OK;
+}
+
+/* Status of inputs that must be from 0 to 1. */
+static inline int ur5e_check_share(const ur5e_real *x, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        if (!(x[i] >= UR5E_R(0.0) && x[i] <= UR5E_R(1.0))) {
+            return ur5e_all_finite(&x[i], 1) ? UR5E_OUT_OF_RANGE : UR5E_NOT_FINITE;
+        }
+    }
+    return UR5E_OK;
+}
+
+/* Status of inputs that may be any number. */
+static inline int ur5e_check_finite(const ur5e_real *x, int count)
+{
+    return ur5e_all_finite(x, count) ? UR5E_OK : UR5E_NOT_FINITE;
 }
 
 /* Unit vector u along n; scaled first, so that no square over- or underflows. */

@@ -11,22 +11,28 @@ int ur5e_osim(const ur5e_real q[6], const ur5e_params *p, ur5e_osim_t *out)
     if (!ur5e_all_finite(q, 6)) {
         return UR5E_NOT_FINITE;
     }
-    int status = ur5e_check_positive(p->rotor_inertia);
+    int status = ur5e_check_positive(p->rotor_inertia, 6);
     if (status != UR5E_OK) {
         return status;
     }
 
-    ur5e_real s1, c1;
+    ur5e_real s1;
+    ur5e_real c1;
     ur5e_sine_cosine(q[0], &s1, &c1);
-    ur5e_real s2, c2;
+    ur5e_real s2;
+    ur5e_real c2;
     ur5e_sine_cosine(q[1], &s2, &c2);
-    ur5e_real s3, c3;
+    ur5e_real s3;
+    ur5e_real c3;
     ur5e_sine_cosine(q[2], &s3, &c3);
-    ur5e_real s4, c4;
+    ur5e_real s4;
+    ur5e_real c4;
     ur5e_sine_cosine(q[3], &s4, &c4);
-    ur5e_real s5, c5;
+    ur5e_real s5;
+    ur5e_real c5;
     ur5e_sine_cosine(q[4], &s5, &c5);
-    ur5e_real s6, c6;
+    ur5e_real s6;
+    ur5e_real c6;
     ur5e_sine_cosine(q[5], &s6, &c6);
     const ur5e_real t1 = c2*c1;
     const ur5e_real t2 = UR5E_R(0.425)*t1;
@@ -316,16 +322,22 @@ int ur5e_osim(const ur5e_real q[6], const ur5e_params *p, ur5e_osim_t *out)
         return UR5E_SINGULAR;
     }
     out->Lambda[0][0] = Lambda_11;
-    out->Lambda[0][1] = out->Lambda[1][0] = Lambda_21;
+    out->Lambda[0][1] = Lambda_21;
+    out->Lambda[1][0] = Lambda_21;
     out->Lambda[1][1] = Lambda_22;
-    out->Lambda[0][2] = out->Lambda[2][0] = Lambda_31;
-    out->Lambda[1][2] = out->Lambda[2][1] = Lambda_32;
+    out->Lambda[0][2] = Lambda_31;
+    out->Lambda[2][0] = Lambda_31;
+    out->Lambda[1][2] = Lambda_32;
+    out->Lambda[2][1] = Lambda_32;
     out->Lambda[2][2] = Lambda_33;
     out->Lambda_F[0][0] = Lambda_F_11;
-    out->Lambda_F[0][1] = out->Lambda_F[1][0] = Lambda_F_21;
+    out->Lambda_F[0][1] = Lambda_F_21;
+    out->Lambda_F[1][0] = Lambda_F_21;
     out->Lambda_F[1][1] = Lambda_F_22;
-    out->Lambda_F[0][2] = out->Lambda_F[2][0] = Lambda_F_31;
-    out->Lambda_F[1][2] = out->Lambda_F[2][1] = Lambda_F_32;
+    out->Lambda_F[0][2] = Lambda_F_31;
+    out->Lambda_F[2][0] = Lambda_F_31;
+    out->Lambda_F[1][2] = Lambda_F_32;
+    out->Lambda_F[2][1] = Lambda_F_32;
     out->Lambda_F[2][2] = Lambda_F_33;
     return UR5E_OK;
 }

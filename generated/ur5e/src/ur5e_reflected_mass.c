@@ -17,17 +17,23 @@ int ur5e_reflected_mass(const ur5e_real q[6], const ur5e_real n[3], ur5e_real *m
         return status;
     }
 
-    ur5e_real s1, c1;
+    ur5e_real s1;
+    ur5e_real c1;
     ur5e_sine_cosine(q[0], &s1, &c1);
-    ur5e_real s2, c2;
+    ur5e_real s2;
+    ur5e_real c2;
     ur5e_sine_cosine(q[1], &s2, &c2);
-    ur5e_real s3, c3;
+    ur5e_real s3;
+    ur5e_real c3;
     ur5e_sine_cosine(q[2], &s3, &c3);
-    ur5e_real s4, c4;
+    ur5e_real s4;
+    ur5e_real c4;
     ur5e_sine_cosine(q[3], &s4, &c4);
-    ur5e_real s5, c5;
+    ur5e_real s5;
+    ur5e_real c5;
     ur5e_sine_cosine(q[4], &s5, &c5);
-    ur5e_real s6, c6;
+    ur5e_real s6;
+    ur5e_real c6;
     ur5e_sine_cosine(q[5], &s6, &c6);
     const ur5e_real t1 = c1*u[1] - s1*u[0];
     const ur5e_real t2 = c1*u[0] + s1*u[1];

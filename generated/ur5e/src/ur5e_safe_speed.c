@@ -4,13 +4,23 @@
 #include "ur5e_impact.h"
 
 /*
- * Twice the energy of skin and body, times the body's stiffness, at a static force: the square of
- * speed grows about like it, also where the skin's stiffness changes with the force.
+ * About the speed that leads to a force: all energy is in skin and body, and modes count the less
+ * the faster they are than the contact. Close where robots are simple, and always of the right trend.
  */
-static ur5e_real energy(const ur5e_impact *impact, ur5e_real force)
+static ur5e_real speed_of(const ur5e_impact *impact, ur5e_real force)
 {
-    const ur5e_real depth = UR5E_POW(force/impact->skin, UR5E_R(0.6666666666666666));
-    return force*(force + UR5E_R(0.8)*impact->stiffness*depth);
+    const ur5e_real k = impact->stiffness;
+    const ur5e_real skin = UR5E_POW(force/impact->skin, UR5E_R(0.6666666666666666));
+    const ur5e_real slow = UR5E_R(1.5)*(force + k*skin)/(force*k*impact->mobility);
+    ur5e_real mobility = UR5E_R(0.0);
+    ur5e_real velocity = UR5E_R(0.0);
+    for (int i = 0; i < impact->modes; ++i) {
+        const ur5e_real share = UR5E_R(1.0)/(UR5E_R(1.0) + slow*impact->squared[i]);
+        mobility += share*impact->weight[i];
+        velocity += share*impact->velocity[i];
+    }
+    const ur5e_real energy = force*(force + UR5E_R(0.8)*k*skin); /* 2 k times it */
+    return UR5E_SQRT(energy*mobility/k)/velocity;
 }
 
 int ur5e_safe_speed(
@@ -35,17 +45,16 @@ int ur5e_safe_speed(
     if (status != UR5E_OK) {
         return status;
     }
-    const ur5e_real aim = limit*UR5E_R(0.9994);
-    const ur5e_real most = limit*UR5E_R(0.9996999999999999);
-    const ur5e_real least = limit*UR5E_R(0.9991);
-    const ur5e_real wanted = energy(&impact, aim);
-    /* a first guess: the masses at the contact alone, and some of those behind them */
-    ur5e_real v = UR5E_R(0.8)*UR5E_SQRT(wanted*impact.mobility/impact.stiffness);
+    const ur5e_real aim = limit*UR5E_R(0.9993);
+    const ur5e_real most = limit*UR5E_R(0.99959);
+    const ur5e_real least = limit*UR5E_R(0.99901);
+    const ur5e_real about = speed_of(&impact, aim);
+    ur5e_real v = UR5E_R(1.05)*UR5E_FABS(about);
     ur5e_real low = UR5E_R(0.0);  /* safe */
     ur5e_real high = UR5E_R(0.0); /* not safe; 0 while unknown */
     ur5e_real low_force = UR5E_R(0.0);
-    ur5e_real before = UR5E_R(0.0);
-    ur5e_real before_ratio = UR5E_R(1.0);
+    ur5e_real before = UR5E_R(0.0); /* force of the last trial, and what it says of speed_of */
+    ur5e_real before_off = UR5E_R(1.0);
     for (int k = 0; k < 16; ++k) {
         ur5e_peak_force_t peak;
         if (!(ur5e_all_finite(&v, 1) && v > UR5E_R(0.0))) {
@@ -61,23 +70,22 @@ int ur5e_safe_speed(
         } else {
             high = v;
         }
-        const int jumps = low > UR5E_R(0.0) && high > UR5E_R(0.0)
-            && high - low <= UR5E_R(0.0003)*low;
+        const bool jumps = low > UR5E_R(0.0) && high > UR5E_R(0.0)
+            && high - low <= UR5E_R(0.00029)*low;
         if ((peak.force >= least && peak.force <= most) || jumps) {
             out->speed = low;
             out->force = low_force;
             return UR5E_OK;
         }
-        /* power of the energy's ratio that the last two speeds tell */
-        const ur5e_real ratio = UR5E_SQRT(wanted/energy(&impact, peak.force));
-        ur5e_real power = UR5E_R(1.002);
-        if (before > UR5E_R(0.0)) {
-            const ur5e_real told = UR5E_LOG(v/before)/UR5E_LOG(before_ratio/ratio);
-            power = told > UR5E_R(0.5) && told < UR5E_R(2.0) ? told : power;
+        /* what speed_of is off by changes little with the force, and about linearly */
+        const ur5e_real off = v/speed_of(&impact, peak.force);
+        ur5e_real next = off;
+        if (k > 0) {
+            next += (off - before_off)*(aim - peak.force)/(peak.force - before);
         }
-        before = v;
-        before_ratio = ratio;
-        v *= UR5E_POW(ratio, power);
+        before = peak.force;
+        before_off = off;
+        v = about*(next > UR5E_R(0.5)*off && next < UR5E_R(2.0)*off ? next : off);
         if (!(v > low && (v < high || !(high > UR5E_R(0.0))))) {
             v = UR5E_R(0.5)*(low + high);
         }

@@ -11,11 +11,11 @@ int ur5e_stiffness_matrix(const ur5e_real q[6], const ur5e_params *p, ur5e_real 
     if (!ur5e_all_finite(q, 6)) {
         return UR5E_NOT_FINITE;
     }
-    int status = ur5e_check_positive(p->joint_stiffness);
+    int status = ur5e_check_positive(p->joint_stiffness, 6);
     if (status != UR5E_OK) {
         return status;
     }
-    status = ur5e_check_not_negative(p->position_gain);
+    status = ur5e_check_not_negative(p->position_gain, 6);
     if (status != UR5E_OK) {
         return status;
     }
