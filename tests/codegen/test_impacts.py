@@ -38,9 +38,13 @@ from softimpact.symbolic import (
     body_region,
     closed_chain,
     closed_near,
+    configuration_at_rest,
+    impact_model,
 )
 from softimpact.symbolic.chain import ChainEnd
 from softimpact.symbolic.rigid import Array
+
+GRAVITY = (0.0, 0.0, -9.81)
 
 AXES = {"rr": [0, 1], "rmin": [0, 2]}
 """Base axes along which a contact point moves that does not move along all."""
@@ -162,6 +166,24 @@ def test_chain_of_a_closed_chain_is_as_near_to_the_linear_robot_as_it_says(
     assert np.mean(off) < 2 * record.chain_error_mean + 1e-3
     assert np.quantile(off, 0.9) < record.chain_error_usual + 1e-3
     assert max(off) < record.chain_error_worst + 1e-3
+
+
+def test_impacts_of_a_closed_chain_at_rest_are_near_the_nonlinear_robots(
+    package: Callable[[str], Generated],
+) -> None:
+    rmin = package("rmin")
+    compiled, model = Impacts(rmin, "double"), impact_model(rmin.robot, gravity=GRAVITY)
+    motors = np.random.default_rng(5).uniform([-2.7, -1.3], [-1.9, -0.4], (12, 2))
+    off = []
+    for case, angles in zip(impacts(rmin, 12, seed=98), motors, strict=True):
+        q = tuple(configuration_at_rest(model, angles).tolist())
+        resting = replace(case, sample=replace(case.sample, q=q))
+        status, (force, _) = compiled.peak_force(resting)
+        assert status == OK, resting
+        whole = simulated(rmin, resting, "full", 1, 1e-8)
+        off.append(abs(force / whole.first_contact - 1))
+    assert np.mean(off) < 0.01
+    assert max(off) < 0.06
 
 
 def test_force_grows_with_speed_between_a_linear_and_a_hertz_contact(
