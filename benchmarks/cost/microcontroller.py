@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from compiled_packages import Generated
-from cross_compiled import GCC, Call, build, calls, count, flags
+from compiling import run, write_c
+from cross_compiled import GCC, build, flags, machine
 from expressions import QUANTITIES, Quantities
+from measured_costs import Call, calls, count
 from page import Table
-
-from build import run, write_c
 
 CORES = {"m4": "Cortex-M4F", "m7": "Cortex-M7"}
 BY_HAND = " by hand"
@@ -56,9 +56,10 @@ def _on(core: str, package: Generated, rivals: Mapping[str, Quantities], folder:
         for quantity, function in quantities.functions.items():
             code = _float_code(function, folder)
             entry = f"{function.name()}_call"
-            called = Call("panda", f"({{ int {entry}(const void *); {entry}(in); }})", impact=False)
-            for variant, text in ((name, code), (name + BY_HAND, _by_hand(code))):
-                theirs = _compile(package, core, text, variant != name, folder)
+            text = f"({{ int {entry}(const void *); {entry}(in); }})"
+            called = Call(entry, text, "panda_golden_inputs")
+            for variant, source in ((name, code), (name + BY_HAND, _by_hand(code))):
+                theirs = _compile(package, core, source, variant != name, folder)
                 found[quantity][variant] = count(
                     package, core, [*objects, theirs], called, folder
                 ).mean
@@ -79,7 +80,8 @@ def _by_hand(code: str) -> str:
 def _compile(package: Generated, core: str, code: str, single: bool, folder: Path) -> Path:
     source = folder / "rival.c"
     source.write_text(code, encoding="utf-8")
-    told = [flag for flag in flags(package, core, "float") if not flag.startswith("-W")]
+    plain = [flag for flag in flags(package, "float") if not flag.startswith("-W")]
+    told = [*plain, *machine(core)]
     constants = ["-fsingle-precision-constant"] if single else []
     tests = f"-I{package.folder / 'test'}"
     run(GCC, *told, *constants, tests, "-c", source, "-o", source.with_suffix(".o"))

@@ -28,12 +28,12 @@ sys.path.insert(0, str(ROOT / "tests"))
 import casadi as ca  # noqa: E402
 from arm import numbers, urdf  # noqa: E402
 from compiled_packages import Generated  # noqa: E402
+from compiling import build_host  # noqa: E402
 from expressions import QUANTITIES, Quantities, built_on, our_expressions  # noqa: E402
 from microcontroller import counts  # noqa: E402
 from page import Table, page, processor  # noqa: E402
 from samples import impacts, still_samples  # noqa: E402
 
-from build import build_host  # noqa: E402
 from softimpact.codegen import generate_package  # noqa: E402
 from softimpact.symbolic import Robot, load_robot  # noqa: E402
 
