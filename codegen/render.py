@@ -155,7 +155,6 @@ def render(package: Package) -> dict[str, str]:
         "test/golden.c": "golden.c",
         "test/run_tests.c": "run_tests.c",
         "fuzz/fuzz.c": "fuzz.c",
-        "CMakeLists.txt": "CMakeLists.txt",
         "LICENSE": "LICENSE",
     }
     if package.impact:
@@ -172,6 +171,9 @@ def render(package: Package) -> dict[str, str]:
     if package.configuration:
         solver = environment.get_template("configuration.c.jinja")
         rendered[f"src/{name}_configuration.c"] = solver.render(context, c=package.configuration)
+    sources = sorted(path for path in rendered if path.startswith("src/") and path.endswith(".c"))
+    cmake = environment.get_template("CMakeLists.txt.jinja")
+    rendered["CMakeLists.txt"] = cmake.render(context, sources=sources)
     costs = stored_costs(name, {path: sha256(text) for path, text in rendered.items()})
     readme = environment.get_template("README.md.jinja")
     rendered["README.md"] = readme.render(context, costs=costs)

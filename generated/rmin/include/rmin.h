@@ -184,13 +184,13 @@ int rmin_body_region(int part, int clamped, rmin_region *region);
 
 /*
  * Masses of the chain that stands for the robot in impacts. Against the whole linear robot its
- * peak forces are off by 0.002 on average over random impacts, in 95 of 100 by less than
+ * peak forces are off by 0.0002 on average over random impacts, in 95 of 100 by less than
  * RMIN_IMPACT_MARGIN, at worst by RMIN_IMPACT_WORST. A limit multiplied by 1 minus either is kept
- * for as many of them; what the linear robot leaves out (mostly below 0.004) comes on top.
+ * for as many of them; what the linear robot leaves out of the real one comes on top.
  */
-#define RMIN_IMPACT_CHAIN_ORDER 2
-#define RMIN_IMPACT_MARGIN 0.003
-#define RMIN_IMPACT_WORST 0.2
+#define RMIN_IMPACT_CHAIN_ORDER 3
+#define RMIN_IMPACT_MARGIN 0.0002
+#define RMIN_IMPACT_WORST 0.02
 
 typedef struct {
     rmin_real force; /* N; largest contact force until separation */

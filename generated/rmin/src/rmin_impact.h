@@ -10,12 +10,12 @@
 #define RMIN_LEVELS 3
 
 typedef struct {
-    rmin_real mass[2]; /* kg; the contact force acts on the first */
-    rmin_real stiffness[2]; /* N/m; to the next, last to ground */
-    rmin_real velocity[2]; /* m/s; at first touch, for an approach of 1 m/s */
+    rmin_real mass[3]; /* kg; the contact force acts on the first */
+    rmin_real stiffness[3]; /* N/m; to the next, last to ground */
+    rmin_real velocity[3]; /* m/s; at first touch, for an approach of 1 m/s */
 } rmin_impact_chain_t;
 
-/* Chain of 2 masses as it arrives at an impact; it may end before its last. */
+/* Chain of 3 masses as it arrives at an impact; it may end before its last. */
 int rmin_impact_chain(
     const rmin_real q[6],
     const rmin_real n[3],

@@ -29,7 +29,7 @@ static int chain_length(const rmin_impact_chain_t *chain)
     int i = 1;
     for (; i < RMIN_MASSES; ++i) {
         const rmin_real next = chain->stiffness[i - 1];
-        const rmin_real own = next;
+        const rmin_real own = next + (i > 1 ? chain->stiffness[i - 2] : RMIN_R(0.0));
         const rmin_real share = next*next*chain->mass[i - 1]/(chain->mass[i]*own*own);
         if (!(share > RMIN_R(1e-10) && chain->mass[i] > RMIN_R(0.0))) {
             break;

@@ -194,7 +194,7 @@ int rr_body_region(int part, int clamped, rr_region *region);
  * Masses of the chain that stands for the robot in impacts. Against the whole linear robot its
  * peak forces are off by 7e-05 on average over random impacts, in 95 of 100 by less than
  * RR_IMPACT_MARGIN, at worst by RR_IMPACT_WORST. A limit multiplied by 1 minus either is kept
- * for as many of them; what the linear robot leaves out (mostly below 0.004) comes on top.
+ * for as many of them; what the linear robot leaves out of the real one comes on top.
  */
 #define RR_IMPACT_CHAIN_ORDER 4
 #define RR_IMPACT_MARGIN 0.0002

@@ -301,7 +301,7 @@ int ur5e_body_region(int part, int clamped, ur5e_region *region);
  * Masses of the chain that stands for the robot in impacts. Against the whole linear robot its
  * peak forces are off by 0.0007 on average over random impacts, in 95 of 100 by less than
  * UR5E_IMPACT_MARGIN, at worst by UR5E_IMPACT_WORST. A limit multiplied by 1 minus either is kept
- * for as many of them; what the linear robot leaves out (mostly below 0.004) comes on top.
+ * for as many of them; what the linear robot leaves out of the real one comes on top.
  */
 #define UR5E_IMPACT_CHAIN_ORDER 7
 #define UR5E_IMPACT_MARGIN 0.0008
