@@ -309,9 +309,8 @@ def test_nothing_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("region", ["chest", "head"])
-def test_the_whole_study(region: str) -> None:
-    study = load_study(PANDA_24, {"impact": {"region": region}})
+def test_the_whole_study() -> None:
+    study = load_study(PANDA_24)
     result = pareto_fronts(study)
     for front in fronts(result):
         assert front.unsolved == ()
