@@ -12,7 +12,7 @@ import typer
 from . import options as o
 
 if TYPE_CHECKING:
-    from .reproduce.compute import Results
+    from .reproduce_msm.compute import Results
 
 GENERATOR = "softimpact reproduce"
 """Marks a folder of results as one that may be replaced."""
@@ -69,7 +69,7 @@ def reproduce(
 def _names(typed: str | None) -> tuple[str, ...]:
     from softimpact.symbolic import UnknownName
 
-    from .reproduce.scenarios import SCENARIOS
+    from .reproduce_msm.scenarios import SCENARIOS
 
     for name in typed or "":
         if name not in SCENARIOS:
@@ -79,9 +79,9 @@ def _names(typed: str | None) -> tuple[str, ...]:
 
 def _reduced_models(names: tuple[str, ...], folder: Path) -> dict[str, Any]:
     """Recompute MSM, write its page and figures, and return what was found."""
-    from .reproduce.compare import compared
-    from .reproduce.figures import draw
-    from .reproduce.page import page
+    from .reproduce_msm.compare import compared
+    from .reproduce_msm.figures import draw
+    from .reproduce_msm.page import page
 
     results = _computed(names)
     comparisons = compared(results)
@@ -116,7 +116,7 @@ def _computed(names: tuple[str, ...]) -> Results:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
 
-    from .reproduce.compute import compute, work_of
+    from .reproduce_msm.compute import compute, work_of
 
     columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True)) as progress:
@@ -127,8 +127,8 @@ def _computed(names: tuple[str, ...]) -> Results:
 def _record(results: Results, comparisons: Any) -> dict[str, Any]:
     from collections import Counter
 
-    from .reproduce.ladder import LADDER
-    from .reproduce.page import titles
+    from .reproduce_msm.ladder import LADDER
+    from .reproduce_msm.page import titles
 
     return {
         "scenarios": titles(),

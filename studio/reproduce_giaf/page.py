@@ -9,7 +9,7 @@ from typing import get_args
 
 from softimpact.studio.factor_study import FactorStudy
 
-from ..reproduce.page import table
+from ..reproduce_msm.page import table
 from .statements import Holding, Statement
 
 READINGS = """\

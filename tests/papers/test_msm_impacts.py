@@ -10,11 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from softimpact.studio.reproduce import printed
 
 from softimpact.simulate import simulate_impact
-from softimpact.studio.reproduce import printed
-from softimpact.studio.reproduce.ladder import impact_at
-from softimpact.studio.reproduce.scenarios import SCENARIOS
+from softimpact.studio.reproduce_msm.ladder import impact_at
+from softimpact.studio.reproduce_msm.scenarios import SCENARIOS
 from softimpact.symbolic import Contact, body_region
 
 RECOMPUTED = {

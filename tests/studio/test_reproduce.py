@@ -13,11 +13,11 @@ from typing import Any
 import pytest
 from command_line import refusal
 
-from softimpact.studio.reproduce.compare import Comparison, compared, grid_points
-from softimpact.studio.reproduce.compute import Results, compute
-from softimpact.studio.reproduce.figures import draw
-from softimpact.studio.reproduce.page import page
-from softimpact.studio.reproduce.scenarios import RR, SCENARIOS
+from softimpact.studio.reproduce_msm.compare import Comparison, compared, grid_points
+from softimpact.studio.reproduce_msm.compute import Results, compute
+from softimpact.studio.reproduce_msm.figures import draw
+from softimpact.studio.reproduce_msm.page import page
+from softimpact.studio.reproduce_msm.scenarios import RR, SCENARIOS
 
 PNG = b"\x89PNG\r\n"
 
