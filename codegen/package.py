@@ -16,7 +16,7 @@ from softimpact.symbolic.impact_model import WEIGHTLESS
 from .accuracy import accuracy, golden_results, is_regular
 from .configuration import Configuration, has_configuration
 from .configuration_source import configuration_source
-from .costs import stored_costs
+from .costs import Costs
 from .defaults import Payload, defaults_of, frozen_parameters
 from .description import CFunction
 from .files import replace_package, require_own, sha256
@@ -131,8 +131,8 @@ def generate_package(
     )
     if package.poses and not package.impact:
         raise InvalidValue("poses", f"robot '{robot.name}' has no impacts to choose them by")
-    files = render(package)
-    manifest = _manifest(package, {path: sha256(text) for path, text in files.items()})
+    files, costs = render(package)
+    manifest = _manifest(package, costs, {path: sha256(text) for path, text in files.items()})
     replace_package(folder, {**files, MANIFEST: manifest.to_json()})
     return manifest
 
@@ -182,7 +182,7 @@ def _record(prefix: str, function: CFunction, measured: Sequence[Sample]) -> Fun
     )
 
 
-def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
+def _manifest(package: Package, costs: Costs | None, hashes: dict[str, str]) -> Manifest:
     records = [source.record for source in package.functions]
     if package.configuration:
         records.insert(0, package.configuration.record)
@@ -203,6 +203,6 @@ def _manifest(package: Package, hashes: dict[str, str]) -> Manifest:
         functions=tuple(records),
         poses=tuple(package.poses),
         impact=package.impact.record if package.impact else None,
-        costs=stored_costs(package.prefix, hashes),
+        costs=costs,
         files=hashes,
     )

@@ -15,7 +15,7 @@ from softimpact.symbolic.contact import HERTZ_STIFFNESS
 
 from . import impact, sine, tridiagonal
 from .configuration_source import ConfigurationSource
-from .costs import stored_costs
+from .costs import Costs, stored_costs
 from .defaults import Default
 from .files import sha256
 from .functions import CHAIN_ENDS, coordinates_of
@@ -116,8 +116,8 @@ class Package:
         return function in self.tables
 
 
-def render(package: Package) -> dict[str, str]:
-    """Return the text of every file by its path in the package; the manifest is not among them."""
+def render(package: Package) -> tuple[dict[str, str], Costs | None]:
+    """Return the text of every file but the manifest by its path, and what was measured of it."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         undefined=jinja2.StrictUndefined,
@@ -177,7 +177,7 @@ def render(package: Package) -> dict[str, str]:
     costs = stored_costs(name, {path: sha256(text) for path, text in rendered.items()})
     readme = environment.get_template("README.md.jinja")
     rendered["README.md"] = readme.render(context, costs=costs)
-    return dict(sorted(rendered.items()))
+    return dict(sorted(rendered.items())), costs
 
 
 def _number(value: float) -> str:
