@@ -22,8 +22,7 @@ def checked_poses(
         InvalidValue: a pose of the wrong length, with a number that is not finite, or beyond the
             limits of a joint.
     """
-    lower = np.array([joint.lower for joint in robot.joints])
-    upper = np.array([joint.upper for joint in robot.joints])
+    lower, upper = robot.limits
     checked = {}
     for name, q in poses.items():
         values = np.round(np.asarray(q, dtype=float), DIGITS)
