@@ -76,9 +76,9 @@ def _search(study: Study, modes: tuple[Mode, ...]) -> Design:
     from softimpact.optimize import Outcome
     from softimpact.optimize import design as search
 
-    from .progress import progress_bar
+    from .progress import optimiser_bar
 
-    with progress_bar() as progress:
+    with optimiser_bar() as progress:
         task = progress.add_task("compile", total=len(modes) * len(study.poses))
 
         def advance(outcome: Outcome) -> None:
@@ -89,16 +89,13 @@ def _search(study: Study, modes: tuple[Mode, ...]) -> Design:
 
 
 def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:
-    import json
-
     from softimpact.codegen import generate_package
 
     from .figures import draw_figures
-    from .output import plain
+    from .output import write_json
     from .results_folder import RESULTS
 
-    text = json.dumps(plain(record), indent=1, allow_nan=False)
-    (folder / RESULTS).write_text(text + "\n", encoding="utf-8")
+    write_json(folder / RESULTS, record)
     draw_figures(report, folder)
     model = report.study.model.with_springs(report.design.winner.springs)
     generate_package(model.robot, folder / "c", drives_=model.drives)

@@ -21,14 +21,12 @@ Tips = Annotated[
 
 def factors_study(study: o.StudyFile, out: o.Out, tip: Tips = None, json: o.Json = False) -> None:
     """Show impact factors over the poses and the self-motion, and how well they foretell force."""
-    import json as text
-
     from softimpact.optimize import load_study
 
     from .factor_figures import draw_factor_figures
     from .factor_study import factor_study
     from .factor_study.record import GENERATOR, as_record
-    from .output import plain, print_json
+    from .output import print_json, write_json
     from .results_folder import RESULTS, replaced_folder, require_replaceable
 
     problem = load_study(study)
@@ -36,8 +34,7 @@ def factors_study(study: o.StudyFile, out: o.Out, tip: Tips = None, json: o.Json
     found = factor_study(problem, tip or (), lambda stage: typer.echo(stage, err=True))
     record = as_record(found)
     with replaced_folder(out, GENERATOR) as fresh:
-        words = text.dumps(plain(record), indent=1, allow_nan=False)
-        (fresh / RESULTS).write_text(words + "\n", encoding="utf-8")
+        write_json(fresh / RESULTS, record)
         draw_factor_figures(found, fresh)
     if json:
         print_json({"out": out, **record})

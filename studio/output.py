@@ -43,6 +43,12 @@ def print_json(result: Mapping[str, Any]) -> None:
     typer.echo(json.dumps(plain(result), allow_nan=False))
 
 
+def write_json(path: Path, result: Any) -> None:
+    """Write a result as a JSON file that people can read."""
+    text = json.dumps(plain(result), indent=1, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     """Print a table to stdout; numbers to four digits, what does not apply as a dash."""
     table = Table(

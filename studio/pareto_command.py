@@ -60,9 +60,9 @@ def _search(study: Study) -> ParetoReport:
     from softimpact.optimize import pareto_fronts
 
     from .pareto_report import pareto_report
-    from .progress import progress_bar
+    from .progress import optimiser_bar
 
-    with progress_bar() as progress:
+    with optimiser_bar() as progress:
         task = progress.add_task("compile", total=None)
 
         def advance(what: str, done: int, total: int) -> None:
@@ -72,16 +72,13 @@ def _search(study: Study) -> ParetoReport:
 
 
 def _write(report: ParetoReport, record: dict[str, Any], folder: Path) -> None:
-    import json
-
     from .figures.pareto import draw_pareto_figures
-    from .output import plain
+    from .output import write_json
     from .pareto_record import write_table
     from .pareto_words import markdown
     from .results_folder import RESULTS
 
-    text = json.dumps(plain(record), indent=1, allow_nan=False)
-    (folder / RESULTS).write_text(text + "\n", encoding="utf-8")
+    write_json(folder / RESULTS, record)
     write_table(report, folder / "fronts.csv")
     figures = draw_pareto_figures(report, folder)
     words = markdown(report, [figure.name for figure in figures])

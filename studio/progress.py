@@ -10,11 +10,16 @@ from softimpact.optimize.compiled import c_compiler
 
 
 def progress_bar() -> Progress:
-    """Return a bar to use with ``with``; says first if there is no C compiler."""
-    console = Console(stderr=True)
+    """Return a bar to use with ``with``."""
+    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    return Progress(*columns, console=Console(stderr=True))
+
+
+def optimiser_bar() -> Progress:
+    """Return the bar of an optimiser, and say first if it has no C compiler."""
+    bar = progress_bar()
     if c_compiler() is None:
-        console.print(
+        bar.console.print(
             "No C compiler found: CasADi's virtual machine does the work, some ten times slower."
         )
-    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    return Progress(*columns, console=console)
+    return bar

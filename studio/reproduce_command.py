@@ -42,10 +42,8 @@ def reproduce(
     out: o.Out, paper: Papers = None, scenarios: Scenarios = None, json: o.Json = False
 ) -> None:
     """Recompute both papers (MSM, GIAF) and hold what they print and say against our numbers."""
-    from json import dumps
-
     from .design_report import versions
-    from .output import plain, print_json
+    from .output import print_json, write_json
     from .results_folder import RESULTS, replaced_folder, require_replaceable
 
     names = _names(scenarios)
@@ -57,8 +55,7 @@ def reproduce(
             record |= _reduced_models(names, fresh)
         if Paper.GIAF in papers:
             record["giaf"] = _impact_factors(fresh / GIAF_FOLDER)
-        text = dumps(plain(record), indent=1, allow_nan=False)
-        (fresh / RESULTS).write_text(text + "\n", encoding="utf-8")
+        write_json(fresh / RESULTS, record)
     if json:
         short = ("verdicts", "comparisons", "giaf")
         print_json({"out": out, **{k: record[k] for k in short if k in record}})
@@ -113,13 +110,10 @@ def _impact_factors(folder: Path) -> dict[str, Any]:
 
 def _computed(names: tuple[str, ...]) -> Results:
     """Compute with a progress bar on stderr."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
-
+    from .progress import progress_bar
     from .reproduce_msm.compute import compute, work_of
 
-    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True)) as progress:
+    with progress_bar() as progress:
         task = progress.add_task("impacts", total=len(work_of(names)))
         return compute(names, on_done=lambda _: progress.advance(task))
 
