@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from softimpact.studio.reproduce import printed
+from softimpact.studio.reproduce_msm import printed
 
 from softimpact.simulate import simulate_impact
 from softimpact.studio.reproduce_msm.ladder import impact_at
