@@ -103,7 +103,7 @@ class Manifest:
     real: Real
     joints: tuple[str, ...]
     coordinates: int
-    gravity: tuple[float, ...]
+    gravity: tuple[float, float, float]
     chain_order: int
     parameters: tuple[str, ...]
     frozen: Mapping[str, tuple[float, ...]]

@@ -20,12 +20,12 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 
-from softimpact.simulate import Approach, simulate_impact
+from softimpact.simulate import Approach, Fidelity, simulate_impact
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
@@ -51,6 +51,25 @@ class Case:
     name: str
     model: ImpactModel
     approach: Approach
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Times [s] and peak forces [N] of a case."""
+
+    robot: str
+    full_seconds: float
+    full_loose_seconds: float
+    reduction_seconds: float
+    reduced_seconds: float
+    ratio: float
+    ratio_loose: float
+    full_peak: float
+    full_loose_peak: float
+    chain_peak: float
+    reduced_peak: float
+    error_of_integration: float
+    error_of_reduction: float
 
 
 def cases() -> list[Case]:
@@ -119,11 +138,11 @@ def least_seconds(run: Callable[[], object], repeats: int = 15) -> float:
     return min(times)
 
 
-def measure(case: Case, folder: Path) -> dict[str, float | str]:
+def measure(case: Case, folder: Path) -> Measured:
     contact = Contact(body_region("head"))
     program = build(case, folder)
 
-    def impact(fidelity: str, tolerance: float = 1e-10) -> float:
+    def impact(fidelity: Fidelity, tolerance: float = 1e-10) -> float:
         history = simulate_impact(
             case.model, case.approach, contact, fidelity, order=3, tolerance=tolerance
         )
@@ -134,21 +153,21 @@ def measure(case: Case, folder: Path) -> dict[str, float | str]:
     seconds = least_seconds(lambda: impact("full"))
     loose = least_seconds(lambda: impact("full", LOOSE))
     peak, reduce, both = reduced(case, program, contact)
-    return {
-        "robot": case.name,
-        "full_seconds": seconds,
-        "full_loose_seconds": loose,
-        "reduction_seconds": reduce,
-        "reduced_seconds": both,
-        "ratio": seconds / both,
-        "ratio_loose": loose / both,
-        "full_peak": full,
-        "full_loose_peak": loose_peak,
-        "chain_peak": chain,
-        "reduced_peak": peak,
-        "error_of_integration": peak / chain - 1,
-        "error_of_reduction": chain / full - 1,
-    }
+    return Measured(
+        robot=case.name,
+        full_seconds=seconds,
+        full_loose_seconds=loose,
+        reduction_seconds=reduce,
+        reduced_seconds=both,
+        ratio=seconds / both,
+        ratio_loose=loose / both,
+        full_peak=full,
+        full_loose_peak=loose_peak,
+        chain_peak=chain,
+        reduced_peak=peak,
+        error_of_integration=peak / chain - 1,
+        error_of_reduction=chain / full - 1,
+    )
 
 
 def main() -> int:
@@ -158,20 +177,20 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         results = [measure(case, Path(folder)) for case in cases()]
     if as_json:
-        print(json.dumps({"target": TARGET, "robots": results}))
+        print(json.dumps({"target": TARGET, "robots": [asdict(r) for r in results]}))
     else:
         for r in results:
             print(
-                f"{r['robot']}: full {1e3 * r['full_seconds']:.2f} ms "
-                f"(loose {1e3 * r['full_loose_seconds']:.2f} ms), "
-                f"reduced {1e6 * r['reduced_seconds']:.2f} µs "
-                f"(of which reduction {1e6 * r['reduction_seconds']:.2f} µs): "
-                f"ratio {r['ratio']:.0f} (loose {r['ratio_loose']:.0f}, target {TARGET:.0f}); "
-                f"peaks {r['full_peak']:.1f} full, {r['chain_peak']:.1f} chain, "
-                f"{r['reduced_peak']:.1f} N reduced"
+                f"{r.robot}: full {1e3 * r.full_seconds:.2f} ms "
+                f"(loose {1e3 * r.full_loose_seconds:.2f} ms), "
+                f"reduced {1e6 * r.reduced_seconds:.2f} µs "
+                f"(of which reduction {1e6 * r.reduction_seconds:.2f} µs): "
+                f"ratio {r.ratio:.0f} (loose {r.ratio_loose:.0f}, target {TARGET:.0f}); "
+                f"peaks {r.full_peak:.1f} full, {r.chain_peak:.1f} chain, "
+                f"{r.reduced_peak:.1f} N reduced"
             )
-    accurate = all(abs(r["error_of_integration"]) < ACCURACY for r in results)
-    return 0 if accurate and all(r["ratio"] >= TARGET for r in results) else 1
+    accurate = all(abs(r.error_of_integration) < ACCURACY for r in results)
+    return 0 if accurate and all(r.ratio >= TARGET for r in results) else 1
 
 
 if __name__ == "__main__":

@@ -36,7 +36,7 @@ def configuration(library: Library, motors: Array, start: Array | None = None) -
     """Call the solver; its output starts as NaN."""
     _, kind = KINDS[library.real]
     q = np.full(library.package.robot.n, np.nan, dtype=kind)
-    held = [np.asarray(x, dtype=kind) for x in (motors, [] if start is None else start)]
+    held = [np.asarray(x, dtype=kind) for x in (motors, () if start is None else start)]
     pointers = [ctypes.c_void_p(x.ctypes.data) for x in held]
     entry = getattr(library.library, f"{library.package.manifest.name}_configuration")
     first = None if start is None else pointers[1]

@@ -65,8 +65,7 @@ def test_fuzzer_finds_nothing(
     probe.write_text("int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n);\n"
                      "int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n)"
                      "{ return d == 0 && n > 0; }\n")  # fmt: skip
-    with_fuzzer = [tool("clang"), "-fsanitize=fuzzer"]
-    command = [*with_fuzzer, probe, "-o", tmp_path / "probe"]
+    command = [tool("clang"), "-fsanitize=fuzzer", str(probe), "-o", str(tmp_path / "probe")]
     if subprocess.run(command, capture_output=True, check=False).returncode != 0:
         missing("clang's libFuzzer")
     sources = [*generated.folder.glob("src/*.c"), generated.folder / "fuzz/fuzz.c"]
