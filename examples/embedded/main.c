@@ -14,14 +14,14 @@
 
 #define JOINTS PANDA_JOINTS
 #define CYCLE ((panda_real)0.001) /* s */
+#define CREEP ((panda_real)0.05)  /* m/s, where no safe speed is known */
 #define PI ((panda_real)3.14159265358979)
 
 /* What the controller knows: its drives, and whom it may hit. */
 typedef struct {
     panda_params drives;
     panda_region body;
-    panda_real limit;      /* N */
-    panda_real last_speed; /* m/s, allowed while the direction is unknown or singular */
+    panda_real limit; /* N */
 } guard;
 
 /* The planned trajectory: there and back between two poses, at rest at both ends. */
@@ -39,14 +39,14 @@ static void plan(panda_real time, panda_real q[JOINTS], panda_real rate[JOINTS])
     }
 }
 
-/* Velocity of the contact point; returns its size [m/s]. */
+/* Velocity of the contact point; returns its size [m/s], not finite if q is not. */
 static panda_real tip_velocity(const panda_real q[JOINTS], const panda_real rate[JOINTS],
     panda_real velocity[3])
 {
     panda_real J[3][JOINTS];
     panda_real square = 0;
     if (panda_jacobian(q, J) != PANDA_OK) {
-        return 0;
+        return (panda_real)NAN;
     }
     for (int k = 0; k < 3; ++k) {
         velocity[k] = 0;
@@ -59,20 +59,22 @@ static panda_real tip_velocity(const panda_real q[JOINTS], const panda_real rate
 }
 
 /* Share of the planned velocity that is allowed now; *force is what it leads to [N]. */
-static panda_real allowed_share(guard *g, const panda_real q[JOINTS], const panda_real rate[JOINTS],
+static panda_real allowed_share(const guard *g, const panda_real q[JOINTS], const panda_real rate[JOINTS],
     panda_real *force)
 {
     panda_real direction[3];
     const panda_real planned = tip_velocity(q, rate, direction);
-    panda_safe_speed_t safe = {g->last_speed, 0};
     *force = 0;
-    if (!(planned > (panda_real)1e-6)) {
+    if (!isfinite(planned)) {
+        return 0; /* a state that makes no sense stops the arm */
+    }
+    if (planned < (panda_real)1e-6) {
         return 1; /* as good as at rest */
     }
-    if (panda_safe_speed(q, direction, g->limit, &g->body, &g->drives, &safe) == PANDA_OK) {
-        g->last_speed = safe.speed;
-    }
-    const panda_real share = planned > safe.speed ? safe.speed/planned : 1;
+    panda_safe_speed_t safe;
+    const int status = panda_safe_speed(q, direction, g->limit, &g->body, &g->drives, &safe);
+    const panda_real allowed = status == PANDA_OK ? safe.speed : CREEP;
+    const panda_real share = planned > allowed ? allowed/planned : 1;
     panda_peak_force_t peak;
     if (panda_peak_force(q, direction, share*planned, &g->body, &g->drives, &peak) == PANDA_OK) {
         *force = peak.force;
@@ -91,7 +93,6 @@ static int prepare(guard *g)
         g->drives.rotor_inertia[i] = (panda_real)0.3; /* kg m^2; yours */
     }
     g->limit = g->body.force_limit*(1 - (panda_real)PANDA_IMPACT_MARGIN);
-    g->last_speed = (panda_real)0.05;
     return 1;
 }
 

@@ -17,6 +17,7 @@
 #include "panda.h"
 
 #define JOINTS PANDA_JOINTS
+#define CREEP 0.05 /* m/s, where no safe speed is known */
 
 /* The part of a robot's state that a speed limit needs. */
 typedef struct {
@@ -29,7 +30,6 @@ typedef struct {
     panda_params drives;
     panda_region body;
     double limit; /* N */
-    double speed; /* m/s, the last one that was allowed */
 } guard;
 
 /* What one call decided. */
@@ -49,7 +49,6 @@ static int prepare(guard *g)
     }
     /* the package keeps limits for its chain of masses; this covers what the chain leaves out */
     g->limit = g->body.force_limit*(1 - PANDA_IMPACT_MARGIN);
-    g->speed = 0.05; /* until a direction is known */
     return 1;
 }
 
@@ -70,7 +69,7 @@ static double velocity_of_tip(const robot_state *state, double velocity[3])
 }
 
 /* The callback: 1 kHz in, 1 kHz out. A state that makes no sense stops the arm. */
-static verdict control(guard *g, const robot_state *state, double command[JOINTS])
+static verdict control(const guard *g, const robot_state *state, double command[JOINTS])
 {
     double direction[3];
     verdict v = {velocity_of_tip(state, direction), 0, 0};
@@ -78,10 +77,9 @@ static verdict control(guard *g, const robot_state *state, double command[JOINTS
         v.share = 1; /* as good as at rest: no direction to speak of */
     } else if (isfinite(v.planned)) {
         panda_safe_speed_t safe;
-        if (panda_safe_speed(state->q, direction, g->limit, &g->body, &g->drives, &safe) == PANDA_OK) {
-            g->speed = safe.speed; /* in a singular direction the last one stays */
-        }
-        v.allowed = g->speed;
+        const int status =
+            panda_safe_speed(state->q, direction, g->limit, &g->body, &g->drives, &safe);
+        v.allowed = status == PANDA_OK ? safe.speed : CREEP;
         v.share = fmin(1, v.allowed/v.planned);
     }
     for (int i = 0; i < JOINTS; ++i) {
