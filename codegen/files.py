@@ -57,11 +57,14 @@ def require_own(folder: Path) -> None:
     if folder.is_symlink() or not folder.is_dir():
         raise ForeignFiles(folder, [folder.name])
     written = _written_files(folder)
-    found = {p.relative_to(folder).as_posix(): p for p in folder.rglob("*") if not p.is_dir()}
+    files = (p for p in folder.rglob("*") if p.is_symlink() or not p.is_dir())
+    found = {p.relative_to(folder).as_posix(): p for p in files}
     foreign = [
         name
         for name, path in sorted(found.items())
-        if name not in written or written[name] != hashlib.sha256(path.read_bytes()).hexdigest()
+        if name not in written
+        or path.is_symlink()
+        or written[name] != hashlib.sha256(path.read_bytes()).hexdigest()
     ]
     if foreign:
         raise ForeignFiles(folder, foreign)

@@ -68,6 +68,15 @@ def test_refuses_a_file_or_a_link_in_the_folders_place(tmp_path: Path) -> None:
     assert contents(tmp_path / "target") == {}
 
 
+def test_refuses_a_package_with_a_link_in_it(tmp_path: Path) -> None:
+    replace_package(tmp_path / "p", package("one"))
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "p/link").symlink_to(tmp_path / "mine")
+    with pytest.raises(ForeignFiles, match="link"):
+        replace_package(tmp_path / "p", package("two"))
+    assert (tmp_path / "p/link").is_symlink()
+
+
 def test_names_the_folder_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("mine")
     with pytest.raises(OutputNotWritable, match="p"):
