@@ -17,19 +17,26 @@ from softimpact.symbolic import (
     giif,
 )
 
+SLOW = (ca.OP_DIV, ca.OP_INV, ca.OP_SQRT)
+"""Operations that take a Cortex-M fourteen cycles."""
+
 QUANTITIES = ("mass_matrix", "osim", "reflected_mass", "reduced_model", "giaf")
 
 
 class Quantities:
-    """Functions of one contender by quantity, and what they cost."""
+    """Functions of one contender by quantity, their operations, and divisions among them."""
 
     def __init__(self, contender: str, symbols: list[Any], values: dict[str, list[Any]]) -> None:
         self.flops: dict[str, int] = {}
+        self.divisions: dict[str, int] = {}
         self.functions: dict[str, Any] = {}
         for quantity, parts in values.items():
             output = ca.cse(ca.densify(ca.veccat(*parts)))
             self.flops[quantity] = count_flops(output)
-            self.functions[quantity] = ca.Function(f"{contender}_{quantity}", symbols, [output])
+            function = ca.Function(f"{contender}_{quantity}", symbols, [output])
+            steps = range(function.n_instructions())
+            self.divisions[quantity] = sum(function.instruction_id(k) in SLOW for k in steps)
+            self.functions[quantity] = function
 
 
 def our_expressions(robot: Robot) -> Quantities:

@@ -51,19 +51,32 @@ Operations, sines and cosines not counted:
 
 """
 
+DIVISIONS = """
+Divisions and square roots among them, which take some fourteen times as long as products, though
+an instruction each in the tables below:
+
+"""
+
 EMBEDDED = """
 ## On a microcontroller
 
 Instructions in float, counted under QEMU as in [embedded.md](embedded.md), over the package's
 golden inputs. CasADi's `casadi_real=float` still calls the double `sin` and `cos` and writes double
 constants, which the M4F emulates; "by hand" is its code after replacing the calls and with
-`-fsingle-precision-constant`. Only ours checks its inputs and tells singular configurations.
+`-fsingle-precision-constant`. Only ours checks its inputs, takes n of any length and tells singular
+configurations, for some hundred instructions a call; and it computes sines in single precision
+throughout, where the C library uses the M7's double registers.
 
 """
 
 
 def page(
-    machine: str, compiler: str, times: Table, flops: Table, counts: Mapping[str, Table]
+    machine: str,
+    compiler: str,
+    times: Table,
+    flops: Table,
+    divisions: Table,
+    counts: Mapping[str, Table],
 ) -> str:
     """Return the page.
 
@@ -72,12 +85,14 @@ def page(
         compiler: with its flags.
         times: nanoseconds.
         flops: operations.
+        divisions: divisions and square roots among them.
         counts: instructions by core; empty if they could not be counted.
     """
     still = {quantity: row for quantity, row in times.items() if quantity not in IMPACTS}
     hits = {quantity: row for quantity, row in times.items() if quantity in IMPACTS}
     parts = [HEAD.format(machine=machine, compiler=compiler), _ratios(still, "{:.0f} ns")]
     parts += [IMPACT, _ratios(hits, "{:.0f} ns"), FLOPS, _plain(flops)]
+    parts += [DIVISIONS, _plain(divisions)]
     if counts:
         parts.append(EMBEDDED)
     for core, table in counts.items():

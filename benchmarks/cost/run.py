@@ -29,7 +29,7 @@ import casadi as ca  # noqa: E402
 from arm import numbers, urdf  # noqa: E402
 from compiled_packages import Generated  # noqa: E402
 from compiling import build_host  # noqa: E402
-from expressions import QUANTITIES, Quantities, built_on, our_expressions  # noqa: E402
+from expressions import QUANTITIES, SLOW, Quantities, built_on, our_expressions  # noqa: E402
 from microcontroller import counts  # noqa: E402
 from page import Table, page, processor  # noqa: E402
 from samples import impacts, still_samples  # noqa: E402
@@ -75,9 +75,17 @@ def measure(folder: Path, others: Path, quick: bool) -> tuple[Table, str]:
         quantity: {"ours": own[quantity], **{name: q.flops[quantity] for name, q in rivals.items()}}
         for quantity in QUANTITIES
     }
+    divided = {
+        function.name: function.graph.only(range(len(function.outputs))).count(*SLOW)
+        for function in package.functions
+    }
+    divisions: Table = {
+        q: {"ours": divided[q], **{name: rival.divisions[q] for name, rival in rivals.items()}}
+        for q in QUANTITIES
+    }
     chosen = {name: rival for name, rival in rivals.items() if name in ON_MICROCONTROLLERS}
     found = {} if quick else counts(package, chosen, folder)
-    return times, page(processor(), compiler, times, flops, found)
+    return times, page(processor(), compiler, times, flops, divisions, found)
 
 
 def run_host(program: Path, given: str) -> Table:

@@ -52,10 +52,12 @@ def test_formulas_on_another_librarys_matrices_give_our_numbers(panda: Robot) ->
 
 def test_page_shows_ratios_and_who_is_missing() -> None:
     times = {"giaf": {"ours": 200.0, "CasADi": 230.0}, "safe_speed": {"ours": 5e3, "RK4": 1e5}}
-    text = page("a machine", "a compiler", times, {"giaf": {"ours": 1174, "CasADi": 1234}}, {})
+    flops, divisions = {"ours": 1174.0, "CasADi": 1234.0}, {"ours": 16.0, "CasADi": 87.0}
+    text = page("a machine", "a compiler", times, {"giaf": flops}, {"giaf": divisions}, {})
     assert "| GIAF and GIIF | 200 ns | 1.15 × |" in text
     assert "| safe speed | 5000 ns | 20 × |" in text
     assert "| GIAF and GIIF | 1174 | 1234 |" in text
+    assert "| GIAF and GIIF | 16 | 87 |" in text
     assert "microcontroller" not in text
 
 
