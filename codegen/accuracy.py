@@ -149,4 +149,4 @@ def rounded_unit(n: NDArray[np.float64], kind: type[np.floating[Any]]) -> NDArra
     narrow = n.astype(kind)
     narrow = narrow / abs(narrow).max(axis=0)
     length = np.sqrt(narrow[0] * narrow[0] + narrow[1] * narrow[1] + narrow[2] * narrow[2])
-    return np.asarray(narrow / length, dtype=np.float64)
+    return np.asarray(narrow * (kind(1) / length), dtype=np.float64)

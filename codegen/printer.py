@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from textwrap import wrap
 
 import casadi as ca
 
@@ -119,8 +121,9 @@ class _Printer:
 
     def statements(self) -> Statements:
         """Print every node once."""
-        for index, after in zip(self.first, [*self.first[1:], *self.first[-1:]], strict=True):
-            self._print_pair(index, after)
+        self._print_pairs()
+        for index in self.first:
+            self._print_with_operands(index)
         for index in range(len(self.graph.nodes)):
             self._print(index)
         results = tuple(
@@ -128,21 +131,40 @@ class _Printer:
         )
         return Statements(tuple(self.lines), results)
 
-    def _print_pair(self, index: int, after: int) -> None:
-        """Print a sine or cosine; the two of one angle are computed at once."""
+    def _print_pairs(self) -> None:
+        """Print the sines and cosines of all angles that need both; one call computes them."""
         nodes = self.graph.nodes
-        (angle,) = nodes[index].operands
-        self._print_with_operands(angle)
-        pair = (nodes[index].operation, nodes[after].operation) == (ca.OP_SIN, ca.OP_COS)
-        if not pair or nodes[after].operands != (angle,):
-            self._print(index)
+        pairs = [
+            (sine, cosine)
+            for sine, cosine in pairwise(self.first)
+            if (nodes[sine].operation, nodes[cosine].operation) == (ca.OP_SIN, ca.OP_COS)
+            and nodes[sine].operands == nodes[cosine].operands
+        ]
+        if not pairs:
             return
-        sine, cosine = self.names[index], self.names[after]
-        call = f"{self.prefix}_sine_cosine({self.texts[angle].text}, &{sine}, &{cosine});"
-        declared = [f"{INDENT}{self.real} {name};" for name in (sine, cosine)]
-        self.lines += [*declared, f"{INDENT}{call}"]
-        self.texts[index] = _Text(sine, Binding.ATOM)
-        self.texts[after] = _Text(cosine, Binding.ATOM)
+        angles = self._angles([nodes[sine].operands[0] for sine, _ in pairs])
+        self.lines += [
+            f"{INDENT}{self.real} {name}[{len(pairs)}];" for name in ("sines", "cosines")
+        ]
+        call = f"{self.prefix}_sines_cosines({angles}, {len(pairs)}, sines, cosines);"
+        self.lines.append(f"{INDENT}{call}")
+        for k, (sine, cosine) in enumerate(pairs):
+            for array, index in (("sines", sine), ("cosines", cosine)):
+                self.texts[index] = _Text(f"{array}[{k}]", Binding.ATOM)
+                self._define(index)
+
+    def _angles(self, indices: Sequence[int]) -> str:
+        """Return a C expression of the array of some values: of an input where they stand in it."""
+        for index in indices:
+            self._print_with_operands(index)
+        places = [self.graph.nodes[index].element for index in indices]
+        inputs = all(self.graph.nodes[index].operation == ca.OP_INPUT for index in indices)
+        if inputs and all(b == (a[0], a[1] + 1) for a, b in pairwise(places)):
+            return f"&{self.texts[indices[0]].text}"
+        values = ", ".join(self.texts[index].text for index in indices)
+        line = f"{INDENT}const {self.real} angles[{len(indices)}] = {{{values}}};"
+        self.lines += wrap(line, LINE, subsequent_indent=2 * INDENT)
+        return "angles"
 
     def _print_with_operands(self, index: int) -> None:
         for operand in self.graph.nodes[index].operands:

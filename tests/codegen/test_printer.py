@@ -17,6 +17,7 @@ from softimpact.codegen import UnsupportedOperation
 from softimpact.codegen.evaluate import evaluate_exactly, evaluate_rounded
 from softimpact.codegen.graph import graph_of
 from softimpact.codegen.printer import LINE, print_graph
+from softimpact.symbolic.rigid import Array
 
 HEAD = """
 #include <math.h>
@@ -32,7 +33,13 @@ HEAD = """
 #define X_COPYSIGN copysign
 #define X_POW pow
 typedef double x_real;
-static inline void x_sine_cosine(double x, double *s, double *c) { *s = sin(x); *c = cos(x); }
+static inline void x_sines_cosines(const double *x, int count, double *s, double *c)
+{
+    for (int i = 0; i < count; ++i) {
+        s[i] = sin(x[i]);
+        c[i] = cos(x[i]);
+    }
+}
 """
 X = ca.SX.sym("x", 3)
 A, B, C = X[0], X[1], X[2]
@@ -57,6 +64,7 @@ OPERATIONS: dict[str, ca.SX] = {
     "pow": A**B,
     "constpow": A**2.5,
     "negative angle": ca.sin(-A) + ca.cos(-A),
+    "two angles": ca.sin(A) * ca.cos(A) - ca.sin(C) / ca.cos(C),
     "negative argument": ca.exp(-A) + ca.fmax(-A, -B),
     "negative divisor": (A - B) / -C,
     "reversed difference": (A - B) * C + (B - A),
@@ -66,10 +74,11 @@ OPERATIONS: dict[str, ca.SX] = {
     "inverse of a product": 1 / (A * B) * C,
     "constants": -0.1 * A - 1e-30 + 3 * B - 1e30 / C,
 }
+Compiled = Callable[[Array], Array]
 POINTS = np.random.default_rng(0).uniform(0.2, 3.0, (3, 50))
 
 
-def c_function(expressions: list[ca.SX], tmp_path: Path, compiler: str = "gcc") -> Callable:
+def c_function(expressions: list[ca.SX], tmp_path: Path, compiler: str = "gcc") -> Compiled:
     """Compile expressions of x as one C function of double."""
     graph = graph_of([X], [ca.vertcat(*expressions)])
     names = [[f"y{i}" for i in range(len(expressions))]]
@@ -83,7 +92,7 @@ def c_function(expressions: list[ca.SX], tmp_path: Path, compiler: str = "gcc") 
         source, "-o", library, "-lm")  # fmt: skip
     entry = ctypes.CDLL(str(library)).f
 
-    def call(x: np.ndarray) -> np.ndarray:
+    def call(x: Array) -> Array:
         y = np.full(len(expressions), np.nan)
         x = np.ascontiguousarray(x)
         entry(ctypes.c_void_p(x.ctypes.data), ctypes.c_void_p(y.ctypes.data))
@@ -163,15 +172,27 @@ def test_sines_of_shifted_angles_keep_their_joints_name() -> None:
     assert printed.lines[-1].strip() == "const x_real y = s1*c2 + X_SIN(q[0]*q[1]);"
 
 
-def test_sine_and_cosine_of_one_angle_are_computed_at_once() -> None:
+def test_sines_and_cosines_of_all_angles_are_computed_at_once() -> None:
     graph = graph_of([X], [ca.sin(B) + ca.cos(B + 0.5) * ca.sin(0.5 + B) * ca.cos(B) - ca.cos(C)])
     printed = print_graph(graph, [["q[0]", "q[1]", "q[2]"]], [["y"]], "x", angles=0)
     text = "\n".join(printed.lines)
-    assert "x_sine_cosine(q[1], &s2, &c2);" in text
-    declared = "    x_real s2_2;\n    x_real c2_2;\n"
-    assert f"t1 = q[1] + X_R(0.5);\n{declared}    x_sine_cosine(t1, &s2_2" in text
+    assert "t1 = q[1] + X_R(0.5);\n    const x_real angles[2] = {q[1], t1};" in text
+    assert "x_sines_cosines(angles, 2, sines, cosines);" in text
+    for line in ("s2 = sines[0];", "c2 = cosines[0];", "s2_2 = sines[1];", "c2_2 = cosines[1];"):
+        assert f"    const x_real {line}" in text
     assert "c3 = X_COS(q[2]);" in text
-    assert text.count("X_SIN") + text.count("sine_cosine") == 2
+    assert text.count("X_SIN") + text.count("sines_cosines") == 1
+
+
+def test_angles_that_stand_side_by_side_are_read_where_they_are() -> None:
+    pair = ca.sin(B) * ca.cos(B) + ca.sin(C) * ca.cos(C)
+    printed = print_graph(graph_of([X], [pair]), [["q[0]", "q[1]", "q[2]"]], [["y"]], "x", angles=0)
+    assert "x_sines_cosines(&q[1], 2, sines, cosines);" in "".join(printed.lines)
+    apart = ca.sin(A) * ca.cos(A) + ca.sin(C) * ca.cos(C)
+    printed = print_graph(
+        graph_of([X], [apart]), [["q[0]", "q[1]", "q[2]"]], [["y"]], "x", angles=0
+    )
+    assert "angles[2] = {q[0], q[2]};" in "".join(printed.lines)
 
 
 def test_lines_stay_short() -> None:

@@ -9,8 +9,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from compiled_packages import Generated
+from numpy.typing import NDArray
 
 from softimpact.codegen.sine import ERROR, LIMIT, sine_and_cosine
+
+Angles = NDArray[np.float32]
 
 ANGLES = np.concatenate(
     [np.linspace(-LIMIT, LIMIT, 40001)[1:-1], np.arange(-120, 121) * np.pi / 2, [0.0, 1e-30]]
@@ -26,27 +29,25 @@ def test_error_is_within_its_bound() -> None:
 
 
 @pytest.fixture(name="in_c")
-def _in_c(package: Callable[[str], Generated]) -> Callable[[float], tuple[float, float]]:
-    entry = package("rr").load("float").library.rr_sine_cosine
-    entry.argtypes = [ctypes.c_float, *[ctypes.POINTER(ctypes.c_float)] * 2]
+def _in_c(package: Callable[[str], Generated]) -> Callable[[Angles], Angles]:
+    entry = package("rr").load("float").library.rr_sines_cosines
+    array = ctypes.POINTER(ctypes.c_float)
+    entry.argtypes = [array, ctypes.c_int, array, array]
 
-    def call(x: float) -> tuple[float, float]:
-        s, c = ctypes.c_float(), ctypes.c_float()
-        entry(x, s, c)
-        return s.value, c.value
+    def call(x: Angles) -> Angles:
+        both = np.zeros((2, x.size), dtype=np.float32)
+        angles, sines, cosines = (values.ctypes.data_as(array) for values in (x, *both))
+        entry(angles, x.size, sines, cosines)
+        return both
 
     return call
 
 
-def test_c_computes_the_same_to_the_last_bit(in_c: Callable[[float], tuple[float, float]]) -> None:
-    angles = ANGLES[::7]
-    found = np.array([in_c(float(x)) for x in angles], dtype=np.float32)
-    np.testing.assert_array_equal(found, np.array(sine_and_cosine(angles)).T)
+def test_c_computes_the_same_to_the_last_bit(in_c: Callable[[Angles], Angles]) -> None:
+    np.testing.assert_array_equal(in_c(ANGLES), np.array(sine_and_cosine(ANGLES)))
 
 
 @pytest.mark.parametrize("angle", [LIMIT, -1e4, 3.4e38])
-def test_large_angles_go_to_the_library(
-    in_c: Callable[[float], tuple[float, float]], angle: float
-) -> None:
-    x = float(np.float32(angle))
-    assert in_c(x) == pytest.approx((np.sin(x), np.cos(x)), abs=1e-6)
+def test_large_angles_go_to_the_library(in_c: Callable[[Angles], Angles], angle: float) -> None:
+    x = np.array([0.5, angle, -1.0], dtype=np.float32)
+    np.testing.assert_allclose(in_c(x), [np.sin(x, dtype=float), np.cos(x, dtype=float)], atol=1e-7)
