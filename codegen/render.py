@@ -10,7 +10,7 @@ from pathlib import Path
 import jinja2
 
 import softimpact
-from softimpact.symbolic import REGIONS, Robot, closed_chain
+from softimpact.symbolic import REGIONS, JointKind, Robot, closed_chain
 from softimpact.symbolic.contact import HERTZ_STIFFNESS
 
 from . import impact, sine, tridiagonal
@@ -94,6 +94,11 @@ class Package:
     def independent(self) -> list[str]:
         """Names of the joints whose coordinates describe the robot."""
         return [self.robot.joint_names[i] for i in closed_chain(self.robot).independent]
+
+    @property
+    def slides(self) -> list[str]:
+        """Names of the sliding joints."""
+        return [joint.name for joint in self.robot.joints if joint.kind is JointKind.SLIDE]
 
     @property
     def fields(self) -> list[Parameter]:
