@@ -32,6 +32,17 @@ from .source import CSource
 GOLDEN_CASES = 12
 """Inputs in a package's own test."""
 
+CHAIN_ORDER = 3
+"""Masses of the chain unless another number is asked for, or the robot has fewer coordinates."""
+
+TAKEN = frozenset((
+    "assert", "complex", "ctype", "errno", "fenv", "float", "inttypes", "iso646", "limits",
+    "locale", "math", "setjmp", "signal", "stdarg", "stdbool", "stddef", "stdint", "stdio",
+    "stdlib", "string", "tgmath", "time", "wchar", "wctype",
+    "all", "clean", "edit_cache", "help", "install", "package", "rebuild_cache", "test",
+))  # fmt: skip
+"""Names that a package cannot have: headers of C, then targets of CMake."""
+
 
 def generate_package(
     robot: Robot,
@@ -42,7 +53,7 @@ def generate_package(
     name: str | None = None,
     drives_: Drives | None = None,
     gravity: tuple[float, float, float] | None = None,
-    chain_order: int = 3,
+    chain_order: int | None = None,
     impact_order: int | None = None,
     payload: Payload | None = None,
     freeze: Collection[str] = (),
@@ -61,7 +72,8 @@ def generate_package(
             file's armatures, gains are 0, and joint stiffnesses are left for the caller to set.
         gravity: whose curvature enters K0 [m/s²]; zero leaves it out. Default none, but of closed
             chains, whose passive joints rest where springs and gravity balance, the standard one.
-        chain_order: number of masses of the chain.
+        chain_order: number of masses of the chain; None takes ``CHAIN_ORDER``, or as many as there
+            are coordinates.
         impact_order: the same of the chain behind peak forces and safe speeds; None takes the
             fewest that are right for most impacts.
         payload: adds the parameters of a point mass that the robot carries; its numbers are their
@@ -93,6 +105,7 @@ def generate_package(
     _check(
         robot, real, gravity, {"chain_order": chain_order, "impact_order": impact_order}, floating
     )
+    chain_order = chain_order or min(CHAIN_ORDER, longest_chain(robot))
     checked = checked_poses(robot, poses or {})
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot, payload=payload is not None)
@@ -138,9 +151,10 @@ def generate_package(
 
 
 def c_name(name: str) -> str:
-    """Return a C identifier in lower case for a robot's name."""
+    """Return a C identifier in lower case for a robot's name, fit for a header and for CMake."""
     words = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
-    return words if words[:1].isalpha() else f"robot_{words}".rstrip("_")
+    usable = words[:1].isalpha() and words not in TAKEN
+    return words if usable else f"robot_{words}".rstrip("_")
 
 
 def _check(

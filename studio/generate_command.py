@@ -31,7 +31,12 @@ def generate(
     position_gain: o.PositionGain = None,
     gear_ratio: o.GearRatio = None,
     gravity: o.Gravity = None,
-    order: o.Order = 3,
+    order: Annotated[
+        int | None,
+        typer.Option(
+            min=1, help="Number of masses of the chain; default 3, or what the robot has."
+        ),
+    ] = None,
     floating: Annotated[
         bool,
         typer.Option(
