@@ -27,6 +27,7 @@ from softimpact.symbolic import (
     Robot,
     count_flops,
     drives,
+    load_robot,
 )
 
 ROOT = Path(__file__).parents[2]
@@ -90,7 +91,15 @@ def test_every_robot_number_comes_from_the_model(tmp_path: Path, panda: Robot) -
 
 
 @pytest.mark.parametrize(
-    ("name", "identifier"), [("UR5e", "ur5e"), ("my arm-2", "my_arm_2"), ("7dof", "robot_7dof")]
+    ("name", "identifier"),
+    [
+        ("UR5e", "ur5e"),
+        ("my arm-2", "my_arm_2"),
+        ("7dof", "robot_7dof"),
+        ("机器人", "robot"),
+        ("float", "robot_float"),  # include/float.h would hide that of C
+        ("Test", "robot_test"),  # CMake has a target of this name
+    ],
 )
 def test_names_become_c_identifiers(name: str, identifier: str) -> None:
     assert c_name(name) == identifier
@@ -109,6 +118,26 @@ def test_rejects_arguments_without_meaning(tmp_path: Path, panda: Robot) -> None
     with pytest.raises(InvalidValue, match="gravity"):
         generate_package(panda, out, gravity=(0, 0, float("nan")))
     assert not out.exists()
+
+
+def test_chain_is_no_longer_than_the_robot(tmp_path: Path) -> None:
+    model = tmp_path / "door.xml"
+    model.write_text(
+        '<mujoco model="test"><worldbody><body><joint name="hinge" axis="0 0 1" armature=".1"/>'
+        '<inertial mass="1" pos=".3 0 0" diaginertia=".01 .01 .01"/>'
+        '<site name="edge" pos=".5 0 0"/></body></worldbody></mujoco>'
+    )
+    robot = load_robot(model)
+    manifest = generate_package(robot, tmp_path / "p", tip="edge")
+    assert (manifest.name, manifest.coordinates, manifest.chain_order) == ("robot_test", 2, 2)
+    generated = Generated(robot, "edge", tmp_path / "p", manifest)
+    assert "all passed" in generated.run_own_test("gcc", "double", tmp_path / "run")
+
+
+def test_header_says_what_units_sliding_joints_have(package: Callable[[str], Generated]) -> None:
+    header = (package("gantry").folder / "include/gantry_2.h").read_text()
+    assert "of the sliding ones (x, z) read m for rad" in header
+    assert "sliding" not in (package("rr").folder / "include/rr.h").read_text()
 
 
 def test_samples_are_exact_in_float_and_inside_the_limits(panda: Robot) -> None:
@@ -210,6 +239,8 @@ def test_cmake_builds_tests_and_serves_others(
     run(cmake, "-S", copy, "-B", tmp_path / "own", "-DRR_REAL=float")
     run(cmake, "--build", tmp_path / "own")
     run(tmp_path / "own" / "rr_test")
+    said = run(cmake, "-S", copy, "-B", tmp_path / "half", "-DRR_REAL=half", ok=False)
+    assert "RR_REAL must be double or float, not half" in said
     (tmp_path / "app/main.c").write_text(
         '#include "rr.h"\nint main(void) { rr_params p; return rr_default_params(&p); }\n'
     )
