@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from softimpact.symbolic import JointKind, Robot
+from softimpact.symbolic import Joint, JointKind, Robot
 
 from .closed_samples import closed_configurations
 from .inputs import SCALARS, Parameter
@@ -25,6 +25,9 @@ STEPS = 1024
 
 UNLIMITED = {JointKind.HINGE: math.pi, JointKind.SLIDE: 1.0}
 """Largest coordinate sampled of a joint without limits [rad, m]."""
+
+FARTHEST = 128.0
+"""Limits farther away than this are none [rad, m]."""
 
 DRAWN = {
     "rotor_inertia": (4, 64, 64),
@@ -66,7 +69,7 @@ def draw_samples(
     def configuration() -> tuple[float, ...]:
         if robot.loops:
             return tuple(next(closed).tolist())
-        return tuple(_coordinate(source, *bounds) for bounds in _ranges(robot))
+        return tuple(_coordinate(source, *_range(joint)) for joint in robot.joints)
 
     return [
         Sample(
@@ -79,11 +82,12 @@ def draw_samples(
     ]
 
 
-def _ranges(robot: Robot) -> list[tuple[float, float]]:
-    return [
-        (max(joint.lower, -UNLIMITED[joint.kind]), min(joint.upper, UNLIMITED[joint.kind]))
-        for joint in robot.joints
-    ]
+def _range(joint: Joint) -> tuple[float, float]:
+    """Return between which coordinates a joint is sampled: all that its limits allow."""
+    most = UNLIMITED[joint.kind]
+    lower = joint.lower if joint.lower >= -FARTHEST else min(-most, joint.upper - most)
+    upper = joint.upper if joint.upper <= FARTHEST else max(most, joint.lower + most)
+    return lower, upper
 
 
 def _between(source: random.Random, low: int, high: int) -> int:

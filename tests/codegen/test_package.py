@@ -150,6 +150,26 @@ def test_samples_are_exact_in_float_and_inside_the_limits(panda: Robot) -> None:
         assert np.ravel(sample.parameters[:2]).min() > 0
 
 
+@pytest.mark.parametrize(
+    ("limits", "sampled"),
+    [
+        ((-0.5, 0.25), (-0.5, 0.25)),
+        ((-6.5, 6.5), (-6.5, 6.5)),  # as many turns as there are
+        ((4.0, 6.0), (4.0, 6.0)),
+        ((-np.inf, np.inf), (-np.pi, np.pi)),
+        ((-1e10, -5.0), (-5.0 - np.pi, -5.0)),
+    ],
+)
+def test_samples_reach_all_that_a_joint_may(
+    panda: Robot, limits: tuple[float, float], sampled: tuple[float, float]
+) -> None:
+    turned = replace(panda.joints[2], lower=limits[0], upper=limits[1])
+    robot = replace(panda, joints=(*panda.joints[:2], turned, *panda.joints[3:]))
+    found = [sample.q[2] for sample in draw_samples(robot, parameters_of(robot), 2000, seed=4)]
+    assert sampled[0] <= min(found) < max(found) <= sampled[1]
+    assert max(found) - min(found) > 0.99 * (sampled[1] - sampled[0])
+
+
 def test_joints_that_hardly_move_are_sampled_where_they_are(panda: Robot) -> None:
     fixed = replace(panda.joints[2], lower=0.3, upper=0.3001)
     robot = replace(panda, joints=(*panda.joints[:2], fixed, *panda.joints[3:]))
