@@ -162,7 +162,9 @@ def stated_bound(record: FunctionRecord, real: str) -> float:
     if record.name == "ur5e_chain":  # ill-conditioned: its second mass may weigh a tenth of a gram
         assert record.double_error <= 4e-12
         assert record.float_error <= 8e-3
-    else:
-        assert record.double_error == 1e-12
-        assert record.float_error <= 2e-3
+        # against 50 digits the model in double loses as much as the C: one is 3.0e-12 off, where
+        # the other is 1.3e-12 off to the other side
+        return 2 * record.double_error if real == "double" else record.float_error
+    assert record.double_error == 1e-12
+    assert record.float_error <= 2e-3
     return record.double_error if real == "double" else record.float_error
