@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -81,13 +82,11 @@ def test_the_paper_stops_a_step_of_its_grid_below(rr: ImpactModel) -> None:
 
 
 def test_the_unit_of_stiffness_does_not_matter(rr: ImpactModel) -> None:
+    def case(unit: float, k: float) -> tuple[ImpactModel, Approach]:
+        return scaled_springs(rr, k * unit / NOMINAL), STRAIGHT
+
     found = [
-        decoupling_stiffness(
-            lambda k, unit=unit: (scaled_springs(rr, k * unit / NOMINAL), STRAIGHT),
-            HEAD,
-            (2e3 / unit, 1e4 / unit),
-            "two_mass",
-        )
+        decoupling_stiffness(partial(case, unit), HEAD, (2e3 / unit, 1e4 / unit), "two_mass")
         for unit in (1.0, 1e3)
     ]
     assert found[0].isolated is not None
@@ -119,6 +118,12 @@ def test_all_springs_are_scaled(panda: Robot) -> None:
 def test_a_range_is_needed(rr: ImpactModel, between: tuple[float, float]) -> None:
     with pytest.raises(InvalidValue, match="between"):
         decoupling_stiffness(lambda _: (rr, STRAIGHT), HEAD, between)
+
+
+@pytest.mark.parametrize("accuracy", [0.0, 1e-20, 2.0, np.nan])
+def test_an_accuracy_that_cannot_be_met_is_refused(rr: ImpactModel, accuracy: float) -> None:
+    with pytest.raises(InvalidValue, match="accuracy"):
+        decoupling_stiffness(lambda _: (rr, STRAIGHT), HEAD, (1e3, 2e3), accuracy=accuracy)
 
 
 def test_a_range_that_starts_too_stiff_is_refused(rr: ImpactModel) -> None:

@@ -68,6 +68,7 @@ def test_peaks_lie_on_the_curve(two_peaks: ImpactHistory) -> None:
     assert len(time) >= 400
     assert time[0] == force[0] == 0
     assert np.all(np.diff(time) > 0)
+    assert two_peaks.separation is not None
     before = time < two_peaks.separation
     assert np.all(force[before][1:] > 0)
     assert force[~before][0] == 0
@@ -175,6 +176,7 @@ def test_bad_approaches_are_rejected(
         ({"fidelity": "exact"}, UnknownName),
         ({"fidelity": "chain", "order": 0}, InvalidValue),
         ({"fidelity": "chain", "order": 15}, InvalidValue),
+        ({"fidelity": "chain", "end": "fixed"}, UnknownName),
         ({"duration": 0.0}, InvalidValue),
         ({"duration": NAN}, InvalidValue),
         ({"tolerance": 0.0}, InvalidValue),
@@ -186,6 +188,18 @@ def test_bad_options_are_rejected(
 ) -> None:
     with pytest.raises(error):
         simulate_impact(arm, AHEAD, HEAD, **options)
+
+
+def test_an_impact_that_never_peaks_says_how_long_it_was_watched(panda: Robot) -> None:
+    heavy = impact_model(panda, drives_=drives(panda, rotor_inertia=1e9))
+    with pytest.raises(InvalidValue, match=r"duration: 2 s end before .* first peak"):
+        simulate_impact(heavy, AHEAD, HEAD)
+
+
+def test_lists_will_do(arm: ImpactModel) -> None:
+    listed = Approach(AHEAD.q.tolist(), AHEAD.direction.tolist(), AHEAD.speed)
+    ours, theirs = simulate_impact(arm, listed, HEAD), simulate_impact(arm, AHEAD, HEAD)
+    assert ours.first_contact == theirs.first_contact
 
 
 @pytest.mark.parametrize("limit", [0.0, -5.0, NAN])
@@ -209,10 +223,11 @@ def test_an_integrator_that_gives_up_is_reported(arm: ImpactModel) -> None:
 @pytest.mark.parametrize("value", [-1.0, 0.0, NAN, float("inf")])
 @pytest.mark.parametrize("field", ["hertz_stiffness", "stiffness", "effective_mass", "damping"])
 def test_an_impossible_body_is_rejected(arm: ImpactModel, field: str, value: float) -> None:
+    options: dict[str, Any] = {field: value}
     if field == "hertz_stiffness":
-        contact = replace(HEAD, hertz_stiffness=value)
+        contact = replace(HEAD, **options)
     else:
-        contact = replace(HEAD, region=replace(HEAD.region, **{field: value}))
+        contact = replace(HEAD, region=replace(HEAD.region, **options))
     if field == "damping" and value == 0:
         assert simulate_impact(arm, AHEAD, contact).first_contact > 0
         return
