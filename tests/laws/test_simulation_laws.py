@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
@@ -35,6 +36,7 @@ from softimpact.symbolic.rigid import Array
 HEAD = Contact(body_region("head"))
 POSE = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
 EARTH = (0.0, 0.0, -9.81)
+Case = Callable[[], tuple[ImpactModel, Approach]]
 
 
 def elastic_panda() -> tuple[ImpactModel, Approach]:
@@ -86,7 +88,7 @@ def energy(model: ImpactModel, approach: Approach, run: Run, node: int) -> float
 
 
 @pytest.mark.parametrize("case", [elastic_panda, folded_rr, r_min])
-def test_energy_is_conserved_without_damping(case) -> None:
+def test_energy_is_conserved_without_damping(case: Case) -> None:
     """What the body gives back is what it took: free motors, no damper, c_h = 0."""
     model, approach = case()
     scene = full_scene(model, arrival_of(model, approach), undamped(HEAD), 1e-11)
@@ -118,7 +120,7 @@ def test_loops_stay_closed_through_an_impact() -> None:
 
 
 @pytest.mark.parametrize("case", [elastic_panda, folded_rr, r_min])
-def test_forces_grow_with_speed(case) -> None:
+def test_forces_grow_with_speed(case: Case) -> None:
     model, approach = case()
     peaks = [
         simulate_impact(model, replace(approach, speed=v), HEAD, "full").first_contact

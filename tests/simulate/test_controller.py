@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import mujoco
 import numpy as np
@@ -73,6 +75,7 @@ def forces_by_mujoco(
     model.opt.gravity[:] = 0
     data = mujoco.MjData(model)
     A = [0, 2]
+    assert approach.link_velocity is not None
     data.qpos[:], data.qvel[:] = approach.q, approach.speed * approach.link_velocity
     mujoco.mj_forward(model, data)
     point = model.site("P")
@@ -133,7 +136,11 @@ def test_the_reaction_is_an_event() -> None:
 @pytest.mark.parametrize("reference", ["moving", "held"])
 @pytest.mark.parametrize("arm", ["rr", "panda", "rmin"])
 def test_slow_controlled_impacts_are_linear(panda: Robot, arm: str, reference: Reference) -> None:
-    cases = {"rr": turned_by_both_motors, "rmin": r_min, "panda": lambda: elastic_panda(panda)}
+    cases: dict[str, Callable[[], tuple[ImpactModel, Approach]]] = {
+        "rr": turned_by_both_motors,
+        "rmin": r_min,
+        "panda": partial(elastic_panda, panda),
+    }
     model, approach = cases[arm]()
     controller = replace(R_MIN if arm == "rmin" else RR, reference=reference, reaction_time=0.004)
     errors = []
@@ -215,9 +222,9 @@ def test_impossible_controllers_are_refused(controller: Controller, field: str) 
 
 def test_unknown_references_are_refused() -> None:
     model, approach = turned_by_both_motors()
-    wrong: str = "waiting"
+    wrong = replace(RR, reference="waiting")  # type: ignore[arg-type]
     with pytest.raises(UnknownName, match="moving, held"):
-        simulate_impact(model, approach, CHEST, "full", controller=replace(RR, reference=wrong))
+        simulate_impact(model, approach, CHEST, "full", controller=wrong)
 
 
 @pytest.mark.parametrize("options", [{"fidelity": "two_mass"}, {"fidelity": "one_mass"},
