@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from softimpact.symbolic import Robot
+from softimpact.symbolic import Matrix, Robot
 from softimpact.symbolic.rigid import Array
 from softimpact.symbolic.robot import BASE, JointKind
 
@@ -44,6 +44,11 @@ def assert_near(ours: object, theirs: object, tolerance: float = TOLERANCE) -> N
     assert a.shape == b.shape
     scale = abs(b).max(initial=0.0)
     np.testing.assert_allclose(a, b, rtol=0, atol=tolerance * (scale if scale > 1e-9 else 1.0))
+
+
+def column(matrix: Matrix) -> Array:
+    """Return CasADi's numbers as a vector."""
+    return np.array(matrix, dtype=float).ravel()
 
 
 class Pinocchio:

@@ -10,6 +10,7 @@ from itertools import pairwise
 import casadi as ca
 import numpy as np
 import pytest
+from impact_cases import EARTH, HEAD, POSE, r_min
 
 from softimpact.simulate import Approach, Controller, simulate_impact
 from softimpact.simulate.approach import arrival_of
@@ -20,8 +21,6 @@ from softimpact.symbolic import (
     Contact,
     ImpactModel,
     Robot,
-    body_region,
-    configuration_at_rest,
     drives,
     gravity_torques,
     impact_model,
@@ -33,9 +32,6 @@ from softimpact.symbolic import (
 )
 from softimpact.symbolic.rigid import Array
 
-HEAD = Contact(body_region("head"))
-POSE = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
-EARTH = (0.0, 0.0, -9.81)
 Case = Callable[[], tuple[ImpactModel, Approach]]
 
 
@@ -50,10 +46,9 @@ def folded_rr() -> tuple[ImpactModel, Approach]:
     return model, Approach(np.array([0.2, 0.0, 0.9, 0.0]), np.array([1.0, 0.5, 0.0]), 2.0)
 
 
-def r_min() -> tuple[ImpactModel, Approach]:
-    model = impact_model(load_robot("rmin"), "O13", gravity=EARTH)
-    q = configuration_at_rest(model, np.radians([-130.6, -50.0]))
-    return model, Approach(q, np.array([-1.0, 0.0, 0.0]), 2.0)
+def fast_r_min() -> tuple[ImpactModel, Approach]:
+    model, approach = r_min()
+    return model, replace(approach, speed=2.0)
 
 
 def undamped(contact: Contact) -> Contact:
@@ -87,7 +82,7 @@ def energy(model: ImpactModel, approach: Approach, run: Run, node: int) -> float
     return float(kinetic / 2 + stored - holding @ moved[list(model.independent)])
 
 
-@pytest.mark.parametrize("case", [elastic_panda, folded_rr, r_min])
+@pytest.mark.parametrize("case", [elastic_panda, folded_rr, fast_r_min])
 def test_energy_is_conserved_without_damping(case: Case) -> None:
     """What the body gives back is what it took: free motors, no damper, c_h = 0."""
     model, approach = case()
@@ -109,7 +104,7 @@ def test_energy_is_conserved_without_damping(case: Case) -> None:
 
 
 def test_loops_stay_closed_through_an_impact() -> None:
-    model, approach = r_min()
+    model, approach = fast_r_min()
     controller = Controller(1076.0, 51.0, 9.26e3)
     scene = full_scene(model, arrival_of(model, approach), HEAD, 1e-10, controller)
     run = first_contact(scene, 0.06).run
@@ -119,7 +114,7 @@ def test_loops_stay_closed_through_an_impact() -> None:
     assert abs(moved).max() > 0.05
 
 
-@pytest.mark.parametrize("case", [elastic_panda, folded_rr, r_min])
+@pytest.mark.parametrize("case", [elastic_panda, folded_rr, fast_r_min])
 def test_forces_grow_with_speed(case: Case) -> None:
     model, approach = case()
     peaks = [

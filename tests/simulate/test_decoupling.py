@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from impact_cases import ALONG_Y, HEAD, POSE
 
 from softimpact.simulate import (
     Approach,
@@ -19,17 +20,14 @@ from softimpact.simulate import (
     simulate_impact,
 )
 from softimpact.symbolic import (
-    Contact,
     ImpactModel,
     InvalidValue,
     Robot,
-    body_region,
     drives,
     impact_model,
     load_robot,
 )
 
-HEAD = Contact(body_region("head"))
 NOMINAL = 1e4
 CONTROLLER = Controller(6050.0, 121.0, 1.25e5)
 STRAIGHT = Approach(np.zeros(4), np.array([0.0, 1.0, 0.0]), 1.0, np.array([1.0, 0.0, 0.0, 0.0]))
@@ -96,9 +94,7 @@ def test_the_unit_of_stiffness_does_not_matter(rr: ImpactModel) -> None:
 
 def test_springs_soft_enough_decouple_everywhere(panda: Robot) -> None:
     model = impact_model(panda, drives_=drives(panda, 1.0))
-    approach = Approach(
-        np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5]), np.array([0.0, 1.0, 0.0]), 1.0
-    )
+    approach = Approach(POSE, ALONG_Y, 1.0)
 
     def case(stiffness: float) -> tuple[ImpactModel, Approach]:
         return scaled_springs(model, stiffness), approach

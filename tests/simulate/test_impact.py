@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from impact_cases import HEAD, POSE
 
 from softimpact.simulate import (
     Approach,
@@ -20,7 +21,6 @@ from softimpact.simulate import (
     simulate_impact,
 )
 from softimpact.symbolic import (
-    Contact,
     ImpactModel,
     InvalidValue,
     Robot,
@@ -28,14 +28,11 @@ from softimpact.symbolic import (
     SoftImpactError,
     UnknownName,
     WrongLength,
-    body_region,
     drives,
     impact_model,
     load_robot,
 )
 
-HEAD = Contact(body_region("head"))
-POSE = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
 AHEAD = Approach(POSE, np.array([0.0, 1.0, 0.0]), 1.0)
 
 

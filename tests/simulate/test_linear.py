@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from impact_cases import CHEST, HEAD, POSE
 from oracles import configurations
 
 from softimpact.simulate import Approach, Fidelity, simulate_impact
@@ -28,10 +29,7 @@ from softimpact.symbolic import (
     unit_direction,
 )
 
-HEAD = Contact(body_region("head"))
-CHEST = Contact(body_region("chest"))
 LINEAR: tuple[Fidelity, ...] = ("one_mass", "two_mass", "chain", "linearised")
-POSE = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
 FOLDED = np.array([0.0, 0.0, np.pi / 3, 0.0])
 
 

@@ -7,7 +7,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
-from oracles import configurations
+from oracles import column, configurations
 from random_robots import arms, seeds, unit_vector, vectors
 from scipy.linalg import eigh
 
@@ -30,10 +30,6 @@ def mobilities(model: ImpactModel, q: Array) -> tuple[ContactMobility, ContactMo
     free, real = model.free_mobility(q), model.mobility(q)
     assume(np.linalg.cond(np.array(free.matrix)) < 1e5)
     return free, real
-
-
-def column(vector: Matrix) -> Array:
-    return np.array(vector).ravel()
 
 
 @settings(max_examples=20)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from oracles import column
 from random_robots import arms, robots, seeds, unit_vector, vectors
 
 from softimpact.symbolic import (
-    Matrix,
     Robot,
     contact_mobility,
     impact_model,
@@ -22,10 +22,6 @@ from softimpact.symbolic.rigid import Array
 
 restitutions = st.sampled_from([0.0, 0.3, 1.0])
 masses = st.sampled_from([0.2, 4.4, 40.0, np.inf])
-
-
-def column(matrix: Matrix) -> Array:
-    return np.array(matrix).ravel()
 
 
 def balance(

@@ -9,6 +9,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
+from oracles import column
 from random_robots import arms, vectors
 
 from softimpact.symbolic import (
@@ -30,10 +31,6 @@ def parts(robot: Robot, q: Array) -> tuple[ImpactModel, Matrix, Matrix, Matrix]:
     free = np.array(model.free_mobility(q).matrix)
     assume(np.linalg.cond(free) < 1e5)
     return model, ca.DM(model.mass_matrix(q)), ca.DM(robot.armature), model.jacobian(q)
-
-
-def column(matrix: Matrix) -> Array:
-    return np.array(matrix).ravel()
 
 
 @settings(max_examples=15)
