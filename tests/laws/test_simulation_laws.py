@@ -147,4 +147,4 @@ def test_stiff_joints_hit_like_rigid_ones(panda: Robot) -> None:
     slow = replace(approach, speed=1e-2)
     nearly = simulate_impact(full, slow, HEAD, "full").first_contact
     alone = simulate_impact(impact_model(panda), slow, HEAD, "one_mass").first_contact
-    assert nearly == pytest.approx(alone, rel=5e-3)
+    assert nearly == pytest.approx(alone, rel=1e-4)

@@ -140,7 +140,7 @@ def test_proportional_control_of_a_standing_reference_is_k_p() -> None:
     only_p = Controller(6050.0, 0.0, 0.0, "held", np.inf)
     controlled = simulate_impact(model, slow, CHEST, "full", controller=only_p)
     held = simulate_impact(model, slow, CHEST, "full")
-    assert controlled.first_contact == pytest.approx(held.first_contact, rel=1e-4)
+    assert controlled.first_contact == pytest.approx(held.first_contact, rel=1e-5)
     linear = simulate_impact(model, slow, CHEST, "linearised", controller=only_p)
     modal = simulate_impact(model, slow, CHEST, "linearised")
     assert linear.first_contact == pytest.approx(modal.first_contact, rel=1e-7)
@@ -166,7 +166,7 @@ def test_without_gains_only_potential_forces_are_held() -> None:
     nothing = Controller(0.0, 0.0, 0.0, "moving", np.inf)
     idle = simulate_impact(model, slow, CHEST, "full", controller=nothing)
     free = simulate_impact(model, slow, CHEST, "full")
-    assert idle.first_contact == pytest.approx(free.first_contact, rel=1e-4)
+    assert idle.first_contact == pytest.approx(free.first_contact, rel=1e-5)
 
 
 def test_the_safe_speed_of_the_controlled_robot_gives_the_limit() -> None:

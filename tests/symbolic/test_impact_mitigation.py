@@ -163,7 +163,7 @@ def test_left_and_right_feet_agree_in_a_symmetric_stance() -> None:
     for foot in ("FL_foot", "FR_foot"):
         robot = replace(load_robot(example_urdf("solo12.urdf")), tip=foot.replace("foot", "FOOT"))
         found.append(float(mitigation(robot, None, np.zeros(12) + STANCE, 0.001)[0].factor))
-    assert found[0] == pytest.approx(found[1], rel=0.02)
+    assert found[0] == pytest.approx(found[1], rel=1e-4)  # the file is no exact mirror
 
 
 @pytest.mark.parametrize("kind", KINDS)
