@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from impact_cases import HEAD, POSE
+from impact_cases import ALONG_Y, HEAD, POSE
 
 from softimpact.simulate import (
     Approach,
@@ -18,6 +18,7 @@ from softimpact.simulate import (
     PeakDefinition,
     SimulationFailed,
     largest_safe_speed,
+    scaled_springs,
     simulate_impact,
 )
 from softimpact.symbolic import (
@@ -130,6 +131,22 @@ def test_the_safe_speed_does_not_depend_on_the_guess(
         for guess in (1e-3, 0.2, 5.0)
     ]
     np.testing.assert_allclose(speeds, speeds[0], rtol=1e-6)
+
+
+@pytest.mark.parametrize("guess", [0.3, 0.8, 1.0, 3.0])
+def test_a_safe_first_peak_is_safe_at_all_lower_speeds(guess: float) -> None:
+    """These peaks are one up to 0.9 m/s and part above, so that 390 N are met twice."""
+    robot = load_robot("rr")
+    model, straight = scaled_springs(impact_model(robot, "P"), 2.456), [1.0, 0.0, 0.0, 0.0]
+    approach = Approach(np.zeros(4), ALONG_Y, guess, straight)
+    found = largest_safe_speed(model, approach, HEAD, 390.0, definition="first_peak")
+
+    def peak(speed: float) -> float:
+        return simulate_impact(model, replace(approach, speed=speed), HEAD).first_peak
+
+    assert peak(found) == pytest.approx(390.0, rel=1e-7)
+    assert max(peak(v) for v in np.linspace(0.1, 0.999, 12) * found) < 390.0
+    assert peak(1.18) < 390.0 < peak(0.85)
 
 
 def test_direction_and_link_velocity_are_scaled(arm: ImpactModel) -> None:
