@@ -6,11 +6,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
 import pytest
 from impact_cases import EARTH, HEAD, POSE, r_min
+from mechanisms import FIVE_BAR, robot_of
 
 from softimpact.simulate import Approach, Controller, simulate_impact
 from softimpact.simulate.approach import arrival_of
@@ -21,6 +23,8 @@ from softimpact.symbolic import (
     Contact,
     ImpactModel,
     Robot,
+    body_region,
+    closed_chain,
     drives,
     gravity_torques,
     impact_model,
@@ -148,3 +152,20 @@ def test_stiff_joints_hit_like_rigid_ones(panda: Robot) -> None:
     nearly = simulate_impact(full, slow, HEAD, "full").first_contact
     alone = simulate_impact(impact_model(panda), slow, HEAD, "one_mass").first_contact
     assert nearly == pytest.approx(alone, rel=1e-4)
+
+
+def test_computed_torque_keeps_a_closed_chain_on_its_way(tmp_path: Path) -> None:
+    """Against next to nothing, motors go on at the speed of arrival though nothing else does."""
+    robot = robot_of(tmp_path, FIVE_BAR)
+    model = impact_model(robot, gravity=EARTH)
+    nothing = Contact(body_region("hand"), hertz_stiffness=1e-6)
+    rates = np.array([-3.0, 4.0])
+    moved = np.array(model.jacobian(closed_chain(robot).home)) @ rates
+    speed = float(np.linalg.norm(moved))
+    approach = Approach(closed_chain(robot).home, moved / speed, speed, rates / speed)
+    controller = Controller(100.0, 20.0, 0.0)
+    scene = full_scene(model, arrival_of(model, approach), nothing, 1e-10, controller)
+    moved = joints_at(model, scene.run(scene.touch, 0.02), -1, speed)[0]
+    assert moved[list(model.independent)] == pytest.approx(0.02 * rates, abs=1e-8)
+    G = np.array(loop_tangent(robot, ca.DM(approach.q)))
+    assert abs(moved - G @ (0.02 * rates)).max() > 1e-3  # the others speed up

@@ -22,7 +22,7 @@ from softimpact.symbolic import (
     drives,
     impact_model,
 )
-from softimpact.symbolic.rigid import Inertia, Placement
+from softimpact.symbolic.rigid import Inertia, Placement, rotation_from_axis
 
 
 def crank(kind: JointKind = JointKind.HINGE, arm: float = 0.5, height: float = 0.0) -> Robot:
@@ -130,3 +130,19 @@ def test_bad_arguments() -> None:
         analyse(model, [0.0], [0, 0, 0])
     with pytest.raises(InvalidValue, match="order: must be at least 1"):
         analyse(model, [0.0], [0, 1, 0], order=0)
+
+
+def test_slides_without_length_span_a_plane() -> None:
+    """Three slides in a plane; the size of their J is no length of links."""
+    turns = [rotation_from_axis(np.array([1.0, 0, 0]), angle) for angle in (0.3, 1.1, 2.3)]
+    ball = Inertia.from_center_of_mass(1.0, np.zeros(3), 0.1 * np.eye(3))
+    joints, before = [], np.eye(3)
+    for i, turn in enumerate(turns):
+        place = Placement(before.T @ turn, np.zeros(3))
+        joints.append(Joint(f"s{i}", JointKind.SLIDE, i - 1, place, ball, armature=0.1))
+        before = turn
+    tip = Frame("tip", 2, Placement.identity())
+    robot = Robot("plane", tuple(joints), {"tip": tip}, "tip")
+    found = analyse(impact_model(robot), [0.0] * 3, [0, 1, 0])
+    assert found.osim is None
+    assert found.giaf is None

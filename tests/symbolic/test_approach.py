@@ -84,9 +84,18 @@ def test_a_stretched_arm_cannot_move_along_itself() -> None:
     assert_near(np.array(model.jacobian(np.zeros(4))) @ velocity, [0, 1, 0])
 
 
+def test_a_hair_off_a_singular_pose_is_singular_too() -> None:
+    """Joints would have to turn at 1e11 rad/s."""
+    model = impact_model(load_robot("rr"), "P")
+    with pytest.raises(SingularDirection):
+        approach_velocity(model, [0.0, 0.0, 1e-11, 0.0], [1, 0, 0])
+
+
 def test_unit_direction() -> None:
     assert_near(unit_direction([0, 3, 4]), [0, 0.6, 0.8])
     assert_near(unit_direction([0, 0, 1e-100]), [0, 0, 1])
+    for length in (1e-200, 1e200):
+        assert_near(unit_direction(np.array([0, 3, 4]) * length), [0, 0.6, 0.8])
 
 
 @pytest.mark.parametrize(

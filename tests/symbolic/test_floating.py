@@ -233,3 +233,13 @@ def test_base_inertia_does_not_matter_to_a_fixed_robot() -> None:
     assert heavier.digest() == robot.digest()
     q = np.full(12, 0.2)
     assert np.array_equal(np.array(mass_matrix(robot, q)), np.array(mass_matrix(heavier, q)))
+
+
+def test_computed_torque_turns_the_joints_alone() -> None:
+    robot = load_robot("panda")
+    free = floating_robot(robot, Inertia.from_center_of_mass(20.0, np.zeros(3), np.eye(3)))
+    model = floating_model(free, drives_=drives(robot, computed_torque_gain=30.0))
+    q = free.coordinates(ca.DM(np.linspace(-0.4, 0.5, 7)))
+    expected = np.zeros((13, 13))
+    expected[6:, 6:] = 30.0 * np.array(model.rotor_mass_matrix(q))[6:, 6:]
+    assert_near(model.position_gains(q), expected)

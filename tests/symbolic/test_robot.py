@@ -14,11 +14,13 @@ from random_robots import robots, vectors
 from softimpact.symbolic import (
     FrameNotFound,
     InvalidValue,
+    Loop,
     Robot,
     SoftImpactError,
     UnknownName,
     WrongLength,
     chain_to,
+    floating_robot,
     frame_jacobian,
     frame_pose,
     gravity_torques,
@@ -26,7 +28,7 @@ from softimpact.symbolic import (
     lock_joints,
     mass_matrix,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.rigid import Array, Inertia
 
 
 @pytest.fixture(scope="module")
@@ -85,6 +87,28 @@ def test_digest_sees_every_number_and_no_identity(panda: Robot) -> None:
     for change in ({"name": "x"}, {"offset": 1e-3}, {"lower": -1.0}, {"actuated": False}):
         joints = (*panda.joints[:3], replace(joint, **change), *panda.joints[4:])
         assert replace(panda, joints=joints).digest() != panda.digest()
+
+
+def test_digest_sees_payloads_and_loops(panda: Robot) -> None:
+    light, heavy = (panda.with_payload("hand_tcp", mass) for mass in (1.0, 2.0))
+    moved = panda.with_payload("hand_tcp", 1.0, (0.0, 0.0, 0.1))
+    assert len({robot.digest() for robot in (panda, light, heavy, moved)}) == 4
+    rmin = load_robot("rmin")
+    (loop,) = rmin.loops
+    turned = replace(rmin, loops=(Loop(loop.name, loop.second, loop.first),))
+    others = (replace(rmin, loops=()), turned, replace(rmin, independent=()))
+    assert len({robot.digest() for robot in (rmin, *others)}) == 4
+
+
+def test_welding_hands_masses_to_the_base(panda: Robot) -> None:
+    """What is welded to the base counts where it floats."""
+    base = Inertia.from_center_of_mass(5.0, np.zeros(3), np.eye(3))
+    whole = replace(panda, base_inertia=base)
+    part = lock_joints(whole, {"joint1": 0.4, "joint2": -0.3})
+    q = np.array([0.4, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
+    M = np.array(floating_robot(whole).mass_matrix(q))
+    stays = [*range(6), *range(8, 13)]
+    assert_near(floating_robot(part).mass_matrix(q[2:]), M[np.ix_(stays, stays)])
 
 
 def test_digest_sees_where_the_frames_are(panda: Robot) -> None:
