@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import casadi as ca
 import numpy as np
 import pytest
-from mechanisms import FIVE_BAR, SPATIAL, four_bar, robot_of
+from mechanisms import FIVE_BAR, SIX_BAR, SPATIAL, four_bar, robot_of
 from oracles import Mujoco, assert_near
+from scipy.integrate import solve_ivp
 
 from softimpact.robots import built_in_robots
 from softimpact.symbolic import (
@@ -35,6 +37,7 @@ from softimpact.symbolic import (
     potential_energy,
     require_closed_at,
 )
+from softimpact.symbolic.rigid import Array
 
 GRAVITY = (0.0, 0.0, -9.81)
 MSM = np.radians([-130.6, -50.0])
@@ -195,3 +198,32 @@ def test_motors_must_lead(tmp_path: Path) -> None:
     everywhere = tuple(replace(joint, actuated=True) for joint in robot.joints)
     with pytest.raises(InvalidValue, match="follows from the others"):
         configuration_at_rest(impact_model(replace(robot, joints=everywhere)), [1.0, -0.4, 1.7])
+
+
+@pytest.mark.parametrize("linkage", ["six_bar", "rmin"])
+def test_far_goals_are_reached_along_the_branch(linkage: str, tmp_path: Path) -> None:
+    """Against q̇ = G u̇, integrated from home in small steps that cannot leave the branch."""
+    robot = load_robot("rmin") if linkage == "rmin" else four_bar(tmp_path, **SIX_BAR)
+    known, random, reached = closed_chain(robot), np.random.default_rng(0), 0
+    home = known.home[list(known.independent)]
+    for way in random.uniform(-2.5, 2.5, (8, len(home))):
+        try:
+            found = close_loops(robot, home + way)
+        except (SingularLoop, LoopCannotClose):
+            continue
+        follow = partial(along_tangent, robot, way)
+        whole = solve_ivp(follow, (0, 1), known.home, rtol=1e-8, atol=1e-8)
+        np.testing.assert_allclose(found, whole.y[:, -1], atol=1e-5)
+        reached += 1
+    assert reached >= 4
+
+
+def along_tangent(robot: Robot, way: Array, _: float, q: Array) -> Array:
+    return np.array(loop_tangent(robot, q)) @ way
+
+
+def test_the_other_way_to_assemble_is_no_answer() -> None:
+    """On the way there R-Min passes a dead point, beyond which Newton's method finds a closure."""
+    beyond = [-0.02872547, -3.22000509, -2.16889207, -2.36148097]
+    with pytest.raises(SingularLoop, match="passes a dead point"):
+        close_loops(load_robot("rmin"), beyond)
