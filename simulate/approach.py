@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softimpact.symbolic import (
     Contact,
@@ -38,6 +39,17 @@ class Approach:
     direction: Array
     speed: float
     link_velocity: Array | None = None
+
+    def __init__(
+        self,
+        q: ArrayLike,
+        direction: ArrayLike,
+        speed: float,
+        link_velocity: ArrayLike | None = None,
+    ) -> None:
+        known = None if link_velocity is None else np.asarray(link_velocity, dtype=float)
+        fields = {"q": np.asarray(q, dtype=float), "direction": np.asarray(direction, dtype=float)}
+        vars(self).update(fields, speed=speed, link_velocity=known)
 
 
 @dataclass(frozen=True, eq=False)

@@ -80,14 +80,16 @@ def decoupling_stiffness(
         order: as in ``simulate_impact``.
         end: as in ``simulate_impact``.
         controller: as in ``simulate_impact``.
-        accuracy: relative, of the k_s found.
+        accuracy: relative, of the k_s found, from 1e-12 to 1.
 
     Raises:
-        InvalidValue: no range, or the first peak is not isolated at its soft end.
+        InvalidValue: no range, another accuracy, or the first peak is not isolated at its soft end.
     """
     softest, stiffest = between
     if not 0 < softest < stiffest < np.inf:
         raise InvalidValue("between", "needs two finite stiffnesses, 0 < softest < stiffest")
+    if not 1e-12 <= accuracy <= 1:
+        raise InvalidValue("accuracy", f"must be from 1e-12 to 1, not {accuracy:g}")
 
     @cache
     def impact(stiffness: float) -> ImpactHistory:

@@ -70,7 +70,8 @@ def first_contact(scene: Scene, duration: float | None = None) -> FirstContact:
     last = int(ends[0]) if ends.size else len(run.time) - 1
     peaks = [int(i) for i in _downward(run.closing) if i <= last]
     if not peaks:
-        raise InvalidValue("duration", "ends before the force has reached its first peak")
+        over = f"{duration or LONGEST:g} s end before the force has reached its first peak"
+        raise InvalidValue("duration", over)
     top = max(peaks, key=lambda i: _vertex(run, i).force)
     first_peak = _refined_peak(scene, run, peaks[0])
     highest = first_peak if top == peaks[0] else _refined_peak(scene, run, top)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from math import exp, inf, log
 
 import numpy as np
@@ -40,8 +41,9 @@ def largest_safe_speed(
 ) -> float:
     """Return the speed [m/s] at which the peak force is the limit.
 
-    The peak force grows with speed. Where ``first_peak`` jumps past the limit, as it does where
-    two peaks merge, the speed just below the jump is returned.
+    The largest force grows with speed. ``first_peak`` need not: where growing speed parts two
+    merged peaks, it drops. Its speed is sought above that of ``first_contact``, up to which it
+    keeps the limit too. Where it jumps past the limit, the speed just below the jump is returned.
 
     Args:
         model: the robot and its contact point.
@@ -61,7 +63,7 @@ def largest_safe_speed(
     if not 0 < limit < np.inf:
         raise InvalidValue("limit", f"must be finite and greater than 0 N, not {limit}")
 
-    def excess(log_speed: float) -> float:
+    def excess(definition: PeakDefinition, log_speed: float) -> float:
         at_speed = replace(approach, speed=exp(log_speed))
         history = simulate_impact(
             model,
@@ -75,7 +77,10 @@ def largest_safe_speed(
         )
         return log(history.peak(definition) / limit)
 
-    return exp(_root(excess, log(arrival_of(model, approach).speed)))
+    start = _root(partial(excess, "first_contact"), log(arrival_of(model, approach).speed))
+    if definition == "first_contact":
+        return exp(start)
+    return exp(_root(partial(excess, definition), start))
 
 
 def _root(excess: Callable[[float], float], guess: float) -> float:

@@ -57,7 +57,6 @@ def factors(
         scene.model,
         scene.q,
         scene.direction,
-        floating=floating,
         speed=speed,
         restitution=restitution,
         other_mass=other_mass,

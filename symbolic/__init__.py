@@ -71,8 +71,9 @@ from .loops import (
 from .matrices import Matrix, count_flops
 from .reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
 from .regions import REGIONS, BodyRegion, body_region
-from .robot import Frame, Joint, JointKind, Loop, Robot, chain_to, lock_joints
+from .robot import Frame, Joint, JointKind, Loop, Robot
 from .rotor_influence import giaf_by_gear, giaf_by_rotor, single_joint_giaf
+from .welding import chain_to, lock_joints
 
 __all__ = [
     "REGIONS",

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from .errors import InvalidValue, SingularDirection
 from .impact_model import ImpactModel
 from .matrices import Factorisation, Matrix
-from .rigid import Array
+from .rigid import Array, three_numbers
 
 REACHED = 1e-6
 """Share of the wanted velocity that may be missing before the direction counts as singular."""
@@ -56,9 +56,7 @@ def generalised_velocity(model: ImpactModel, link_velocity: ArrayLike) -> Array:
 
 def unit_direction(direction: ArrayLike) -> Array:
     """Return a direction of length 1; raises InvalidValue if it has none."""
-    n = np.asarray(direction, dtype=float)
-    if n.shape != (3,) or not np.isfinite(n).all():
-        raise InvalidValue("direction", "needs three finite numbers [x, y, z]")
+    n = three_numbers("direction", direction)
     largest = float(abs(n).max())
     if largest == 0:
         raise InvalidValue("direction", "must not be zero")

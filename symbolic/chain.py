@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, get_args
 
 import casadi as ca
 
 from .elastic import LinearModel
-from .errors import InvalidValue
+from .errors import InvalidValue, UnknownName
 from .matrices import Matrix
 from .reduction import contact_mode
 
@@ -61,13 +61,16 @@ def chain(
     Args:
         model: M0, K0 and J_c.
         order: number of masses, at least 1; raises InvalidValue.
-        end: ``grounded`` keeps the spring from the last mass to ground, ``free`` drops it.
+        end: ``grounded`` keeps the spring from the last mass to ground, ``free`` drops it; raises
+            UnknownName.
         reorthogonalise: keep every mass's motion orthogonal to all before it, not just to the
             last two. Rounding makes this necessary beyond five masses or so; it costs N·r more.
             ``once`` is half of it, and enough for six digits in double or three in float.
     """
     if order < 1:
         raise InvalidValue("order", f"must be at least 1, but is {order}")
+    if end not in get_args(ChainEnd):
+        raise UnknownName("end of a chain", end, get_args(ChainEnd))
     order = min(order, model.stiffness.shape[0])
     mode = contact_mode(model)
     links = [_Link(mode.m_c, mode.direction, model.jacobian.T * mode.m_c)]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .dynamics import gravity_torques
-from .errors import InvalidValue, NoEquilibrium, SingularLoop, WrongLength
+from .errors import InvalidValue, NoEquilibrium, SingularLoop
 from .impact_model import ImpactModel
 from .loop_equations import (
     ClosedChain,
@@ -21,7 +21,7 @@ from .loop_equations import (
 from .loops import CLOSED, closed_chain, nearest_to_closed, require_closed
 from .matrices import Matrix, on_scalars
 from .rigid import Array
-from .robot import Robot
+from .robot import Robot, vector_of
 
 NEWTON_STEPS = 30
 """Most Newton steps for one closure or balance."""
@@ -61,12 +61,12 @@ def close_loops(robot: Robot, independent: ArrayLike) -> Array:
         LoopCannotClose: it cannot get there.
         SingularLoop: the other joints do not follow from these there (a dead point).
         LoopError: the loops themselves are wrong, see ``closed_chain``.
+        InvalidValue: a coordinate that is not finite; WrongLength for their number.
     """
     chain = closed_chain(robot)
-    goal = np.asarray(independent, dtype=float)
-    if goal.shape != (len(chain.independent),):
-        names = [robot.joint_names[i] for i in chain.independent]
-        raise WrongLength("independent", goal.size, len(names), names)
+    goal = vector_of([robot.joint_names[i] for i in chain.independent], "independent", independent)
+    if not np.isfinite(goal).all():
+        raise InvalidValue("independent", "must hold finite numbers")
     q = _moved(chain, chain.home, goal)
     if q is None:
         q = chain.home.copy()
@@ -121,10 +121,7 @@ def configuration_at_rest(model: ImpactModel, motor_angles: ArrayLike) -> Array:
     robot = model.robot
     chain = closed_chain(robot)
     motors = [i for i, actuated in enumerate(robot.actuated) if actuated]
-    angles = np.asarray(motor_angles, dtype=float)
-    if angles.shape != (len(motors),):
-        names = [robot.joint_names[i] for i in motors]
-        raise WrongLength("motor_angles", angles.size, len(names), names)
+    angles = vector_of([robot.joint_names[i] for i in motors], "motor_angles", motor_angles)
     if not np.isfinite(angles).all():
         raise InvalidValue("motor_angles", "must hold finite numbers")
     for i in motors:

@@ -15,7 +15,11 @@ from .composites import Composite, bodies_of
 from .joint_frames import customised
 from .kinematics import Motion, cross, motions, require_length
 from .matrices import Matrix, on_scalars
+from .rigid import Array
 from .robot import BASE, Joint, JointKind, Robot
+
+Gravity = Sequence[float] | Array
+"""Acceleration along the base's axes [m/s²], length 3."""
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
 """Acceleration of gravity along the base's axes [m/s²]."""
@@ -73,9 +77,7 @@ def _mass_matrix(robot: Robot, q: Matrix) -> Matrix:
     return ca.densify(M)
 
 
-def potential_energy(
-    robot: Robot, q: Matrix, gravity: Sequence[float] = STANDARD_GRAVITY
-) -> Matrix:
+def potential_energy(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
     """Return the potential energy [J] of gravity and of the springs given in the robot's file.
 
     Args:
@@ -105,9 +107,7 @@ def _potential_energy(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> Ma
     return energy
 
 
-def stiffness_of_potential(
-    robot: Robot, q: Matrix, gravity: Sequence[float] = STANDARD_GRAVITY
-) -> Matrix:
+def stiffness_of_potential(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
     """Return the Hessian ∂²V/∂q² of the potential energy, n×n (MSM Eq. 45)."""
     return on_scalars(_potential_hessian, (customised(robot), tuple(gravity)), q)
 
@@ -119,7 +119,7 @@ def _potential_hessian(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> M
     return ca.substitute(ca.densify(hessian), symbol, q)
 
 
-def gravity_torques(robot: Robot, q: Matrix, gravity: Sequence[float] = STANDARD_GRAVITY) -> Matrix:
+def gravity_torques(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
     """Return the gradient ∂V/∂q of the potential energy, length n [N·m, N]."""
     return on_scalars(_potential_gradient, (customised(robot), tuple(gravity)), q)
 
@@ -132,7 +132,7 @@ def _potential_gradient(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> 
 
 
 def bias_torques(
-    robot: Robot, q: Matrix, velocity: Matrix, gravity: Sequence[float] = STANDARD_GRAVITY
+    robot: Robot, q: Matrix, velocity: Matrix, gravity: Gravity = STANDARD_GRAVITY
 ) -> Matrix:
     """Return the torques h(q, q̇) of gravity, Coriolis and centrifugal forces, length n.
 

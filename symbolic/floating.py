@@ -12,7 +12,6 @@ zero: the fixed robot with these six joints at its root has the same mass matrix
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -20,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .drives import Drives, drives
-from .dynamics import STANDARD_GRAVITY, bias_torques, mass_matrix
+from .dynamics import STANDARD_GRAVITY, Gravity, bias_torques, mass_matrix
 from .errors import MasslessBase
 from .impact_model import ImpactModel, impact_model
 from .kinematics import Pose, cross, frame_jacobian, frame_pose
@@ -86,7 +85,7 @@ class FloatingRobot:
         return ca.vertcat(ca.mtimes(R, J[:3, :]), ca.mtimes(R, J[3:, :]))
 
     def bias_torques(
-        self, configuration: Matrix, velocity: Matrix, gravity: Sequence[float] = STANDARD_GRAVITY
+        self, configuration: Matrix, velocity: Matrix, gravity: Gravity = STANDARD_GRAVITY
     ) -> Matrix:
         """Return the forces h of gravity, Coriolis and centrifugal forces, length 6 + n.
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from .analysis import IMMOBILE, reach
 from .approach import unit_direction
+from .closure import require_closed_at
 from .ellipsoids import (
     Ellipsoid,
     dynamic_impact_ellipsoid,
@@ -24,12 +25,14 @@ from .ellipsoids import (
 from .errors import InvalidValue, SingularDirection
 from .extreme_directions import Extremes, extreme_directional_giaf, extreme_mass_ratio
 from .factors import ContactMobility, directional_giaf, giaf, giif
-from .floating import BASE_COORDINATES
+from .floating import BASE_COORDINATES, BASE_JOINTS
 from .impact_mitigation import impact_mitigation
 from .impact_model import ImpactModel
-from .joint_impulse import JointImpulse, joint_impulse
+from .joint_impulse import JointImpulse, impulse_along
+from .kinematics import direction_jacobian
+from .loops import loop_tangent
 from .rigid import Array
-from .rotor_influence import giaf_by_gear, giaf_by_rotor, single_joint_giaf
+from .rotor_influence import giaf_by_gear, giaf_by_rotor, rotor_mass, single_joint_giaf
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +108,8 @@ class ImpactFactors:
         spatial: factors that need all three directions; None where there are fewer.
         mitigation: of a floating robot; None on a fixed base.
         impulse: what the impact does to the joints (GIAF Eq. 14).
-        measures: of manipulability and dynamic impact.
+        measures: of manipulability and dynamic impact; of a closed chain over its independent
+            joints.
     """
 
     rank: int
@@ -124,19 +128,19 @@ def impact_factors(
     q: ArrayLike,
     direction: ArrayLike,
     *,
-    floating: bool = False,
     speed: float = 1.0,
     restitution: float = 0.0,
     other_mass: float = np.inf,
 ) -> ImpactFactors:
     """Return all impact factors at a configuration.
 
+    Results with one entry a joint leave a floating base's six coordinates out; only the change of
+    velocity has them.
+
     Args:
         model: robot, contact point and rotors in numbers; ``floating_model`` for a floating robot.
         q: coordinates of the model's robot.
         direction: of the approach in the base's axes, length 3, of any length but zero.
-        floating: whether the first six coordinates are the base's; they are left out of the
-            results that have one entry a joint.
         speed: of approach [m/s], for the impulses.
         restitution: e, from 0 to 1.
         other_mass: m_2 of what is hit [kg], infinite if it is held.
@@ -145,28 +149,33 @@ def impact_factors(
         WrongLength: q does not fit the robot.
         InvalidValue: a number that is not finite or outside its range.
         SingularDirection: the contact point cannot move along the direction.
+        LoopCannotClose: a loop is open at q.
     """
     angles = model.robot.vector("q", q)
     _check(angles, speed, restitution, other_mass)
+    require_closed_at(model.robot, angles)
     n = unit_direction(direction)
     J = np.array(model.jacobian(angles))
     still = IMMOBILE * reach(model)
     if np.linalg.norm(J.T @ n) <= still:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")
     M, rotors = ca.DM(model.mass_matrix(angles)), ca.DM(model.drives.rotors)
+    G = ca.DM(loop_tangent(model.robot, angles))
     free, real = model.free_mobility(angles), model.mobility(angles)
     rank = int(np.linalg.matrix_rank(J, tol=still))
     masses = [1 / float(n @ np.array(mobility.matrix) @ n) for mobility in (free, real)]
+    floating = model.robot.joint_names[:BASE_COORDINATES] == BASE_JOINTS
     own = slice(BASE_COORDINATES if floating else 0, None)
-    impulse = joint_impulse(M, rotors, J, n, speed, restitution, 1 / other_mass)
-    H = M + ca.diag(rotors)
+    row = ca.DM(direction_jacobian(model.robot, model.tip, angles, n))
+    impulse = impulse_along(M, rotors, row.T, speed, restitution, 1 / other_mass, G)
+    H = M + rotor_mass(rotors, G)
     return ImpactFactors(
         rank=rank,
         reflected_mass_free=masses[0],
         reflected_mass_rigid=masses[1],
         mass_ratio=masses[0] / masses[1],
         giaf_movable=_movable_giaf(J, rank, free, real),
-        spatial=_spatial(M, rotors, J, free, real, n, own) if rank == 3 else None,
+        spatial=_spatial((M, rotors, ca.DM(J), G), free, real, n, own) if rank == 3 else None,
         mitigation=_mitigation(H, J, n) if floating else None,
         impulse=_of_joints(impulse, own),
         measures=_measures(H[own, own], J[:, own], still),
@@ -191,23 +200,22 @@ def _movable_giaf(J: Array, rank: int, free: ContactMobility, real: ContactMobil
 
 
 def _spatial(
-    M: ca.DM,
-    rotors: ca.DM,
-    J: Array,
+    robot: tuple[ca.DM, ca.DM, ca.DM, ca.DM],
     free: ContactMobility,
     real: ContactMobility,
     n: Array,
     own: slice,
 ) -> SpatialFactors:
+    """Return them for M, the rotors, J and G of a robot."""
     return SpatialFactors(
         giaf=float(giaf(free, real)),
         giif=float(giif(free, real)),
         directional_giaf=float(directional_giaf(free, real, n)),
         directional_giaf_extremes=_numbers(extreme_directional_giaf(free, real)),
         mass_ratio_extremes=_numbers(extreme_mass_ratio(free, real)),
-        single_joint_giaf=_array(single_joint_giaf(M, rotors, J))[own],
-        giaf_by_rotor=_array(giaf_by_rotor(M, rotors, J))[own],
-        giaf_by_gear=_array(giaf_by_gear(M, rotors, J))[own],
+        single_joint_giaf=_array(single_joint_giaf(*robot))[own],
+        giaf_by_rotor=_array(giaf_by_rotor(*robot))[own],
+        giaf_by_gear=_array(giaf_by_gear(*robot))[own],
         osim=_array(real.inertia),
         osim_free=_array(free.inertia),
         inertia_ellipsoid=_numbers(generalised_inertia_ellipsoid(real)),

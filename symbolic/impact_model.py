@@ -12,16 +12,23 @@ from numpy.typing import ArrayLike
 
 from .chain import Chain, ChainEnd, chain
 from .drives import Drives, drives
-from .dynamics import mass_matrix, stiffness_of_potential
-from .elastic import LinearModel, MassOperator, elastic_jacobian, elastic_mass, elastic_stiffness
+from .dynamics import Gravity, mass_matrix, stiffness_of_potential
+from .elastic import (
+    ElasticMass,
+    LinearModel,
+    MassOperator,
+    elastic_jacobian,
+    elastic_mass,
+    elastic_stiffness,
+)
 from .errors import InvalidValue, WrongLength
 from .factors import ContactMobility, contact_mobility
 from .kinematics import contact_point_jacobian, direction_jacobian
 from .loops import closed_chain, constrained_stiffness, loop_tangent
 from .matrices import Matrix, symmetric
 from .reduction import ReducedModel, reduce_to_two_masses, reflected_mass
-from .rigid import Array
-from .robot import BASE, Robot
+from .rigid import Array, three_numbers
+from .robot import BASE, Robot, vector_of
 
 WEIGHTLESS = (0.0, 0.0, 0.0)
 """Gravity of a model that leaves gravity out of K0."""
@@ -70,11 +77,7 @@ class ImpactModel:
 
     def vector(self, name: str, values: ArrayLike) -> Array:
         """Check that ``values`` has one entry an independent joint; raises WrongLength."""
-        array = np.asarray(values, dtype=float)
-        if array.shape != (len(self.independent),):
-            names = [self.robot.joint_names[i] for i in self.independent]
-            raise WrongLength(name, array.size, len(names), names)
-        return array
+        return vector_of([self.robot.joint_names[i] for i in self.independent], name, values)
 
     def mass_matrix(self, q: Matrix) -> Matrix:
         """Return the links' mass matrix M (of a closed chain GᵀMG), n×n [kg m²]."""
@@ -113,9 +116,10 @@ class ImpactModel:
 
     def reflected_mass(self, q: Matrix, direction: Matrix) -> Matrix:
         """Return m_c [kg] (MSM Eq. 36); rotors behind springs do not count."""
-        if all(self.elastic):
-            return reflected_mass(self.mass_matrix(q), self._direction_row(q, direction))
-        return reflected_mass(self.generalised_mass(q).matrix, self.contact_jacobian(q, direction))
+        mass = self.generalised_mass(q)
+        if isinstance(mass, ElasticMass):
+            return reflected_mass(mass.links, self._direction_row(q, direction))
+        return reflected_mass(mass.matrix, self.contact_jacobian(q, direction))
 
     def reduced(self, q: Matrix, direction: Matrix) -> ReducedModel:
         """Return m_c, k_r and m_a (MSM Eq. 36-38)."""
@@ -189,7 +193,7 @@ def impact_model(
     tip: str | None = None,
     *,
     drives_: Drives | None = None,
-    gravity: tuple[float, float, float] = WEIGHTLESS,
+    gravity: Gravity = WEIGHTLESS,
 ) -> ImpactModel:
     """Return the model of a robot at rest.
 
@@ -202,11 +206,19 @@ def impact_model(
     Raises:
         FrameNotFound: the robot has no such tip.
         LoopError: a loop cannot close or is redundant.
-        InvalidValue: a joint that follows from others through a loop is to be elastic.
+        InvalidValue: neither ``tip`` nor the robot names a contact frame, gravity is not three
+            finite numbers, or a joint that follows from others through a loop is to be elastic.
+        WrongLength: the drives are another robot's.
     """
     name = tip if tip is not None else robot.tip
-    frame = robot.frame(name if name is not None else "")
+    if name is None:
+        frames = ", ".join(robot.frames)
+        raise InvalidValue("tip", f"robot '{robot.name}' has none of its own; choose of: {frames}")
+    frame = robot.frame(name)
+    x, y, z = three_numbers("gravity", gravity).tolist()
     known = drives_ or drives(robot)
+    if len(known.elastic) != robot.n:
+        raise WrongLength("drives_", len(known.elastic), robot.n, robot.joint_names)
     for i in closed_chain(robot).dependent:
         if known.elastic[i]:
             raise InvalidValue(
@@ -214,4 +226,4 @@ def impact_model(
                 f"joint '{robot.joints[i].name}' follows from others through a loop and cannot "
                 "be elastic; give it inf, or name it among the independent joints",
             )
-    return ImpactModel(robot, frame.name, known, gravity)
+    return ImpactModel(robot, frame.name, known, (x, y, z))

@@ -21,12 +21,16 @@ from .robot import BASE, Frame, Joint, Loop, Robot
 ROTOR_SET = "rotor_inertia:"
 """Prefix of the MJCF ``custom/numeric`` elements that hold named sets of rotor inertias."""
 
+NAMELESS = "MuJoCo Model"
+"""What MuJoCo calls a model without a name."""
+
 
 def load_robot(model: str | Path, tip: str | None = None, *, floating: bool = False) -> Robot:
     """Read a built-in robot, or one from a URDF (``.urdf``) or MJCF (``.xml``) file.
 
-    Meshes are not needed. Every body and every site becomes a frame. The model's gravity is not
-    kept, nor are couplings between joints (URDF ``mimic``, MJCF ``equality/joint``, tendons): weld
+    Meshes are not needed. Every body and every site becomes a frame; a site that shares its name
+    with a body is ``site:NAME``. The model's gravity is not kept, nor are damping and friction of
+    joints, nor couplings between them (URDF ``mimic``, MJCF ``equality/joint``, tendons): weld
     such joints with ``chain_to`` or ``lock_joints``. Of MJCF's ``custom`` elements the text ``tip``
     names the contact frame and the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor
     inertias. MJCF ``equality/connect`` closes a loop: ``home`` is then the first keyframe (or the
@@ -81,7 +85,8 @@ def _custom_texts(model: mujoco.MjModel) -> dict[str, str]:
     for i in range(model.ntext):
         first, size = int(model.text_adr[i]), int(model.text_size[i])
         name = mujoco.mj_id2name(model, int(mujoco.mjtObj.mjOBJ_TEXT), i)
-        texts[name] = bytes(model.text_data[first : first + size]).rstrip(b"\0").decode()
+        text = bytes(model.text_data[first : first + size]).rstrip(b"\0")
+        texts[name] = text.decode(errors="replace")
     return texts
 
 
@@ -120,12 +125,13 @@ class _RobotBuilder:
         for site in range(self.model.nsite):
             joint, pose = carriers[int(self.model.site_bodyid[site])]
             local = _placement(self.model.site_pos[site], self.model.site_quat[site])
-            self._add_frame(self.model.site(site).name, joint, pose @ local)
+            self._add_frame(self._site_name(site), joint, pose @ local)
         joints = [
             Joint(**{**vars(joint), "inertia": inertia})
             for joint, inertia in zip(self.joints, self.inertias, strict=True)
         ]
-        name = self.model.names.split(b"\0")[0].decode() or self.path.stem
+        name = self.model.names.split(b"\0")[0].decode()
+        name = self.path.stem if name in ("", NAMELESS) else name
         sets = _rotor_inertia_sets(self.model, self.path)
         loops = tuple(self._loops(carriers))
         return Robot(
@@ -150,7 +156,7 @@ class _RobotBuilder:
                 (int(model.eq_obj2id[i]), model.eq_data[i, 3:6]),
             ):
                 if int(model.eq_objtype[i]) == sites:
-                    ends.append(model.site(index).name)
+                    ends.append(self._site_name(index))
                     continue
                 joint, pose = carriers[index]
                 place = pose @ Placement(np.eye(3), anchor)
@@ -205,7 +211,13 @@ class _RobotBuilder:
 
     def _add_frame(self, name: str, joint: int, placement: Placement) -> None:
         if name:
-            self.frames.setdefault(name, Frame(name, joint, placement))
+            self.frames[name] = Frame(name, joint, placement)
+
+    def _site_name(self, site: int) -> str:
+        """Name of a site's frame; a body and a site may have the same name in MJCF."""
+        name = str(self.model.site(site).name)
+        is_taken = mujoco.mj_name2id(self.model, int(mujoco.mjtObj.mjOBJ_BODY), name) >= 0
+        return f"site:{name}" if name and is_taken else name
 
 
 def _actuated_joints(model: mujoco.MjModel) -> set[int]:

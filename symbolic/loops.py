@@ -10,7 +10,7 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
-from .dynamics import STANDARD_GRAVITY
+from .dynamics import STANDARD_GRAVITY, Gravity
 from .errors import InvalidValue, LoopCannotClose, RedundantLoop, SingularLoop, UnknownName
 from .loop_equations import (
     ClosedChain,
@@ -94,9 +94,7 @@ def loop_tangent(robot: Robot, q: Matrix) -> Matrix:
     return tangent(closed_chain(robot), q)
 
 
-def constrained_stiffness(
-    robot: Robot, q: Matrix, gravity: Sequence[float] = STANDARD_GRAVITY
-) -> Matrix:
+def constrained_stiffness(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
     """Return the curvature Gᵀ ∇²(V + λᵀφ) G of the potential along the loops, (n−r)×(n−r).
 
     λ are the forces in the loops that hold the dependent joints, φ_depᵀ λ = −∂V/∂q_dep.

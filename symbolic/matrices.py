@@ -14,7 +14,7 @@ LEAST_SQUARE = float(np.finfo(np.float32).tiny)
 """Keeps the share of a row of zeros finite; it is lost in the square of any other."""
 
 Matrix = Any
-"""A CasADi matrix: SX, MX or DM. CasADi ships no types that a checker could use."""
+"""A CasADi matrix: SX, MX or DM. CasADi's types have no name for whichever of them is given."""
 
 
 @lru_cache(maxsize=256)

@@ -71,8 +71,7 @@ def _compile_spec(
     for body in spec.bodies[1:]:
         _check_mass(body, str(path))
     for joint in spec.joints:
-        if joint.armature < 0:
-            raise ModelFileError(str(path), f"joint '{joint.name}': armature is negative")
+        _check_joint(joint, str(path))
     if any("NaN" in warning for warning in heard):
         raise ModelFileError(str(path), "a number is NaN")
     try:
@@ -132,6 +131,12 @@ def _check_mass(body: mujoco.MjsBody, path: str) -> None:
         raise InvalidInertia(path, body.name, f"mass is negative ({body.mass:g} kg)")
 
 
+def _check_joint(joint: mujoco.MjsJoint, path: str) -> None:
+    for field, value in (("armature", joint.armature), ("stiffness", joint.stiffness[0])):
+        if value < 0:
+            raise ModelFileError(path, f"joint '{joint.name}': {field} is negative")
+
+
 def _compile_error(path: str, reason: str) -> ModelFileError:
     named = reason.split("Element name '")
     body = named[1].split("'")[0] if len(named) > 1 else "?"
@@ -153,8 +158,13 @@ def _one_line(error: Exception) -> str:
 
 
 def _reject_unsupported(model: mujoco.MjModel, path: Path) -> None:
+    try:
+        model.names.decode()
+    except UnicodeDecodeError:
+        raise ModelFileError(str(path), "its names are not in UTF-8") from None
     of_bodies = [model.body_pos, model.body_quat, model.body_ipos, model.body_inertia]
     of_joints = [model.jnt_pos, model.jnt_axis, model.dof_armature, model.site_pos]
+    of_joints += [model.jnt_stiffness, model.qpos0, model.qpos_spring]
     if not all(np.isfinite(array).all() for array in of_bodies + of_joints):
         raise ModelFileError(str(path), "a number is infinite")
     for i in range(model.njnt):
@@ -169,7 +179,7 @@ def _reject_unsupported(model: mujoco.MjModel, path: Path) -> None:
             )
             words = "free" if free else "ball"
             raise UnsupportedModel(str(path), f"joint '{name}' is a {words} joint; {advice}")
-    if any(int(kind) == int(mujoco.mjtEq.mjEQ_WELD) for kind in model.eq_type):
+    if np.any((model.eq_type == int(mujoco.mjtEq.mjEQ_WELD)) & (model.eq_active0 != 0)):
         raise UnsupportedModel(str(path), "equality weld; close loops with connect")
     if np.any(getattr(model, "jnt_stiffnesspoly", 0.0)):
         raise UnsupportedModel(str(path), "springs whose stiffness depends on the deflection")

@@ -8,11 +8,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .errors import InvalidValue
+
 Array = NDArray[np.float64]
 
 ROTATION_NOISE = 1e-12
 """Entries of a rotation this near to -1, 0 or 1 are that number: what quaternions and roll, pitch
 and yaw leave behind must not enter the expression graph."""
+
+
+def three_numbers(field: str, values: ArrayLike) -> Array:
+    """Return a vector of three finite numbers; raises InvalidValue."""
+    vector = np.asarray(values, dtype=float)
+    if vector.shape != (3,) or not np.isfinite(vector).all():
+        raise InvalidValue(field, "needs three finite numbers [x, y, z]")
+    return vector
 
 
 def _frozen(value: ArrayLike, shape: tuple[int, ...]) -> Array:

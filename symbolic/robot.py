@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from .errors import FrameNotFound, InvalidValue, UnknownName, WrongLength
 from .matrices import Matrix
-from .rigid import Array, Inertia, Placement, rotation_about_z
+from .rigid import Array, Inertia, Placement, rotation_about_z, three_numbers
 
 BASE = -1
 """Index of the base where a joint's index is expected."""
@@ -85,8 +85,8 @@ class Loop:
 
 
 @dataclass(frozen=True, eq=False)
-class Payload:
-    """A point mass held at a frame.
+class PointMass:
+    """A mass in a point, held at a frame.
 
     Attributes:
         frame: name of the frame.
@@ -128,7 +128,7 @@ class Robot:
     home: tuple[float, ...] | None = None
     independent: tuple[str, ...] = ()
     base_inertia: Inertia = field(default_factory=Inertia.zero)
-    payload: Payload | None = None
+    payload: PointMass | None = None
 
     @property
     def n(self) -> int:
@@ -178,10 +178,10 @@ class Robot:
         Args:
             name: of the new frame.
             body: name of the body, or of any other frame, that carries it; raises FrameNotFound.
-            point: its origin along that frame's axes [m], length 3.
+            point: its origin along that frame's axes [m], length 3; raises InvalidValue.
         """
         known = self.frame(body)
-        placement = known.placement @ Placement(np.eye(3), np.asarray(point, dtype=float))
+        placement = known.placement @ Placement(np.eye(3), three_numbers("point", point))
         return replace(self, frames={**self.frames, name: Frame(name, known.joint, placement)})
 
     def ancestors(self, joint: int) -> list[int]:
@@ -204,11 +204,8 @@ class Robot:
         return np.array(self.rotor_inertia_sets[name])
 
     def vector(self, name: str, values: ArrayLike) -> Array:
-        """Check that ``values`` has one entry a joint; raises WrongLength."""
-        array = np.asarray(values, dtype=float)
-        if array.shape != (self.n,):
-            raise WrongLength(name, array.size, self.n, self.joint_names)
-        return array
+        """Check that ``values`` has one entry a joint; raises WrongLength, InvalidValue."""
+        return vector_of(self.joint_names, name, values)
 
     def with_armature(self, armature: ArrayLike) -> Robot:
         """Return the robot with other reflected rotor inertias."""
@@ -226,8 +223,15 @@ class Robot:
             frame: name of the frame that holds it; raises FrameNotFound.
             mass: in kg, a number or an SX.
             com: its place along that frame's axes from its origin [m], length 3.
+
+        Raises:
+            InvalidValue: a mass that is negative, or a number that is not finite.
         """
-        return replace(self, payload=Payload(self.frame(frame).name, mass, com))
+        if isinstance(mass, int | float) and not 0 <= mass < np.inf:
+            raise InvalidValue("payload_mass", f"must be finite and ≥ 0 kg, not {mass:g}")
+        if isinstance(com, Sequence | np.ndarray):
+            three_numbers("payload_com", com)
+        return replace(self, payload=PointMass(self.frame(frame).name, mass, com))
 
     def digest(self) -> str:
         """Return a hash of every number and name that the robot's expressions depend on."""
@@ -261,6 +265,21 @@ class Robot:
         return text.hexdigest()
 
 
+def vector_of(names: Sequence[str], field: str, values: ArrayLike) -> Array:
+    """Return a vector with one number for each of some joints.
+
+    Raises:
+        WrongLength: it has another length.
+        InvalidValue: it is not a flat list.
+    """
+    array = np.asarray(values, dtype=float)
+    if array.ndim != 1:
+        raise InvalidValue(field, "must be a flat list of numbers")
+    if len(array) != len(names):
+        raise WrongLength(field, len(array), len(names), names)
+    return array
+
+
 def _point(name: str, text: str) -> Array:
     try:
         point = np.array([float(x) for x in text.split(",")])
@@ -273,82 +292,3 @@ def _point(name: str, text: str) -> Array:
 
 def _in_words(numbers: Sequence[float]) -> str:
     return " ".join(f"{float(x) + 0.0:.12e}" for x in numbers)
-
-
-def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
-    """Return the robot with some joints welded at given coordinates, their masses kept.
-
-    Args:
-        robot: any robot.
-        locked: coordinate [rad, m] of each joint to weld, by name; raises UnknownName.
-    """
-    for name in locked:
-        if name not in robot.joint_names:
-            raise UnknownName("joint", name, robot.joint_names)
-    carrier: dict[int, tuple[int, Placement]] = {BASE: (BASE, Placement.identity())}
-    kept: list[Joint] = []
-    base = robot.base_inertia
-    for index, joint in enumerate(robot.joints):
-        parent, where = carrier[joint.parent]
-        if joint.name not in locked:
-            placement = where @ joint.placement
-            kept.append(replace(joint, parent=parent, placement=placement))
-            carrier[index] = (len(kept) - 1, Placement.identity())
-            continue
-        pose = where @ joint.pose(locked[joint.name])
-        carrier[index] = (parent, pose)
-        moved = joint.inertia.seen_from(pose)
-        if parent == BASE:
-            base = base + moved
-        else:
-            kept[parent] = replace(kept[parent], inertia=kept[parent].inertia + moved)
-    frames = {
-        name: Frame(name, carrier[frame.joint][0], carrier[frame.joint][1] @ frame.placement)
-        for name, frame in robot.frames.items()
-    }
-    stays = [joint.name not in locked for joint in robot.joints]
-    sets = {
-        name: tuple(value for value, stay in zip(values, stays, strict=True) if stay)
-        for name, values in robot.rotor_inertia_sets.items()
-    }
-    independent = tuple(name for name in robot.independent if name not in locked)
-    home = None
-    if robot.home is not None:
-        home = tuple(value for value, stay in zip(robot.home, stays, strict=True) if stay)
-    return replace(
-        robot,
-        joints=tuple(kept),
-        frames=frames,
-        rotor_inertia_sets=sets,
-        home=home,
-        independent=independent,
-        base_inertia=base,
-    )
-
-
-def chain_to(robot: Robot, frame: str, rest: Sequence[float] | None = None) -> Robot:
-    """Return the chain from the base to a frame; joints off it are welded, their masses kept.
-
-    Joints of a loop that the chain is part of stay, and loops among welded joints are dropped.
-
-    Args:
-        robot: any robot.
-        frame: name of a frame; raises FrameNotFound.
-        rest: coordinates of all joints at which those off the chain are welded (default zero).
-    """
-    path, loops = _with_loops(robot, set(robot.ancestors(robot.frame(frame).joint)))
-    values = np.zeros(robot.n) if rest is None else robot.vector("rest", rest)
-    locked = {j.name: float(values[i]) for i, j in enumerate(robot.joints) if i not in path}
-    return replace(lock_joints(robot, locked), tip=frame, loops=loops)
-
-
-def _with_loops(robot: Robot, path: set[int]) -> tuple[set[int], tuple[Loop, ...]]:
-    """Add to a chain all joints of the loops that hold it, and return those loops."""
-    around = {loop: robot.moved_by(loop) for loop in robot.loops}
-    held: set[Loop] = set()
-    while touched := {loop for loop in around if around[loop] & path} - held:
-        held |= touched
-        for loop in touched:
-            ends = (robot.frame(loop.first).joint, robot.frame(loop.second).joint)
-            path = path.union(*map(robot.ancestors, ends))
-    return path, tuple(loop for loop in robot.loops if loop in held)

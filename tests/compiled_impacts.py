@@ -74,9 +74,10 @@ def region_type(real: str) -> type[ctypes.Structure]:
 def selection(real: str) -> ctypes.Structure:
     """Return an empty result."""
     kind = KINDS[real][0]
-    fields = [(name, ctypes.c_int) for name in ("best", "second", "usable")]
-    fields += [(name, kind) for name in ("force", "margin")]
-    return type("Selection", (ctypes.Structure,), {"_fields_": fields})()
+    counts = [(name, ctypes.c_int) for name in ("best", "second", "usable")]
+    fields = [*counts, *((name, kind) for name in ("force", "margin"))]
+    kept: type[ctypes.Structure] = type("Selection", (ctypes.Structure,), {"_fields_": fields})
+    return kept()
 
 
 def choose(

@@ -81,7 +81,8 @@ class Generated:
     def functions(self) -> tuple[CFunction, ...]:
         """What the package computes."""
         m = self.manifest
-        symbols = symbols_of(self.robot, self.tip, m.gravity, self.parameters)
+        x, y, z = m.gravity
+        symbols = symbols_of(self.robot, self.tip, (x, y, z), self.parameters)
         return functions_of(symbols, m.chain_order, floating=m.floating)
 
     @property

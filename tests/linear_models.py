@@ -46,7 +46,7 @@ def nullspace(model: LinearModel, seed: int) -> Array:
     M, _, j = dense(model)
     rows = scipy.linalg.null_space(np.linalg.solve(M, j)[None]).T
     turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(len(j) - 1, len(j) - 1)))
-    return turn @ rows
+    return np.asarray(turn @ rows)
 
 
 def with_nullspace(model: LinearModel, J_a: Array) -> tuple[float, float, float]:
@@ -78,15 +78,16 @@ def lanczos(model: LinearModel, order: int) -> tuple[Array, Array, Array]:
     """Return T's diagonal and off-diagonal and V, by full reorthogonalisation in M0."""
     M, K, j = dense(model)
     v = np.linalg.solve(M, j)
-    basis = [v / np.sqrt(v @ M @ v)]
-    diagonal, beside = [], []
+    basis: list[Array] = [v / np.sqrt(v @ M @ v)]
+    diagonal: list[float] = []
+    beside: list[float] = []
     for _ in range(order):
         w = np.linalg.solve(M, K @ basis[-1])
-        diagonal.append(basis[-1] @ M @ w)
+        diagonal.append(float(basis[-1] @ M @ w))
         for _ in range(2):
             w = w - np.column_stack(basis) @ (np.column_stack(basis).T @ M @ w)
-        beside.append(np.sqrt(max(w @ M @ w, 0.0)))
-        basis.append(w / beside[-1] if beside[-1] > 0 else w)
+        beside.append(max(float(w @ M @ w), 0.0) ** 0.5)
+        basis.append(np.asarray(w / (beside[-1] or 1.0), dtype=float))
     V = np.column_stack(basis[:order])
     return np.array(diagonal), np.array(beside[: order - 1]), V
 

@@ -9,8 +9,9 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pinocchio as pin
+from numpy.typing import ArrayLike
 
-from softimpact.symbolic import Robot
+from softimpact.symbolic import Matrix, Robot
 from softimpact.symbolic.rigid import Array
 from softimpact.symbolic.robot import BASE, JointKind
 
@@ -43,6 +44,11 @@ def assert_near(ours: object, theirs: object, tolerance: float = TOLERANCE) -> N
     assert a.shape == b.shape
     scale = abs(b).max(initial=0.0)
     np.testing.assert_allclose(a, b, rtol=0, atol=tolerance * (scale if scale > 1e-9 else 1.0))
+
+
+def column(matrix: Matrix) -> Array:
+    """Return CasADi's numbers as a vector."""
+    return np.array(matrix, dtype=float).ravel()
 
 
 class Pinocchio:
@@ -81,7 +87,7 @@ class Pinocchio:
 
     def configuration(self, q: Array) -> Array:
         """Return Pinocchio's configuration: its order, and cosine and sine where it has them."""
-        found = pin.neutral(self.model)
+        found = np.array(pin.neutral(self.model))
         for joint, angle in zip(self.joints, q, strict=True):
             values = [angle] if joint.nq == 1 else [np.cos(angle), np.sin(angle)]
             found[joint.idx_q : joint.idx_q + joint.nq] = values
@@ -92,15 +98,15 @@ class Pinocchio:
         found = pin.crba(self.model, self.data, self.configuration(q))
         upper = np.triu(found.reshape(self.model.nv, self.model.nv))
         full = upper + np.triu(upper, 1).T
-        return full[np.ix_(self.order, self.order)]
+        return np.asarray(full[np.ix_(self.order, self.order)])
 
-    def bias(self, q: Array, velocity: Array, gravity: Array) -> Array:
+    def bias(self, q: Array, velocity: Array, gravity: ArrayLike) -> Array:
         """Return gravity, Coriolis and centrifugal torques."""
         self.model.gravity.linear = np.array(gravity)
         v = np.zeros(self.model.nv)
         v[self.order] = velocity
         torques = pin.rnea(self.model, self.data, self.configuration(q), v, 0 * v)
-        return torques[self.order]
+        return np.asarray(torques[self.order])
 
     def jacobian(self, frame: str, q: Array) -> Array:
         """Return the 6×n Jacobian in the base's axes."""
@@ -109,7 +115,7 @@ class Pinocchio:
         pin.updateFramePlacements(self.model, self.data)
         axes = pin.LOCAL_WORLD_ALIGNED
         J = pin.getFrameJacobian(self.model, self.data, index, axes)
-        return J.reshape(6, self.model.nv)[:, self.order]
+        return np.asarray(J.reshape(6, self.model.nv)[:, self.order])
 
     def pose(self, frame: str, q: Array) -> pin.SE3:
         """Return the pose of a frame in the base."""
@@ -148,13 +154,14 @@ class FreeFlyer:
     def mass_matrix(self, q: Array) -> Array:
         """Return M."""
         upper = np.triu(pin.crba(self.model, self.data, self.configuration(q)))
-        return (upper + np.triu(upper, 1).T)[np.ix_(self.v_order, self.v_order)]
+        full = upper + np.triu(upper, 1).T
+        return np.asarray(full[np.ix_(self.v_order, self.v_order)])
 
-    def bias(self, q: Array, velocity: Array, gravity: Array) -> Array:
+    def bias(self, q: Array, velocity: Array, gravity: ArrayLike) -> Array:
         """Return gravity, Coriolis and centrifugal forces."""
         self.model.gravity.linear = np.array(gravity)
         state = (self.configuration(q), self.velocity(velocity), self.velocity(0.0))
-        return pin.rnea(self.model, self.data, *state)[self.v_order]
+        return np.asarray(pin.rnea(self.model, self.data, *state)[self.v_order])
 
     def jacobian(self, frame: str, q: Array) -> Array:
         """Return the 6×(6+n) Jacobian in the world's axes."""
@@ -162,7 +169,7 @@ class FreeFlyer:
         pin.computeJointJacobians(self.model, self.data, self.configuration(q))
         pin.updateFramePlacements(self.model, self.data)
         J = pin.getFrameJacobian(self.model, self.data, index, pin.LOCAL_WORLD_ALIGNED)
-        return J[:, self.v_order]
+        return np.asarray(J[:, self.v_order])
 
     def pose(self, frame: str, q: Array) -> pin.SE3:
         """Return the pose of a frame in the world."""
@@ -202,11 +209,11 @@ class Mujoco:
 
     def bias(self) -> Array:
         """Return gravity, Coriolis and centrifugal torques."""
-        return self.data.qfrc_bias.copy()
+        return np.array(self.data.qfrc_bias)
 
     def spring_torques(self) -> Array:
         """Return what the joints' springs exert."""
-        return self.data.qfrc_spring.copy()
+        return np.array(self.data.qfrc_spring)
 
     def site_jacobian(self, name: str) -> Array:
         """Return the 6×n Jacobian of a site."""
@@ -216,4 +223,4 @@ class Mujoco:
 
     def site_position(self, name: str) -> Array:
         """Return where a site is."""
-        return self.data.site(name).xpos.copy()
+        return np.array(self.data.site(name).xpos)

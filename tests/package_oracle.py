@@ -28,6 +28,7 @@ from softimpact.symbolic import (
     giaf_by_rotor,
     giif,
     impact_mitigation,
+    impact_model,
     joint_impulse,
     manipulability,
     single_joint_giaf,
@@ -50,7 +51,7 @@ def oracle(package: Generated, sample: Sample) -> dict[str, list[Array]]:
         (elastic,) * robot.n,
         ca.DM(gains),
     )
-    model = ImpactModel(robot, package.tip, drives, package.manifest.gravity)
+    model = impact_model(robot, package.tip, drives_=drives, gravity=package.manifest.gravity)
     q = ca.DM(sample.q)
     n = ca.DM(sample.n) / ca.norm_2(ca.DM(sample.n))
     reduced, chain = model.reduced(q, n), model.chain(q, n, package.manifest.chain_order)

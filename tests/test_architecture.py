@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The structure that CONTRIBUTING.md promises."""
 
+from __future__ import annotations
+
 import ast
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -18,7 +21,7 @@ MAY_IMPORT = {
 }
 
 
-def tracked(*patterns):
+def tracked(*patterns: str) -> list[Path]:
     """Return the files under version control that match."""
     listed = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard", *patterns],
@@ -30,7 +33,7 @@ def tracked(*patterns):
     return [ROOT / name for name in listed.stdout.splitlines() if (ROOT / name).is_file()]
 
 
-def imported_folders(path):
+def imported_folders(path: Path) -> Iterator[str]:
     """Yield the folders of softimpact that a module imports."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.level == 0:
@@ -43,14 +46,14 @@ def imported_folders(path):
 
 
 @pytest.mark.parametrize("folder", MAY_IMPORT)
-def test_arrows_point_one_way(folder):
+def test_arrows_point_one_way(folder: str) -> None:
     modules = tracked(f"{folder}/*.py")
     assert modules
     for path in modules:
         assert set(imported_folders(path)) <= MAY_IMPORT[folder] | {folder}, path
 
 
-def test_files_can_be_read_at_a_sitting():
+def test_files_can_be_read_at_a_sitting() -> None:
     long = {
         path.relative_to(ROOT).as_posix(): count
         for path in tracked("*.py", "*.jinja")
@@ -59,7 +62,7 @@ def test_files_can_be_read_at_a_sitting():
     assert long == {}
 
 
-def test_sources_say_their_licence():
+def test_sources_say_their_licence() -> None:
     sources = [
         path for path in tracked("*.py", "*.toml", "*.xml", "Makefile") if path.stat().st_size
     ]

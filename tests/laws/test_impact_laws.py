@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Laws of reflected masses, chains and impact factors, on random arms."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import casadi as ca
@@ -12,6 +14,10 @@ from oracles import assert_near
 from random_robots import arms, placements, seeds, unit_vector, vectors
 
 from softimpact.symbolic import (
+    ContactMobility,
+    ImpactModel,
+    LinearModel,
+    Robot,
     chain,
     directional_giaf,
     drives,
@@ -23,12 +29,12 @@ from softimpact.symbolic import (
     static_stiffness,
 )
 from softimpact.symbolic.reduction import contact_mode
-from softimpact.symbolic.rigid import Inertia, rotation_about_z
+from softimpact.symbolic.rigid import Array, Inertia, Placement, rotation_about_z
 
 LAWS = settings(max_examples=40)
 
 
-def mobilities(model, q):
+def mobilities(model: ImpactModel, q: Array) -> tuple[ContactMobility, ContactMobility]:
     """Free and real mobility; the laws are told only where the tip moves in every direction."""
     free, real = model.free_mobility(q), model.mobility(q)
     assume(np.linalg.cond(np.array(free.matrix)) < 1e6)
@@ -37,7 +43,7 @@ def mobilities(model, q):
 
 @LAWS
 @given(arms(), vectors(5))
-def test_rotors_add_inertia_in_every_direction(robot, q):
+def test_rotors_add_inertia_in_every_direction(robot: Robot, q: Array) -> None:
     """Λ ≻ 0 and Λ ⪰ Λ_F."""
     free, real = mobilities(impact_model(robot), q[: robot.n])
     L, L_F = np.array(real.inertia), np.array(free.inertia)
@@ -48,7 +54,7 @@ def test_rotors_add_inertia_in_every_direction(robot, q):
 
 @LAWS
 @given(arms(), vectors(5), seeds)
-def test_impact_factors_are_shares(robot, q, seed):
+def test_impact_factors_are_shares(robot: Robot, q: Array, seed: int) -> None:
     """0 ≤ ζ, ζ_x ≤ 1 and 0 ≤ GIIF ≤ 1."""
     free, real = mobilities(impact_model(robot), q[: robot.n])
     x = unit_vector(seed)
@@ -58,7 +64,7 @@ def test_impact_factors_are_shares(robot, q, seed):
 
 @LAWS
 @given(arms(), vectors(5), seeds)
-def test_without_rotors_everything_is_absorbed(robot, q, seed):
+def test_without_rotors_everything_is_absorbed(robot: Robot, q: Array, seed: int) -> None:
     model = impact_model(robot.with_armature(np.zeros(robot.n)))
     free, real = mobilities(model, q[: robot.n])
     assert float(giaf(free, real)) == pytest.approx(1, rel=1e-9)
@@ -68,7 +74,7 @@ def test_without_rotors_everything_is_absorbed(robot, q, seed):
 
 @LAWS
 @given(arms(), vectors(5), seeds)
-def test_giaf_falls_as_any_rotor_grows(robot, q, seed):
+def test_giaf_falls_as_any_rotor_grows(robot: Robot, q: Array, seed: int) -> None:
     q = q[: robot.n]
     bigger = robot.armature.copy()
     bigger[seed % robot.n] *= 2
@@ -82,7 +88,7 @@ def test_giaf_falls_as_any_rotor_grows(robot, q, seed):
 
 @LAWS
 @given(arms(), vectors(5), seeds)
-def test_directional_factors_lie_between_the_extremes(robot, q, seed):
+def test_directional_factors_lie_between_the_extremes(robot: Robot, q: Array, seed: int) -> None:
     """ζ is the product of the three principal directional factors."""
     free, real = mobilities(impact_model(robot), q[: robot.n])
     shares = np.linalg.eigvals(np.linalg.solve(np.array(real.inertia), np.array(free.inertia))).real
@@ -93,7 +99,7 @@ def test_directional_factors_lie_between_the_extremes(robot, q, seed):
 
 @LAWS
 @given(arms(), vectors(5), seeds, placements())
-def test_the_base_may_stand_anywhere(robot, q, seed, place):
+def test_the_base_may_stand_anywhere(robot: Robot, q: Array, seed: int, place: Placement) -> None:
     """GIAF and m_c do not change when base, robot and direction are moved together."""
     q, n = q[: robot.n], unit_vector(seed)
     first = replace(robot.joints[0], placement=place @ robot.joints[0].placement)
@@ -110,7 +116,7 @@ def test_the_base_may_stand_anywhere(robot, q, seed, place):
 
 @LAWS
 @given(arms(), vectors(5), seeds)
-def test_the_first_joint_turns_base_and_direction_alike(robot, q, seed):
+def test_the_first_joint_turns_base_and_direction_alike(robot: Robot, q: Array, seed: int) -> None:
     """GIAF does not depend on q1, nor does m_c along a direction that turns with it."""
     q, n = q[: robot.n], unit_vector(seed)
     turned = q.copy()
@@ -128,7 +134,7 @@ def test_the_first_joint_turns_base_and_direction_alike(robot, q, seed):
 
 @LAWS
 @given(arms(), vectors(5), seeds)
-def test_elastic_robots_hit_with_their_links_alone(robot, q, seed):
+def test_elastic_robots_hit_with_their_links_alone(robot: Robot, q: Array, seed: int) -> None:
     """m_c of the elastic robot is (nᵀΛ_F⁻¹n)⁻¹, whatever its rotors, springs and gains."""
     q, n = q[: robot.n], unit_vector(seed)
     elastic = impact_model(
@@ -143,7 +149,7 @@ def test_elastic_robots_hit_with_their_links_alone(robot, q, seed):
 
 @LAWS
 @given(arms(), vectors(5), seeds)
-def test_rigid_robots_hit_with_their_rotors_too(robot, q, seed):
+def test_rigid_robots_hit_with_their_rotors_too(robot: Robot, q: Array, seed: int) -> None:
     """m_c of the rigid robot is (nᵀΛ⁻¹n)⁻¹, and never less than the elastic robot's."""
     q, n = q[: robot.n], unit_vector(seed)
     rigid = impact_model(robot)
@@ -156,7 +162,7 @@ def test_rigid_robots_hit_with_their_rotors_too(robot, q, seed):
 
 @LAWS
 @given(arms(), vectors(5), seeds)
-def test_stiff_springs_make_the_rigid_robot(robot, q, seed):
+def test_stiff_springs_make_the_rigid_robot(robot: Robot, q: Array, seed: int) -> None:
     """What a slow enough force feels of the masses: with k_s → ∞ the rigid reflected mass.
 
     Rigid motions are the model's slow modes: the mobility they leave at the contact is J(M+B)⁻¹Jᵀ.
@@ -171,7 +177,7 @@ def test_stiff_springs_make_the_rigid_robot(robot, q, seed):
 
 @LAWS
 @given(linear_models(), seeds)
-def test_no_change_of_coordinates_moves_the_physics(model, seed):
+def test_no_change_of_coordinates_moves_the_physics(model: LinearModel, seed: int) -> None:
     """m_c, k_r, k_c and the chain are of the robot, not of the coordinates."""
     size = model.stiffness.shape[0]
     T = np.random.default_rng(seed).normal(size=(size, size))
@@ -186,7 +192,7 @@ def test_no_change_of_coordinates_moves_the_physics(model, seed):
         assert float(b) == pytest.approx(float(a), rel=1e-5)
 
 
-def test_the_papers_second_mass_is_moved_by_coordinates():
+def test_the_papers_second_mass_is_moved_by_coordinates() -> None:
     """m_a is a least-squares fit in the Frobenius norm, which no change of coordinates respects."""
     model = random_linear_model(2, 4)
     random = np.random.default_rng(0)
@@ -203,7 +209,7 @@ def test_the_papers_second_mass_is_moved_by_coordinates():
 
 @LAWS
 @given(linear_models())
-def test_the_complement_does_not_move_the_contact(model):
+def test_the_complement_does_not_move_the_contact(model: LinearModel) -> None:
     """S = I − J_c# J_c: J_c S = 0, S J_c# = 0, S² = S, and N = M0 S is symmetric (MSM Eq. 66)."""
     mode = contact_mode(model)
     j = np.array(model.jacobian)
@@ -219,7 +225,9 @@ def test_the_complement_does_not_move_the_contact(model):
 
 @LAWS
 @given(arms(4, 6), vectors(6), seeds)
-def test_least_velocity_has_no_part_that_leaves_the_point_at_rest(robot, q, seed):
+def test_least_velocity_has_no_part_that_leaves_the_point_at_rest(
+    robot: Robot, q: Array, seed: int
+) -> None:
     q, n = q[: robot.n], unit_vector(seed)
     J = np.array(impact_model(robot).jacobian(q))
     assume(np.linalg.cond(J) < 1e3)
@@ -231,7 +239,7 @@ def test_least_velocity_has_no_part_that_leaves_the_point_at_rest(robot, q, seed
 
 @LAWS
 @given(arms(), vectors(5), seeds)
-def test_heavier_is_harder(robot, q, seed):
+def test_heavier_is_harder(robot: Robot, q: Array, seed: int) -> None:
     """Mass added to the last body never lowers m_c."""
     q, n = q[: robot.n], unit_vector(seed)
     last = robot.joints[-1]

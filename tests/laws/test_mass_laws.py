@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Laws of rigid-body dynamics, on random robots."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import replace
 
 import casadi as ca
@@ -13,6 +16,8 @@ from random_robots import robots, vectors
 from softimpact.symbolic import (
     Frame,
     JointKind,
+    Matrix,
+    Robot,
     bias_torques,
     frame_jacobian,
     frame_pose,
@@ -21,7 +26,7 @@ from softimpact.symbolic import (
     potential_energy,
     stiffness_of_potential,
 )
-from softimpact.symbolic.rigid import Placement
+from softimpact.symbolic.rigid import Array, Placement
 from softimpact.symbolic.robot import BASE
 
 GRAVITY = (0.7, -1.1, -9.81)
@@ -29,15 +34,15 @@ STEP = 1e-5
 LAWS = settings(max_examples=40)
 
 
-def slope(quantity, q, along):
+def slope(quantity: Callable[[Array], Matrix], q: Array, along: Array) -> Array:
     """Derivative of a quantity along a direction, by central differences."""
     ahead, behind = quantity(q + STEP * along), quantity(q - STEP * along)
-    return (np.array(ahead) - np.array(behind)) / (2 * STEP)
+    return np.asarray((np.array(ahead) - np.array(behind)) / (2 * STEP))
 
 
 @LAWS
 @given(robots(), vectors(5))
-def test_mass_matrix_is_symmetric_and_positive_definite(robot, q):
+def test_mass_matrix_is_symmetric_and_positive_definite(robot: Robot, q: Array) -> None:
     M = np.array(mass_matrix(robot, q[: robot.n]))
     assert np.array_equal(M, M.T)
     assert np.linalg.eigvalsh(M).min() > 0
@@ -45,7 +50,9 @@ def test_mass_matrix_is_symmetric_and_positive_definite(robot, q):
 
 @LAWS
 @given(robots(), vectors(5), vectors(5))
-def test_kinetic_energy_is_that_of_the_moving_masses(robot, q, velocity):
+def test_kinetic_energy_is_that_of_the_moving_masses(
+    robot: Robot, q: Array, velocity: Array
+) -> None:
     """½ q̇ᵀ M q̇ = Σ ½ (m |v_c|² + ωᵀ I ω), body by body."""
     q, velocity = q[: robot.n], velocity[: robot.n]
     frames = {}
@@ -67,7 +74,7 @@ def test_kinetic_energy_is_that_of_the_moving_masses(robot, q, velocity):
 
 @LAWS
 @given(robots(), vectors(5), vectors(5))
-def test_coriolis_forces_do_no_work(robot, q, velocity):
+def test_coriolis_forces_do_no_work(robot: Robot, q: Array, velocity: Array) -> None:
     """q̇ᵀ(Ṁ q̇ − 2 h) = 0: what they take from one joint they give to another."""
     q, v = q[: robot.n], velocity[: robot.n]
     M_dot = slope(lambda x: mass_matrix(robot, x), q, v)
@@ -78,7 +85,9 @@ def test_coriolis_forces_do_no_work(robot, q, velocity):
 
 @LAWS
 @given(robots(max_joints=4), vectors(4), vectors(4))
-def test_coriolis_forces_follow_from_the_mass_matrix(robot, q, velocity):
+def test_coriolis_forces_follow_from_the_mass_matrix(
+    robot: Robot, q: Array, velocity: Array
+) -> None:
     """h = Ṁ q̇ − ½ ∂(q̇ᵀ M q̇)/∂q (Lagrange)."""
     q, v = q[: robot.n], velocity[: robot.n]
     x = ca.SX.sym("x", robot.n)
@@ -91,7 +100,7 @@ def test_coriolis_forces_follow_from_the_mass_matrix(robot, q, velocity):
 
 @LAWS
 @given(robots(), vectors(5), vectors(5))
-def test_gravity_torques_are_the_work_gravity_takes(robot, q, along):
+def test_gravity_torques_are_the_work_gravity_takes(robot: Robot, q: Array, along: Array) -> None:
     q, d = q[: robot.n], along[: robot.n]
     work = slope(lambda x: potential_energy(robot, x, GRAVITY), q, d).item()
     torques = np.array(gravity_torques(robot, q, GRAVITY)).ravel()
@@ -102,7 +111,9 @@ def test_gravity_torques_are_the_work_gravity_takes(robot, q, along):
 
 @LAWS
 @given(robots(), vectors(5), vectors(5))
-def test_gravity_hessian_is_the_slope_of_gravity_torques(robot, q, along):
+def test_gravity_hessian_is_the_slope_of_gravity_torques(
+    robot: Robot, q: Array, along: Array
+) -> None:
     q, d = q[: robot.n], along[: robot.n]
     H = np.array(stiffness_of_potential(robot, q, GRAVITY))
     assert_near(H, H.T, 1e-12)
@@ -112,7 +123,7 @@ def test_gravity_hessian_is_the_slope_of_gravity_torques(robot, q, along):
 
 @LAWS
 @given(robots(), vectors(5))
-def test_the_only_joint_at_the_base_changes_no_inertia(robot, q):
+def test_the_only_joint_at_the_base_changes_no_inertia(robot: Robot, q: Array) -> None:
     """M does not see where all that moves has been taken together."""
     q = q[: robot.n]
     moved = q.copy()
@@ -123,6 +134,6 @@ def test_the_only_joint_at_the_base_changes_no_inertia(robot, q):
 
 @LAWS
 @given(robots(kinds=(JointKind.HINGE,)), vectors(5))
-def test_hinges_come_back_after_a_turn(robot, q):
+def test_hinges_come_back_after_a_turn(robot: Robot, q: Array) -> None:
     q = q[: robot.n]
     assert_near(mass_matrix(robot, q + 2 * np.pi), mass_matrix(robot, q), 1e-9)

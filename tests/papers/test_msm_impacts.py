@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from softimpact.studio.reproduce_msm import printed
 
 from softimpact.simulate import simulate_impact
+from softimpact.studio.reproduce_msm import printed
 from softimpact.studio.reproduce_msm.ladder import impact_at
 from softimpact.studio.reproduce_msm.scenarios import SCENARIOS
 from softimpact.symbolic import Contact, body_region
@@ -108,4 +108,5 @@ def test_contact_points_arrive_as_told(name: str) -> None:
     moved = np.array(model.jacobian(approach.q)) @ approach.link_velocity
     assert moved == pytest.approx(approach.direction, abs=1e-12)
     assert approach.speed == 0.7
+    assert approach.link_velocity is not None
     assert not approach.link_velocity[~np.array(model.actuated)].any()

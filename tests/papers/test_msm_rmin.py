@@ -5,12 +5,17 @@ The distance of the motors is not printed; 0.263 m is inferred from the two refl
 passive joints rest where springs and gravity balance.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from softimpact.symbolic import (
+    Chain,
+    ImpactModel,
+    Robot,
     approach_velocity,
     chain,
     configuration_at_rest,
@@ -18,7 +23,7 @@ from softimpact.symbolic import (
     impact_model,
     load_robot,
 )
-from softimpact.symbolic.rigid import Placement
+from softimpact.symbolic.rigid import Array, Placement
 
 GRAVITY = (0.0, 0.0, -9.81)
 MOTORS = np.radians([-130.6, -50.0])
@@ -31,16 +36,20 @@ PROPORTIONAL_GAIN = 1076.0
 scenarios = pytest.mark.parametrize("scenario", TIPS)
 
 
-def robot_with(k_s=351.0, distance=0.263):
+def robot_with(k_s: float = 351.0, distance: float = 0.263) -> Robot:
     """Return R-Min with other springs or another distance of its motors."""
     robot = load_robot("rmin")
     joints = [replace(j, stiffness=k_s if j.stiffness else 0.0) for j in robot.joints]
     base = joints[3].placement
-    joints[3] = replace(joints[3], placement=Placement(base.rotation, [distance, 0.0, 0.0]))
+    joints[3] = replace(
+        joints[3], placement=Placement(base.rotation, np.array([distance, 0.0, 0.0]))
+    )
     return replace(robot, joints=tuple(joints))
 
 
-def at_rest(scenario, k_s=351.0, gain=None, distance=0.263):
+def at_rest(
+    scenario: str, k_s: float = 351.0, gain: float | None = None, distance: float = 0.263
+) -> tuple[ImpactModel, Array]:
     """Return a scenario's model and configuration."""
     robot = robot_with(k_s, distance)
     given = drives(robot, computed_torque_gain=gain)
@@ -49,7 +58,7 @@ def at_rest(scenario, k_s=351.0, gain=None, distance=0.263):
 
 
 @scenarios
-def test_reflected_masses_are_the_printed_ones(scenario):
+def test_reflected_masses_are_the_printed_ones(scenario: str) -> None:
     model, q = at_rest(scenario)
     m_c = float(model.reflected_mass(q, ALONG_X))
     assert round(m_c, 2) == PRINTED_MASS[scenario]
@@ -57,7 +66,7 @@ def test_reflected_masses_are_the_printed_ones(scenario):
 
 
 @pytest.mark.parametrize("distance", [0.257, 0.269])
-def test_another_distance_of_the_motors_gives_other_masses(distance):
+def test_another_distance_of_the_motors_gives_other_masses(distance: float) -> None:
     masses = {}
     for scenario in TIPS:
         model, q = at_rest(scenario, distance=distance)
@@ -69,7 +78,9 @@ def test_another_distance_of_the_motors_gives_other_masses(distance):
     ("scenario", "found", "printed"),
     [("e", (-2.786, -2.799), (-2.80, -2.74)), ("f", (-2.786, -5.067), (-2.80, -5.00))],
 )
-def test_motor_rates_are_near_the_printed_ones(scenario, found, printed):
+def test_motor_rates_are_near_the_printed_ones(
+    scenario: str, found: Chain, printed: list[float]
+) -> None:
     """No distance gives all printed rates; ours are within 2.5 % of them."""
     model, q = at_rest(scenario, k_s=5e4)
     rates = approach_velocity(model, q, ALONG_X)
@@ -91,7 +102,7 @@ REDUCED = {
 
 
 @pytest.mark.parametrize(("scenario", "k_s"), REDUCED)
-def test_reduced_parameters(scenario, k_s):
+def test_reduced_parameters(scenario: str, k_s: float) -> None:
     found = []
     for gain in (None, PROPORTIONAL_GAIN):
         model, q = at_rest(scenario, k_s, gain)
@@ -100,7 +111,7 @@ def test_reduced_parameters(scenario, k_s):
     assert found == pytest.approx(REDUCED[scenario, k_s], rel=5e-4)
 
 
-def test_the_mass_behind_the_end_point_is_small_and_behind_the_elbow_large():
+def test_the_mass_behind_the_end_point_is_small_and_behind_the_elbow_large() -> None:
     """Which is why springs matter for f and not for e (MSM §3.3.4)."""
     parts = {}
     for scenario in TIPS:
@@ -112,7 +123,7 @@ def test_the_mass_behind_the_end_point_is_small_and_behind_the_elbow_large():
 
 
 @scenarios
-def test_k_r_is_nearly_proportional_to_k_s(scenario):
+def test_k_r_is_nearly_proportional_to_k_s(scenario: str) -> None:
     """Fig. 13; arms misaligned by gravity keep it from being exactly so."""
     ratios = [
         float(model.reduced(q, ALONG_X).k_r) / k_s
@@ -124,7 +135,7 @@ def test_k_r_is_nearly_proportional_to_k_s(scenario):
 
 
 @scenarios
-def test_chain_of_two_has_a_mass_that_does_not_depend_on_coordinates(scenario):
+def test_chain_of_two_has_a_mass_that_does_not_depend_on_coordinates(scenario: str) -> None:
     model, q = at_rest(scenario)
     second = float(chain(model.linear(q, ALONG_X), 2).mass[1])
     other = replace(model.robot, independent=("q11", "q21", "q12", "q22"))

@@ -7,6 +7,8 @@ Frobenius' with orthonormal rows J_a, and the contact normal is the contact poin
 motion for q̇ = [1, 0, 0, 0]. The printed numbers stand beside, with how far they are off.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -14,7 +16,15 @@ import numpy as np
 import pytest
 from linear_models import nullspace, transformed, with_nullspace
 
-from softimpact.symbolic import chain, drives, impact_model, load_robot, reduce_to_two_masses
+from softimpact.symbolic import (
+    LinearModel,
+    chain,
+    drives,
+    impact_model,
+    load_robot,
+    reduce_to_two_masses,
+)
+from softimpact.symbolic.rigid import Array
 
 COMPUTED_TORQUE_GAIN = 6050.0
 STIFFNESS = 1e4
@@ -29,7 +39,7 @@ class Scenario:
     """A column of MSM §3.2.3: recomputed and printed m_c [kg], k_r [N/m], m_a [kg]."""
 
     tip: str
-    q: np.ndarray
+    q: Array
     recomputed: tuple[float, float, float]
     printed: tuple[float, float, float]
 
@@ -44,7 +54,7 @@ SCENARIOS = {
 scenarios = pytest.mark.parametrize("scenario", SCENARIOS.values(), ids=SCENARIOS)
 
 
-def linear(scenario, gain=COMPUTED_TORQUE_GAIN):
+def linear(scenario: Scenario, gain: float = COMPUTED_TORQUE_GAIN) -> LinearModel:
     """Return M0, K0 and J_c of a scenario."""
     robot = load_robot("rr")
     model = impact_model(robot, scenario.tip, drives_=drives(robot, computed_torque_gain=gain))
@@ -53,14 +63,14 @@ def linear(scenario, gain=COMPUTED_TORQUE_GAIN):
 
 
 @scenarios
-def test_reduced_parameters_are_the_recomputed_ones(scenario):
+def test_reduced_parameters_are_the_recomputed_ones(scenario: Scenario) -> None:
     reduced = reduce_to_two_masses(linear(scenario))
     found = [float(reduced.m_c), float(reduced.k_r), float(reduced.m_a)]
     assert found == pytest.approx(scenario.recomputed, rel=THREE_DIGITS)
 
 
 @scenarios
-def test_reduced_parameters_are_near_the_printed_ones(scenario):
+def test_reduced_parameters_are_near_the_printed_ones(scenario: Scenario) -> None:
     """m_c and k_r to their last printed digit; m_a, whose last digit differs, within 0.4 %."""
     reduced = reduce_to_two_masses(linear(scenario))
     m_c, k_r, m_a = scenario.printed
@@ -70,7 +80,7 @@ def test_reduced_parameters_are_near_the_printed_ones(scenario):
 
 
 @scenarios
-def test_an_explicit_nullspace_gives_the_same(scenario):
+def test_an_explicit_nullspace_gives_the_same(scenario: Scenario) -> None:
     model = linear(scenario)
     reduced = reduce_to_two_masses(model)
     expected = with_nullspace(model, nullspace(model, 1))
@@ -78,7 +88,7 @@ def test_an_explicit_nullspace_gives_the_same(scenario):
     assert found == pytest.approx(expected, rel=1e-9)
 
 
-def test_k_r_follows_the_joint_stiffness_in_a_straight_line():
+def test_k_r_follows_the_joint_stiffness_in_a_straight_line() -> None:
     """Without a controller K0 is k_s alone; MSM calls Fig. 5 quasi-linear."""
     scenario = SCENARIOS["a"]
     robot = load_robot("rr")
@@ -103,10 +113,10 @@ ABSOLUTE_ANGLES = {
 
 
 @pytest.mark.parametrize(("name", "gain"), ABSOLUTE_ANGLES)
-def test_m_a_depends_on_the_choice_of_angles_and_the_chain_does_not(name, gain):
+def test_m_a_depends_on_the_choice_of_angles_and_the_chain_does_not(name: str, gain: float) -> None:
     """The same robot in relative and in absolute angles: m_a of (b) is 16.9 or 5.9 kg."""
     relative = linear(SCENARIOS[name], gain)
-    absolute = transformed(relative, np.linalg.inv(RELATIVE_TO_ABSOLUTE))
+    absolute = transformed(relative, np.asarray(np.linalg.inv(RELATIVE_TO_ABSOLUTE), dtype=float))
     ours, theirs = reduce_to_two_masses(relative), reduce_to_two_masses(absolute)
     assert float(theirs.m_c) == pytest.approx(float(ours.m_c), rel=1e-12)
     assert float(theirs.k_r) == pytest.approx(float(ours.k_r), rel=1e-12)

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every built-in robot follows docs/adding-a-robot.md."""
 
+from __future__ import annotations
+
 import re
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -10,7 +13,14 @@ import pytest
 from oracles import Mujoco, assert_near, configurations
 
 from softimpact.robots import FOLDER, built_in_robots
-from softimpact.symbolic import bias_torques, frame_jacobian, impact_model, load_robot, mass_matrix
+from softimpact.symbolic import (
+    Robot,
+    bias_torques,
+    frame_jacobian,
+    impact_model,
+    load_robot,
+    mass_matrix,
+)
 
 LICENSE_LINE = "<!-- SPDX-License-Identifier: BSD-3-Clause -->"
 LIGHTEST, HEAVIEST = 0.1, 500.0
@@ -18,25 +28,25 @@ LIGHTEST, HEAVIEST = 0.1, 500.0
 
 
 @pytest.fixture(params=built_in_robots(), scope="module")
-def name(request):
-    return request.param
+def name(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
 
 
 @pytest.fixture(scope="module")
-def path(name):
+def path(name: str) -> Path:
     return built_in_robots()[name]
 
 
 @pytest.fixture(scope="module")
-def robot(name):
+def robot(name: str) -> Robot:
     return load_robot(name)
 
 
-def test_there_are_robots():
+def test_there_are_robots() -> None:
     assert {"panda", "rr"} <= set(built_in_robots())
 
 
-def test_file_starts_with_its_licence_and_cites_sources(path):
+def test_file_starts_with_its_licence_and_cites_sources(path: Path) -> None:
     text = path.read_text()
     assert text.splitlines()[0] == LICENSE_LINE
     comments = re.findall(r"<!--(.*?)-->", text.split("<mujoco")[0], re.DOTALL)[1:]
@@ -45,33 +55,34 @@ def test_file_starts_with_its_licence_and_cites_sources(path):
     assert re.search(r"\b(19|20)\d\d\b|\w+/\w+", cited), "name a year or a repository's file"
 
 
-def test_model_is_named_like_the_file_and_needs_no_other(path):
+def test_model_is_named_like_the_file_and_needs_no_other(path: Path) -> None:
     root = ET.parse(path).getroot()
     assert root.tag == "mujoco"
     assert root.get("model") == path.stem
     assert not [element.tag for element in root.iter() if "file" in element.attrib]
 
 
-def test_tip_is_a_site_that_moves(path, robot):
+def test_tip_is_a_site_that_moves(path: Path, robot: Robot) -> None:
     sites = {site.get("name") for site in ET.parse(path).getroot().iter("site")}
     assert robot.tip in sites
+    assert robot.tip is not None
     q = next(configurations(robot, 1))
     assert np.linalg.norm(frame_jacobian(robot, robot.tip, q)[:3, :].full()) > 0
 
 
-def test_every_joint_has_a_name_of_its_own(path, robot):
+def test_every_joint_has_a_name_of_its_own(path: Path, robot: Robot) -> None:
     names = [joint.get("name") for joint in ET.parse(path).getroot().iter("joint")]
     assert tuple(names) == robot.joint_names
     assert len(set(names)) == robot.n
 
 
-def test_limits_are_sane(robot):
+def test_limits_are_sane(robot: Robot) -> None:
     for joint in robot.joints:
         assert joint.lower < joint.upper
         assert np.isinf(joint.lower) == np.isinf(joint.upper)
 
 
-def test_rotors_are_sane(robot):
+def test_rotors_are_sane(robot: Robot) -> None:
     assert (robot.armature >= 0).all()
     for values in robot.rotor_inertia_sets.values():
         assert len(values) == robot.n
@@ -81,12 +92,13 @@ def test_rotors_are_sane(robot):
         assert any(np.array_equal(values, robot.armature) for values in sets)
 
 
-def test_masses_are_sane(path):
+def test_masses_are_sane(path: Path) -> None:
     model = mujoco.MjModel.from_xml_path(str(path))
     assert LIGHTEST < model.body_mass.sum() < HEAVIEST
 
 
-def test_mujoco_agrees_about_the_dynamics(path, robot):
+def test_mujoco_agrees_about_the_dynamics(path: Path, robot: Robot) -> None:
+    assert robot.tip is not None
     oracle = Mujoco(path)
     random = np.random.default_rng(0)
     for q in configurations(robot, 3):
@@ -98,12 +110,13 @@ def test_mujoco_agrees_about_the_dynamics(path, robot):
         assert_near(frame_jacobian(robot, robot.tip, q), oracle.site_jacobian(robot.tip))
 
 
-def test_it_can_hit_something(robot):
+def test_it_can_hit_something(robot: Robot) -> None:
     model = impact_model(robot)
+    assert robot.tip is not None
     q = next(configurations(robot, 1))
     moves = np.linalg.svd(model.jacobian(q).full())[0][:, 0]  # where the tip moves most easily
     assert 0 < float(model.reflected_mass(q, moves)) < HEAVIEST
 
 
-def test_built_in_robots_ship_with_the_package():
+def test_built_in_robots_ship_with_the_package() -> None:
     assert all(path.parent == FOLDER for path in built_in_robots().values())

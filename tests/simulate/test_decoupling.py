@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
+from impact_cases import ALONG_Y, HEAD, POSE
 
 from softimpact.simulate import (
     Approach,
@@ -18,17 +20,14 @@ from softimpact.simulate import (
     simulate_impact,
 )
 from softimpact.symbolic import (
-    Contact,
     ImpactModel,
     InvalidValue,
     Robot,
-    body_region,
     drives,
     impact_model,
     load_robot,
 )
 
-HEAD = Contact(body_region("head"))
 NOMINAL = 1e4
 CONTROLLER = Controller(6050.0, 121.0, 1.25e5)
 STRAIGHT = Approach(np.zeros(4), np.array([0.0, 1.0, 0.0]), 1.0, np.array([1.0, 0.0, 0.0, 0.0]))
@@ -81,13 +80,11 @@ def test_the_paper_stops_a_step_of_its_grid_below(rr: ImpactModel) -> None:
 
 
 def test_the_unit_of_stiffness_does_not_matter(rr: ImpactModel) -> None:
+    def case(unit: float, k: float) -> tuple[ImpactModel, Approach]:
+        return scaled_springs(rr, k * unit / NOMINAL), STRAIGHT
+
     found = [
-        decoupling_stiffness(
-            lambda k, unit=unit: (scaled_springs(rr, k * unit / NOMINAL), STRAIGHT),
-            HEAD,
-            (2e3 / unit, 1e4 / unit),
-            "two_mass",
-        )
+        decoupling_stiffness(partial(case, unit), HEAD, (2e3 / unit, 1e4 / unit), "two_mass")
         for unit in (1.0, 1e3)
     ]
     assert found[0].isolated is not None
@@ -97,9 +94,7 @@ def test_the_unit_of_stiffness_does_not_matter(rr: ImpactModel) -> None:
 
 def test_springs_soft_enough_decouple_everywhere(panda: Robot) -> None:
     model = impact_model(panda, drives_=drives(panda, 1.0))
-    approach = Approach(
-        np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5]), np.array([0.0, 1.0, 0.0]), 1.0
-    )
+    approach = Approach(POSE, ALONG_Y, 1.0)
 
     def case(stiffness: float) -> tuple[ImpactModel, Approach]:
         return scaled_springs(model, stiffness), approach
@@ -119,6 +114,12 @@ def test_all_springs_are_scaled(panda: Robot) -> None:
 def test_a_range_is_needed(rr: ImpactModel, between: tuple[float, float]) -> None:
     with pytest.raises(InvalidValue, match="between"):
         decoupling_stiffness(lambda _: (rr, STRAIGHT), HEAD, between)
+
+
+@pytest.mark.parametrize("accuracy", [0.0, 1e-20, 2.0, np.nan])
+def test_an_accuracy_that_cannot_be_met_is_refused(rr: ImpactModel, accuracy: float) -> None:
+    with pytest.raises(InvalidValue, match="accuracy"):
+        decoupling_stiffness(lambda _: (rr, STRAIGHT), HEAD, (1e3, 2e3), accuracy=accuracy)
 
 
 def test_a_range_that_starts_too_stiff_is_refused(rr: ImpactModel) -> None:

@@ -8,7 +8,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from mujoco_impacts import node_after
+from impact_cases import ALONG_Y, CHEST, HEAD, POSE
+from mujoco_impacts import extrapolated, impact_forces
 from oracles import configurations
 
 from softimpact.robots import built_in_robots
@@ -19,18 +20,12 @@ from softimpact.symbolic import (
     InvalidValue,
     Robot,
     approach_velocity,
-    body_region,
     drives,
     impact_model,
     load_robot,
     unit_direction,
 )
 from softimpact.symbolic.rigid import Array
-
-HEAD = Contact(body_region("head"))
-CHEST = Contact(body_region("chest"))
-POSE = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
-ALONG_Y = np.array([0.0, 1.0, 0.0])
 
 
 def with_elastic_joints(path: Path, stiffness: float) -> mujoco.MjModel:
@@ -47,33 +42,22 @@ def with_elastic_joints(path: Path, stiffness: float) -> mujoco.MjModel:
 
 def peak_by_mujoco(
     model: mujoco.MjModel,
+    ours: ImpactModel,
     approach: Approach,
-    link_velocity: Array,
     coordinates: slice,
-    site: str,
     contact: Contact,
     duration: float,
 ) -> float:
-    """Step MuJoCo by 5 µs with the contact force applied from outside; return the largest."""
-    data = mujoco.MjData(model)
-    model.opt.timestep, model.opt.integrator = 5e-6, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    data.qpos[coordinates] = approach.q
-    data.qvel[coordinates] = approach.speed * link_velocity
-    mujoco.mj_forward(model, data)
-    point, n = model.site(site), unit_direction(approach.direction)
-    start, body = data.site_xpos[point.id].copy(), int(np.ravel(point.bodyid)[0])
-    x_0, highest, step = 0.0, 0.0, model.opt.timestep
-    for _ in range(round(duration / step)):
-        x_c = float(n @ (data.site_xpos[point.id] - start))
-        x_0 = node_after(step, x_0, x_c, contact)
-        force = contact.hertz_stiffness * max(x_c - x_0, 0.0) ** 1.5
-        highest = max(highest, force)
-        data.qfrc_applied[:] = 0
-        mujoco.mj_applyFT(
-            model, data, -force * n, np.zeros(3), data.site_xpos[point.id], body, data.qfrc_applied
-        )
-        mujoco.mj_step(model, data)
-    return highest
+    """Return MuJoCo's largest force; the approach's q are some of its coordinates."""
+    n = unit_direction(approach.direction)
+
+    def forces(step: float) -> Array:
+        data = mujoco.MjData(model)
+        data.qpos[coordinates] = approach.q
+        data.qvel[coordinates] = approach.speed * approach_velocity(ours, approach.q, n)
+        return impact_forces(model, data, ours.tip, n, contact, duration, step)
+
+    return float(extrapolated(forces).max())
 
 
 def test_panda_agrees_with_mujoco(panda: Robot) -> None:
@@ -83,14 +67,13 @@ def test_panda_agrees_with_mujoco(panda: Robot) -> None:
     linear = simulate_impact(model, approach, HEAD)
     theirs = peak_by_mujoco(
         with_elastic_joints(built_in_robots()["panda"], 3e3),
+        model,
         approach,
-        approach_velocity(model, POSE, unit_direction(approach.direction)),
         slice(0, None, 2),  # motors; deflections are between them
-        "hand_tcp",
         HEAD,
         ours.time_of_first_contact_peak + 1e-3,
     )
-    assert ours.first_contact == pytest.approx(theirs, rel=1e-3)
+    assert ours.first_contact == pytest.approx(theirs, rel=2e-5)
     assert abs(ours.first_contact - theirs) < 0.3 * abs(linear.first_contact - theirs)
 
 
@@ -102,14 +85,13 @@ def test_rr_agrees_with_mujoco() -> None:
     linear = simulate_impact(model, approach, CHEST)
     theirs = peak_by_mujoco(
         mujoco.MjModel.from_xml_path(str(built_in_robots()["rr"])),
+        model,
         approach,
-        approach_velocity(model, approach.q, unit_direction(approach.direction)),
         slice(None),
-        "P",
         CHEST,
         ours.time_of_first_contact_peak + 1e-3,
     )
-    assert ours.first_contact == pytest.approx(theirs, rel=1e-3)
+    assert ours.first_contact == pytest.approx(theirs, rel=2e-5)
     assert abs(ours.first_contact - theirs) < 0.3 * abs(linear.first_contact - theirs)
 
 

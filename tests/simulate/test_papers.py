@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.simulate.events import first_contact
 from softimpact.simulate.linear import LinearSystem, modal_scene
-from softimpact.symbolic import Contact, body_region, drives, impact_model, load_robot
+from softimpact.symbolic import Contact, ImpactModel, body_region, drives, impact_model, load_robot
 
 COMPUTED_TORQUE_GAIN = 6050.0
 FOLDED = [0.0, 0.0, np.pi / 3, 0.0]
@@ -26,7 +26,7 @@ MSM_RR = [
 ]
 
 
-def turned_by_first_motor(tip: str, q: list[float]) -> tuple[object, Approach]:
+def turned_by_first_motor(tip: str, q: list[float]) -> tuple[ImpactModel, Approach]:
     robot = load_robot("rr")
     model = impact_model(
         robot, tip, drives_=drives(robot, computed_torque_gain=COMPUTED_TORQUE_GAIN)
@@ -68,7 +68,8 @@ def peak_from_energy(mass: float, speed: float, contact: Contact) -> float:
     k_f, k_h = contact.hertz_stiffness, contact.region.stiffness
 
     def missing(force: float) -> float:
-        return 0.4 * k_f * (force / k_f) ** (5 / 3) + force**2 / (2 * k_h) - mass * speed**2 / 2
+        stored = 0.4 * k_f * (force / k_f) ** (5 / 3) + force**2 / (2 * k_h)
+        return float(stored - mass * speed**2 / 2)
 
     return float(brentq(missing, 0, 1e6, xtol=1e-9, rtol=1e-14))
 

@@ -37,7 +37,8 @@ def by_scipy(
     flexibility, push = np.linalg.solve(M, K), np.linalg.solve(M, J)
 
     def force(state: Array) -> Array:
-        return contact.hertz_stiffness * np.maximum(J @ state[:size] - state[-1], 0) ** 1.5
+        depth = np.maximum(J @ state[:size] - state[-1], 0)
+        return np.asarray(contact.hertz_stiffness * depth**1.5)
 
     def rate(_: float, state: Array) -> Array:
         z, dz = state[:size], state[size : 2 * size]

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The chain against a dense Lanczos recurrence, SciPy's eigenvalues and the paper's J_x."""
 
+from __future__ import annotations
+
+from pathlib import Path
+
 import casadi as ca
 import numpy as np
 import pytest
@@ -18,10 +22,13 @@ from linear_models import (
     transformed,
 )
 from oracles import assert_near
+from symbol_kinds import KINDS
 
 from softimpact.symbolic import (
+    Chain,
     InvalidValue,
     LinearModel,
+    Matrix,
     chain,
     drives,
     free_end,
@@ -30,17 +37,18 @@ from softimpact.symbolic import (
     reduce_to_two_masses,
 )
 from softimpact.symbolic.elastic import DenseMass
+from softimpact.symbolic.rigid import Array
 
 POSE = np.array([0.1, 0.3, -0.2, -2.0, 0.4, 1.8, 0.6])
 ALONG_Y = np.array([0.0, 1.0, 0.0])
 
 
-def numbers(found):
+def numbers(found: Chain) -> tuple[Array, Array]:
     """Masses and springs of a numeric chain."""
     return np.array([float(m) for m in found.mass]), np.array([float(k) for k in found.stiffness])
 
 
-def matrices(mass, stiffness):
+def matrices(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     """M and K of a chain, by hand: spring i joins masses i and i+1, the last one the ground."""
     n = len(mass)
     K = np.zeros((n, n))
@@ -55,7 +63,7 @@ def matrices(mass, stiffness):
 
 @settings(max_examples=50)
 @given(linear_models(6), st.integers(1, 4))
-def test_chain_is_the_dense_lanczos_recurrence(model, order):
+def test_chain_is_the_dense_lanczos_recurrence(model: LinearModel, order: int) -> None:
     order = min(order, model.stiffness.shape[0])
     diagonal, beside, _ = lanczos(model, order)
     m, k = numbers(chain(model, order))
@@ -67,7 +75,7 @@ def test_chain_is_the_dense_lanczos_recurrence(model, order):
 
 
 @given(linear_models())
-def test_first_mass_and_spring_are_those_of_the_paper(model):
+def test_first_mass_and_spring_are_those_of_the_paper(model: LinearModel) -> None:
     m, k = numbers(chain(model, 2))
     reduced = reduce_to_two_masses(model)
     assert m[0] == pytest.approx(float(reduced.m_c), rel=1e-12)
@@ -75,14 +83,14 @@ def test_first_mass_and_spring_are_those_of_the_paper(model):
 
 
 @given(linear_models(), st.integers(0, 1000))
-def test_second_mass_is_the_inertia_of_the_papers_coordinate(model, seed):
+def test_second_mass_is_the_inertia_of_the_papers_coordinate(model: LinearModel, seed: int) -> None:
     """m_2 = (J_x M_a⁻¹ J_xᵀ)⁻¹ for every nullspace."""
     m, _ = numbers(chain(model, 2, "free"))
     assert m[1] == pytest.approx(second_mass(model, nullspace(model, seed)), rel=1e-9)
 
 
 @pytest.mark.parametrize("size", [2, 3, 5, 8])
-def test_full_chain_has_the_models_frequencies(size):
+def test_full_chain_has_the_models_frequencies(size: int) -> None:
     model = random_linear_model(size, size)
     found = chain(model, size, reorthogonalise=True)
     mass, stiffness = matrices(*numbers(found))
@@ -93,7 +101,7 @@ def test_full_chain_has_the_models_frequencies(size):
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4])
-def test_chain_of_order_r_keeps_2r_moments(order):
+def test_chain_of_order_r_keeps_2r_moments(order: int) -> None:
     """J_c (M0⁻¹K0)^k M0⁻¹ J_cᵀ for k < 2r: the response to a push, in powers of time."""
     model = random_linear_model(11, 7)
     M, K, j = dense(model)
@@ -107,7 +115,7 @@ def test_chain_of_order_r_keeps_2r_moments(order):
 
 
 @given(linear_models(6))
-def test_masses_move_by_their_displacement(model):
+def test_masses_move_by_their_displacement(model: LinearModel) -> None:
     """Wᵀ Δq of the contact mass is J_c Δq; W is orthogonal in M0⁻¹, with 1/m on the diagonal."""
     found = chain(model, 3 if model.stiffness.shape[0] > 2 else 2)
     M, _, j = dense(model)
@@ -118,7 +126,7 @@ def test_masses_move_by_their_displacement(model):
     assert_near(gram, np.eye(found.order), 1e-7)
 
 
-def test_reorthogonalising_changes_nothing_but_rounding():
+def test_reorthogonalising_changes_nothing_but_rounding() -> None:
     model = random_linear_model(3, 8)
     plain = chain(model, 4)
     for careful in (True, "once"):
@@ -127,7 +135,7 @@ def test_reorthogonalising_changes_nothing_but_rounding():
             assert_near(ours, theirs, 1e-9)
 
 
-def test_free_end_drops_the_last_spring():
+def test_free_end_drops_the_last_spring() -> None:
     model = random_linear_model(3, 6)
     grounded, free = chain(model, 3), chain(model, 3, "free")
     assert_near(numbers(free)[0], numbers(grounded)[0], 0)
@@ -135,8 +143,8 @@ def test_free_end_drops_the_last_spring():
     assert_near(numbers(free_end(grounded))[1], numbers(free)[1], 0)
 
 
-def test_a_chain_is_its_own_chain():
-    mass, stiffness = [0.7, 2.0, 5.0], [3e4, 1e4, 2e3]
+def test_a_chain_is_its_own_chain() -> None:
+    mass, stiffness = np.array([0.7, 2.0, 5.0]), np.array([3e4, 1e4, 2e3])
     M, K = matrices(mass, stiffness)
     model = LinearModel(DenseMass(ca.DM(M)), ca.DM(K), ca.DM([[1.0, 0, 0]]))
     m, k = numbers(chain(model, 3))
@@ -144,7 +152,7 @@ def test_a_chain_is_its_own_chain():
     assert k == pytest.approx(stiffness, rel=1e-8)
 
 
-def test_chain_closes_where_springs_reach_no_further():
+def test_chain_closes_where_springs_reach_no_further() -> None:
     """RR without gains: two springs, so three masses are exact and a fourth does not exist."""
     model = impact_model(load_robot("rr"), drives_=drives(load_robot("rr")))
     linear = model.linear(np.array([0, 0, np.pi / 3, 0]), np.array([0.6, 0.8, 0]))
@@ -157,7 +165,7 @@ def test_chain_closes_where_springs_reach_no_further():
     assert_near(ours[-2:], squares[-2:], 1e-9)
 
 
-def test_chain_of_a_rigid_robot_without_gains_is_one_free_mass():
+def test_chain_of_a_rigid_robot_without_gains_is_one_free_mass() -> None:
     model = impact_model(load_robot("panda"))
     found = model.chain(POSE, ALONG_Y, 3)
     m, k = numbers(found)
@@ -166,7 +174,7 @@ def test_chain_of_a_rigid_robot_without_gains_is_one_free_mass():
     assert m[0] == pytest.approx(float(model.reflected_mass(POSE, ALONG_Y)))
 
 
-def test_chain_of_one_joint(tmp_path):
+def test_chain_of_one_joint(tmp_path: Path) -> None:
     path = tmp_path / "one.xml"
     path.write_text(
         '<mujoco><custom><text name="tip" data="p"/></custom><worldbody><body name="b">'
@@ -184,9 +192,9 @@ def test_chain_of_one_joint(tmp_path):
     assert (m[0], k[0]) == (pytest.approx(2.0), pytest.approx(80.0))
 
 
-@pytest.mark.parametrize("kind", [ca.SX, ca.MX])
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("careful", [False, True, "once"])
-def test_symbols_give_the_same_numbers(kind, careful):
+def test_symbols_give_the_same_numbers(kind: Matrix, careful: bool) -> None:
     model = random_linear_model(7, 6)
     M, K, J = kind.sym("M", 6, 6), kind.sym("K", 6, 6), kind.sym("J", 1, 6)
     symbolic = chain(LinearModel(DenseMass(M), K, J), 3, reorthogonalise=careful)
@@ -199,14 +207,14 @@ def test_symbols_give_the_same_numbers(kind, careful):
 
 
 @pytest.mark.parametrize("order", [0, -1])
-def test_order_must_be_at_least_one(order):
+def test_order_must_be_at_least_one(order: int) -> None:
     with pytest.raises(InvalidValue, match=f"order: must be at least 1, but is {order}") as caught:
         chain(random_linear_model(1, 3), order)
     assert caught.value.field == "order"
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_order_beyond_the_coordinates_adds_no_noise(seed):
+def test_order_beyond_the_coordinates_adds_no_noise(seed: int) -> None:
     model = random_linear_model(seed, 3)
     full, more = chain(model, 3), chain(model, 9)
     assert more.order == 3
@@ -215,7 +223,7 @@ def test_order_beyond_the_coordinates_adds_no_noise(seed):
     assert chain(LinearModel(model.mass, model.stiffness, J), 5).order == 3
 
 
-def test_elastic_and_dense_mass_give_the_same_chain():
+def test_elastic_and_dense_mass_give_the_same_chain() -> None:
     robot = load_robot("panda")
     model = impact_model(robot, drives_=drives(robot, joint_stiffness=1e4, position_gain=500.0))
     linear = model.linear(POSE, ALONG_Y)
@@ -224,7 +232,7 @@ def test_elastic_and_dense_mass_give_the_same_chain():
         assert_near(ours, theirs, 1e-8)
 
 
-def test_change_of_coordinates_moves_nothing():
+def test_change_of_coordinates_moves_nothing() -> None:
     model = random_linear_model(9, 6)
     T = np.random.default_rng(1).normal(size=(6, 6))
     for ours, theirs in zip(

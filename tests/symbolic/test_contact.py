@@ -3,6 +3,7 @@
 
 import casadi as ca
 import pytest
+from symbol_kinds import KINDS
 
 from softimpact.symbolic import Contact, body_region
 
@@ -10,15 +11,15 @@ from softimpact.symbolic import Contact, body_region
 @pytest.mark.parametrize(
     ("depth", "force"), [(1e-4, 19.0), (4e-4, 152.0), (0.0, 0.0), (-1e-3, 0.0)]
 )
-def test_force_is_hertz_law_and_never_pulls(depth, force):
+def test_force_is_hertz_law_and_never_pulls(depth: float, force: float) -> None:
     contact = Contact(body_region("head"))
     assert float(contact.force(ca.DM(depth))) == pytest.approx(force, rel=1e-12)
-    for kind in (ca.SX, ca.MX):
+    for kind in KINDS:
         x = kind.sym("x")
         assert float(ca.Function("f", [x], [contact.force(x)])(depth)) == pytest.approx(force)
 
 
-def test_force_has_a_slope_everywhere():
+def test_force_has_a_slope_everywhere() -> None:
     """Integrators and solvers differentiate it before, at and after the first touch."""
     x = ca.SX.sym("x")
     slope = ca.Function("s", [x], [ca.jacobian(Contact(body_region("head")).force(x), x)])
@@ -27,7 +28,7 @@ def test_force_has_a_slope_everywhere():
     assert float(slope(0.0)) == 0.0
 
 
-def test_skin_can_be_another():
+def test_skin_can_be_another() -> None:
     assert float(Contact(body_region("head"), hertz_stiffness=1e6).force(0.01)) == pytest.approx(
         1e3
     )

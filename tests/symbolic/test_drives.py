@@ -1,19 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Rotors, springs and gains: defaults, units, and what is refused."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 import pytest
 from oracles import assert_near
 
-from softimpact.symbolic import InvalidValue, WrongLength, drives, load_robot
+from softimpact.symbolic import InvalidValue, Robot, WrongLength, drives, load_robot
 
 
 @pytest.fixture(scope="module")
-def robot():
+def robot() -> Robot:
     return load_robot("panda")
 
 
-def test_defaults_are_rigid_joints_with_the_files_rotors(robot):
+def test_defaults_are_rigid_joints_with_the_files_rotors(robot: Robot) -> None:
     found = drives(robot)
     assert found.elastic == (False,) * 7
     assert_near(found.rotors, robot.armature)
@@ -21,7 +25,7 @@ def test_defaults_are_rigid_joints_with_the_files_rotors(robot):
     assert found.computed_torque_gain is None
 
 
-def test_one_number_serves_all_joints(robot):
+def test_one_number_serves_all_joints(robot: Robot) -> None:
     found = drives(robot, joint_stiffness=3e3, rotor_inertia=0.2, position_gain=5.0)
     assert found.elastic == (True,) * 7
     assert_near(found.springs, np.full(7, 3e3))
@@ -29,21 +33,21 @@ def test_one_number_serves_all_joints(robot):
     assert_near(found.gains, np.full(7, 5.0))
 
 
-def test_infinite_stiffness_is_a_rigid_joint(robot):
+def test_infinite_stiffness_is_a_rigid_joint(robot: Robot) -> None:
     k_s = np.array([1e3, np.inf, 1e3, 1e3, np.inf, 1e3, 1e3])
     found = drives(robot, joint_stiffness=k_s)
     assert found.elastic == (True, False, True, True, False, True, True)
     assert np.isfinite(np.array(found.springs)).all()
 
 
-def test_gear_ratio_counts_squared(robot):
+def test_gear_ratio_counts_squared(robot: Robot) -> None:
     found = drives(robot, rotor_inertia=1e-5, gear_ratio=-100.0)
     assert_near(found.rotors, np.full(7, 0.1))
     ratio = np.arange(1.0, 8.0)
     assert_near(drives(robot, rotor_inertia=1e-4, gear_ratio=ratio).rotors, 1e-4 * ratio**2)
 
 
-def test_passive_joints_get_no_gain():
+def test_passive_joints_get_no_gain() -> None:
     assert_near(drives(load_robot("rr"), position_gain=5.0).gains, [5, 0, 5, 0])
 
 
@@ -80,7 +84,9 @@ NAN = float("nan")
         ({"rotor_inertia": 1e-4, "gear_ratio": NAN}, "gear_ratio", "must not be NaN"),
     ],
 )
-def test_bad_numbers_are_refused(robot, options, field, message):
+def test_bad_numbers_are_refused(
+    robot: Robot, options: dict[str, Any], field: str, message: str
+) -> None:
     with pytest.raises(InvalidValue, match=f"^{field}: .*{message}") as caught:
         drives(robot, **options)
     assert caught.value.field == field
@@ -89,9 +95,14 @@ def test_bad_numbers_are_refused(robot, options, field, message):
 @pytest.mark.parametrize(
     "field", ["joint_stiffness", "rotor_inertia", "position_gain", "gear_ratio"]
 )
-@pytest.mark.parametrize("values", [[1.0, 2.0], [], np.ones((7, 1))])
-def test_vectors_must_fit(robot, field, values):
-    options = {"rotor_inertia": 0.1} if field == "gear_ratio" else {}
+@pytest.mark.parametrize("values", [[1.0, 2.0], []])
+def test_vectors_must_fit(robot: Robot, field: str, values: list[float]) -> None:
+    options: dict[str, Any] = {"rotor_inertia": 0.1} if field == "gear_ratio" else {}
     with pytest.raises(WrongLength, match=f"{field}: has .* 7 are needed.*joint1") as caught:
         drives(robot, **options | {field: values})
     assert caught.value.expected == 7
+
+
+def test_vectors_are_flat(robot: Robot) -> None:
+    with pytest.raises(InvalidValue, match="joint_stiffness: must be a flat list"):
+        drives(robot, np.ones((7, 1)))

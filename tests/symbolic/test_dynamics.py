@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """M, bias, gravity and their Hessian against Pinocchio, over real and random robots."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 import casadi as ca
 import numpy as np
 import pytest
@@ -10,6 +14,8 @@ from random_robots import robots, vectors
 
 from softimpact.symbolic import (
     STANDARD_GRAVITY,
+    Matrix,
+    Robot,
     WrongLength,
     bias_torques,
     gravity_torques,
@@ -18,6 +24,7 @@ from softimpact.symbolic import (
     potential_energy,
     stiffness_of_potential,
 )
+from softimpact.symbolic.rigid import Array
 
 GRAVITY = (1.3, -2.1, -9.0)
 EXAMPLES = (
@@ -37,7 +44,7 @@ EXAMPLES = (
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_dynamics_agree_with_pinocchio(name):
+def test_dynamics_agree_with_pinocchio(name: str) -> None:
     path = example_urdf(name)
     robot = load_robot(path)
     oracle = Pinocchio.of_urdf(path, robot)
@@ -51,7 +58,9 @@ def test_dynamics_agree_with_pinocchio(name):
 
 @settings(max_examples=60)
 @given(robots(), vectors(5), vectors(5))
-def test_dynamics_of_random_trees_agree_with_pinocchio(robot, q, velocity):
+def test_dynamics_of_random_trees_agree_with_pinocchio(
+    robot: Robot, q: Array, velocity: Array
+) -> None:
     q, velocity = q[: robot.n], velocity[: robot.n]
     oracle = Pinocchio.of_robot(robot)
     assert_near(mass_matrix(robot, q), oracle.mass_matrix(q))
@@ -59,14 +68,14 @@ def test_dynamics_of_random_trees_agree_with_pinocchio(robot, q, velocity):
     assert_near(gravity_torques(robot, q, GRAVITY), oracle.bias(q, 0 * q, GRAVITY))
 
 
-def test_gravity_defaults_to_standard_gravity():
+def test_gravity_defaults_to_standard_gravity() -> None:
     robot = load_robot("panda")
     q = next(configurations(robot, 1))
     assert_near(gravity_torques(robot, q), gravity_torques(robot, q, STANDARD_GRAVITY))
     assert STANDARD_GRAVITY == (0.0, 0.0, -9.81)
 
 
-def test_without_gravity_nothing_pulls():
+def test_without_gravity_nothing_pulls() -> None:
     robot = load_robot("panda")
     q = next(configurations(robot, 1))
     assert not np.array(gravity_torques(robot, q, (0, 0, 0))).any()
@@ -74,7 +83,7 @@ def test_without_gravity_nothing_pulls():
     assert not np.array(stiffness_of_potential(robot, q, (0, 0, 0))).any()
 
 
-def test_every_kind_of_matrix_gives_the_same_numbers():
+def test_every_kind_of_matrix_gives_the_same_numbers() -> None:
     robot = load_robot("panda")
     q, velocity = configurations(robot, 2)
     x, v = ca.SX.sym("x", robot.n), ca.SX.sym("v", robot.n)
@@ -98,7 +107,7 @@ def test_every_kind_of_matrix_gives_the_same_numbers():
 @pytest.mark.parametrize(
     "make", [np.zeros, lambda n: ca.SX.sym("q", n), lambda n: ca.MX.sym("q", n)]
 )
-def test_vectors_must_fit_the_robot(make, n):
+def test_vectors_must_fit_the_robot(make: Callable[..., Matrix], n: int) -> None:
     robot = load_robot("panda")
     for quantity in (mass_matrix, potential_energy, gravity_torques, stiffness_of_potential):
         with pytest.raises(WrongLength, match=f"q: has {n} values, but 7 are needed.*joint1") as e:
@@ -110,7 +119,7 @@ def test_vectors_must_fit_the_robot(make, n):
         bias_torques(robot, np.zeros(7), make(n))
 
 
-def test_springs_of_the_file_store_energy():
+def test_springs_of_the_file_store_energy() -> None:
     robot = load_robot("rr")
     q = np.array([0.3, 0.01, -0.4, -0.02])
     assert_near(potential_energy(robot, q), 0.5 * 1e4 * (0.01**2 + 0.02**2))

@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The branch-free eigenvalues of 3×3 matrices against LAPACK."""
 
+from __future__ import annotations
+
 import casadi as ca
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from random_robots import seeds
+from symbol_kinds import KINDS
 
-from softimpact.symbolic import symmetric_eigen
+from softimpact.symbolic import Matrix, symmetric_eigen
+from softimpact.symbolic.rigid import Array
 
 spreads = st.sampled_from([(1, 1, 1), (1, 1, 2), (2, 1, 1), (1e-9, 1, 1e6), (0, 0, 1), (-3, 0, 2)])
 
 
 @given(seeds, spreads)
-def test_agrees_with_lapack(seed, spread):
+def test_agrees_with_lapack(seed: int, spread: float) -> None:
     """Also where eigenvalues meet or differ by many decades."""
     turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
     A = turn @ np.diag(spread) @ turn.T
@@ -27,7 +31,7 @@ def test_agrees_with_lapack(seed, spread):
 
 
 @pytest.mark.parametrize("A", [np.zeros((3, 3)), np.eye(3), np.diag([3.0, 1.0, 2.0])])
-def test_nothing_to_rotate(A):
+def test_nothing_to_rotate(A: Array) -> None:
     found = symmetric_eigen(ca.DM(A))
     np.testing.assert_array_equal(np.array(found.values).ravel(), np.sort(np.diag(A)))
     np.testing.assert_allclose(
@@ -37,7 +41,7 @@ def test_nothing_to_rotate(A):
     )
 
 
-def test_derivative_of_an_eigenvalue():
+def test_derivative_of_an_eigenvalue() -> None:
     """dλ = vᵀ dA v."""
     half = np.random.default_rng(4).normal(size=(3, 3))
     A, step = half @ half.T, np.outer([1.0, 2.0, 3.0], [1.0, 2.0, 3.0])
@@ -48,8 +52,8 @@ def test_derivative_of_an_eigenvalue():
     np.testing.assert_allclose(np.array(slope(A)).ravel(), expected, rtol=1e-9)
 
 
-@pytest.mark.parametrize("kind", [ca.SX, ca.MX])
-def test_symbols_give_the_same_numbers(kind):
+@pytest.mark.parametrize("kind", KINDS)
+def test_symbols_give_the_same_numbers(kind: Matrix) -> None:
     half = np.random.default_rng(5).normal(size=(3, 3))
     x = kind.sym("x", 3, 3)
     found = symmetric_eigen(x)

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Manipulability, force and dynamic impact measures against NumPy's SVD and pseudo-inverse."""
 
+from __future__ import annotations
+
 import casadi as ca
 import numpy as np
 import pytest
 from oracles import assert_near, configurations
 
 from softimpact.symbolic import (
+    Ellipsoid,
+    ImpactModel,
     dynamic_impact_ellipsoid,
     dynamic_impact_measure,
     force_measure,
@@ -16,22 +20,26 @@ from softimpact.symbolic import (
     manipulability,
     manipulability_ellipsoid,
 )
+from softimpact.symbolic.rigid import Array
+
+Arm = tuple[Array, Array, ImpactModel, Array]
+"""J, H, the model and q."""
 
 
 @pytest.fixture(scope="module", params=range(4))
-def arm(request):
+def arm(request: pytest.FixtureRequest) -> Arm:
     model = impact_model(load_robot("panda"))
     q = list(configurations(model.robot, 4, seed=11))[request.param]
     return np.array(model.jacobian(q)), np.array(model.rotor_mass_matrix(q)), model, q
 
 
-def shape(ellipsoid):
+def shape(ellipsoid: Ellipsoid) -> Array:
     """The matrix A of {A^½ u}."""
     a, V = np.array(ellipsoid.semi_axes).ravel(), np.array(ellipsoid.axes)
-    return V @ np.diag(a**2) @ V.T
+    return np.asarray(V @ np.diag(a**2) @ V.T)
 
 
-def test_manipulability_is_the_product_of_singular_values(arm):
+def test_manipulability_is_the_product_of_singular_values(arm: Arm) -> None:
     J = arm[0]
     sigma = np.linalg.svd(J)[1]
     assert float(manipulability(ca.DM(J))) == pytest.approx(np.prod(sigma), rel=1e-10)
@@ -41,7 +49,7 @@ def test_manipulability_is_the_product_of_singular_values(arm):
     assert_near(shape(found), J @ J.T, 1e-12)
 
 
-def test_dynamic_impact_measure_is_the_volume_of_its_ellipsoid(arm):
+def test_dynamic_impact_measure_is_the_volume_of_its_ellipsoid(arm: Arm) -> None:
     J, H = arm[:2]
     load = H @ np.linalg.pinv(J)
     E = load.T @ load
@@ -52,7 +60,7 @@ def test_dynamic_impact_measure_is_the_volume_of_its_ellipsoid(arm):
     assert measure == pytest.approx(np.prod(np.array(found.semi_axes)), rel=1e-8)
 
 
-def test_long_axes_of_the_impact_ellipsoid_load_the_joints(arm):
+def test_long_axes_of_the_impact_ellipsoid_load_the_joints(arm: Arm) -> None:
     """|H J⁺ Δẋ| of a unit velocity change along an axis is its length."""
     J, H = arm[:2]
     found = dynamic_impact_ellipsoid(ca.DM(H), ca.DM(J))
@@ -60,7 +68,7 @@ def test_long_axes_of_the_impact_ellipsoid_load_the_joints(arm):
         assert np.linalg.norm(H @ np.linalg.pinv(J) @ axis) == pytest.approx(length, rel=1e-8)
 
 
-def test_velocities_on_the_inertia_ellipsoid_have_equal_energy(arm):
+def test_velocities_on_the_inertia_ellipsoid_have_equal_energy(arm: Arm) -> None:
     _, _, model, q = arm
     mobility = model.mobility(q)
     found = generalised_inertia_ellipsoid(mobility)
@@ -69,7 +77,7 @@ def test_velocities_on_the_inertia_ellipsoid_have_equal_energy(arm):
         assert length**2 * axis @ L @ axis == pytest.approx(1, rel=1e-8)
 
 
-def test_a_stretched_arm_loses_a_direction():
+def test_a_stretched_arm_loses_a_direction() -> None:
     """Two bars in a line: no manipulability, no NaN."""
     J = ca.DM([[0.0, 0.0], [2.0, 1.0], [0.0, 0.0]])
     assert float(manipulability(J)) == 0

@@ -43,9 +43,8 @@ EXAMPLES = [
 
 
 @pytest.mark.parametrize(("error", "data"), EXAMPLES, ids=lambda x: type(x).__name__)
-def test_errors_carry_what_they_say(error, data):
+def test_errors_carry_what_they_say(error: SoftImpactError, data: dict[str, object]) -> None:
     message = str(error)
-    assert isinstance(error, SoftImpactError)
     assert message
     assert "\n" not in message
     for name, value in data.items():
@@ -54,15 +53,15 @@ def test_errors_carry_what_they_say(error, data):
     assert all(value in message for value in shown)
 
 
-def test_every_error_has_an_example():
+def test_every_error_has_an_example() -> None:
     classes = {cls for _, cls in inspect.getmembers(errors, inspect.isclass)}
     tested = {type(error) for error, _ in EXAMPLES} | {SoftImpactError}
     assert {cls for cls in classes if issubclass(cls, Exception)} == tested
 
 
-def test_nothing_known_is_said_so():
+def test_nothing_known_is_said_so() -> None:
     assert str(UnknownName("robot", "x", [])).endswith("known: (none)")
 
 
-def test_a_vector_without_names_still_says_its_length():
+def test_a_vector_without_names_still_says_its_length() -> None:
     assert str(WrongLength("q", 1, 2)) == "q: has 1 values, but 2 are needed"

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Mobility, Λ, GIAF, GIIF and their directional kin against dense algebra over Pinocchio."""
 
+from __future__ import annotations
+
 import casadi as ca
 import numpy as np
 import pytest
 from oracles import Pinocchio, assert_near, configurations, example_urdf
 from random_robots import unit_vector
+from symbol_kinds import KINDS
 
 from softimpact.symbolic import (
+    Matrix,
     chain_to,
     contact_mobility,
     contact_point_jacobian,
@@ -29,7 +33,7 @@ ARMS = {
 
 
 @pytest.mark.parametrize("name", ARMS)
-def test_operational_inertia_agrees_with_pinocchio(name):
+def test_operational_inertia_agrees_with_pinocchio(name: str) -> None:
     """Λ = (J (M+B)⁻¹ Jᵀ)⁻¹, its free sibling, and every factor made of the two."""
     path, tip = example_urdf(name), ARMS[name]
     whole = load_robot(path)
@@ -60,7 +64,7 @@ def test_operational_inertia_agrees_with_pinocchio(name):
         assert float(directional_giaf(free, real, x)) == pytest.approx(expected, rel=1e-8)
 
 
-def test_adjugate_and_determinant():
+def test_adjugate_and_determinant() -> None:
     half = np.random.default_rng(0).normal(size=(3, 3))
     G = half @ half.T
     from softimpact.symbolic import ContactMobility
@@ -71,7 +75,7 @@ def test_adjugate_and_determinant():
     assert_near(mobility.inertia, np.linalg.inv(G))
 
 
-def test_factors_do_not_mind_the_axes():
+def test_factors_do_not_mind_the_axes() -> None:
     model = impact_model(load_robot("panda"))
     q = next(configurations(model.robot, 1))
     expected = float(giaf(model.free_mobility(q), model.mobility(q)))
@@ -80,13 +84,13 @@ def test_factors_do_not_mind_the_axes():
         assert float(found) == pytest.approx(expected, rel=1e-10)
 
 
-@pytest.mark.parametrize("kind", [ca.SX, ca.MX])
-def test_symbols_give_the_same_numbers(kind):
+@pytest.mark.parametrize("kind", KINDS)
+def test_symbols_give_the_same_numbers(kind: Matrix) -> None:
     model = impact_model(load_robot("panda"))
     q, n = next(configurations(model.robot, 1)), unit_vector(2)
     x, d = kind.sym("q", 7), kind.sym("n", 3)
 
-    def all_of(q, n):
+    def all_of(q: Matrix, n: Matrix) -> list[Matrix]:
         free, real = model.free_mobility(q), model.mobility(q)
         along = directional_giaf(free, real, n)
         return [giaf(free, real), giif(free, real), along, real.inertia, free.matrix]
@@ -96,7 +100,7 @@ def test_symbols_give_the_same_numbers(kind):
         assert_near(ours, theirs, 1e-11)
 
 
-def test_mobility_of_a_planar_robot_is_singular():
+def test_mobility_of_a_planar_robot_is_singular() -> None:
     robot = load_robot("rr")
     q = np.array([0.1, 0.0, 0.7, 0.0])
     J = contact_point_jacobian(robot, "P", q)

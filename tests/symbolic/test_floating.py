@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Floating robots against Pinocchio's free-flyer and MuJoCo's free joint."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -12,7 +15,9 @@ from oracles import FreeFlyer, Mujoco, assert_near, example_urdf
 from random_robots import inertias, robots, seeds
 
 from softimpact.symbolic import (
+    FloatingRobot,
     MasslessBase,
+    Robot,
     UnsupportedModel,
     drives,
     floating_model,
@@ -22,6 +27,7 @@ from softimpact.symbolic import (
     mass_matrix,
 )
 from softimpact.symbolic.floating import rotation_of
+from softimpact.symbolic.rigid import Array, Inertia
 
 LEGGED = {
     "go2.urdf": "FL_foot",
@@ -32,9 +38,12 @@ LEGGED = {
 }
 """Quadrupeds and humanoids, with a frame far from the base."""
 
+Pair = tuple[FloatingRobot, FreeFlyer, str]
+"""A robot, Pinocchio's model of it, and a frame."""
+
 
 @pytest.fixture(scope="module", params=LEGGED)
-def pair(request):
+def pair(request: pytest.FixtureRequest) -> Pair:
     robot = load_robot(example_urdf(request.param))
     return (
         floating_robot(robot),
@@ -43,7 +52,7 @@ def pair(request):
     )
 
 
-def state(robot, seed):
+def state(robot: Robot | FloatingRobot, seed: int) -> tuple[Array, Array]:
     """Random configuration and velocity."""
     random = np.random.default_rng(seed)
     quaternion = random.normal(size=4)
@@ -55,14 +64,14 @@ def state(robot, seed):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_mass_matrix(pair, seed):
+def test_mass_matrix(pair: Pair, seed: int) -> None:
     robot, oracle, _ = pair
     q, _ = state(robot, seed)
     assert_near(robot.mass_matrix(q[7:]), oracle.mass_matrix(q))
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_bias(pair, seed):
+def test_bias(pair: Pair, seed: int) -> None:
     robot, oracle, _ = pair
     gravity = (0.3, -0.7, -9.81)
     q, v = state(robot, seed)
@@ -70,7 +79,7 @@ def test_bias(pair, seed):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_jacobian_and_pose(pair, seed):
+def test_jacobian_and_pose(pair: Pair, seed: int) -> None:
     robot, oracle, frame = pair
     q, _ = state(robot, seed)
     assert_near(robot.frame_jacobian(frame, q), oracle.jacobian(frame, q))
@@ -79,7 +88,7 @@ def test_jacobian_and_pose(pair, seed):
     assert_near(ours.rotation, theirs.rotation)
 
 
-def test_rate_is_what_pinocchio_integrates(pair):
+def test_rate_is_what_pinocchio_integrates(pair: Pair) -> None:
     robot, oracle, _ = pair
     q, v = state(robot, 7)
     step = 1e-6
@@ -91,7 +100,7 @@ def test_rate_is_what_pinocchio_integrates(pair):
 
 @settings(max_examples=10)
 @given(robots(max_joints=4), inertias(), seeds)
-def test_jacobian_is_the_slope_of_the_pose(robot, base, seed):
+def test_jacobian_is_the_slope_of_the_pose(robot: Robot, base: Inertia, seed: int) -> None:
     """J (v, ω, q̇) is the velocity of the frame as the configuration moves by its rate."""
     free = floating_robot(robot, base)
     q, v = state(free, seed)
@@ -104,7 +113,7 @@ def test_jacobian_is_the_slope_of_the_pose(robot, base, seed):
 
 @settings(max_examples=10)
 @given(robots(max_joints=4), inertias(), seeds)
-def test_energy_is_kept_in_free_fall(robot, base, seed):
+def test_energy_is_kept_in_free_fall(robot: Robot, base: Inertia, seed: int) -> None:
     """With M a + h = 0 the sum of kinetic and potential energy does not change."""
     free = floating_robot(robot, base)
     q, v = state(free, seed)
@@ -148,13 +157,13 @@ FREE_MJCF = """
 
 
 @pytest.fixture
-def free_file(tmp_path):
+def free_file(tmp_path: Path) -> Path:
     path = tmp_path / "legged.xml"
     path.write_text(FREE_MJCF)
     return path
 
 
-def test_a_free_joint_in_mjcf_is_the_floating_base(free_file):
+def test_a_free_joint_in_mjcf_is_the_floating_base(free_file: Path) -> None:
     """MuJoCo's v is in the world's axes, ours in the base's; its quaternion begins with w."""
     robot = floating_robot(load_robot(free_file, "foot", floating=True))
     q, v = state(robot, 3)
@@ -173,12 +182,12 @@ def test_a_free_joint_in_mjcf_is_the_floating_base(free_file):
     assert_near(robot.bias_torques(q, v), bias)
 
 
-def test_a_free_joint_needs_a_floating_base(free_file):
+def test_a_free_joint_needs_a_floating_base(free_file: Path) -> None:
     with pytest.raises(UnsupportedModel, match="free joint"):
         load_robot(free_file)
 
 
-def test_held_base_leaves_the_fixed_robot():
+def test_held_base_leaves_the_fixed_robot() -> None:
     """The joints' block of M is the fixed robot's, whatever the base weighs."""
     robot = load_robot(example_urdf("go2.urdf"))
     free = floating_robot(robot)
@@ -186,7 +195,7 @@ def test_held_base_leaves_the_fixed_robot():
     assert_near(np.array(free.mass_matrix(q))[6:, 6:], mass_matrix(robot, q))
 
 
-def test_base_keeps_what_is_welded_to_it():
+def test_base_keeps_what_is_welded_to_it() -> None:
     robot = load_robot(example_urdf("go2.urdf"))
     whole = floating_robot(robot)
     total = float(whole.mass_matrix(np.zeros(12))[0, 0])
@@ -201,12 +210,12 @@ def test_base_keeps_what_is_welded_to_it():
     )
 
 
-def test_massless_base_cannot_float():
+def test_massless_base_cannot_float() -> None:
     with pytest.raises(MasslessBase, match="'panda'"):
         floating_robot(load_robot("panda"))
 
 
-def test_impact_model_has_rotors_on_the_joints_alone():
+def test_impact_model_has_rotors_on_the_joints_alone() -> None:
     robot = load_robot(example_urdf("go2.urdf"))
     free = floating_robot(robot)
     given = drives(robot, rotor_inertia=0.02, joint_stiffness=100.0)
@@ -218,9 +227,19 @@ def test_impact_model_has_rotors_on_the_joints_alone():
     assert model.size == 6 + 24
 
 
-def test_base_inertia_does_not_matter_to_a_fixed_robot():
+def test_base_inertia_does_not_matter_to_a_fixed_robot() -> None:
     robot = load_robot(example_urdf("go2.urdf"))
     heavier = replace(robot, base_inertia=robot.base_inertia + robot.base_inertia)
     assert heavier.digest() == robot.digest()
     q = np.full(12, 0.2)
     assert np.array_equal(np.array(mass_matrix(robot, q)), np.array(mass_matrix(heavier, q)))
+
+
+def test_computed_torque_turns_the_joints_alone() -> None:
+    robot = load_robot("panda")
+    free = floating_robot(robot, Inertia.from_center_of_mass(20.0, np.zeros(3), np.eye(3)))
+    model = floating_model(free, drives_=drives(robot, computed_torque_gain=30.0))
+    q = free.coordinates(ca.DM(np.linspace(-0.4, 0.5, 7)))
+    expected = np.zeros((13, 13))
+    expected[6:, 6:] = 30.0 * np.array(model.rotor_mass_matrix(q))[6:, 6:]
+    assert_near(model.position_gains(q), expected)

@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The collection of all factors: agreement with its parts, and singular configurations."""
 
+from __future__ import annotations
+
 import casadi as ca
 import numpy as np
 import pytest
 from oracles import example_urdf
 
 from softimpact.symbolic import (
+    ImpactModel,
     InvalidValue,
+    LoopCannotClose,
     SingularDirection,
     WrongLength,
     analyse,
+    close_loops,
+    closed_chain,
     drives,
     floating_model,
     floating_robot,
@@ -25,11 +31,11 @@ Y = np.array([0.0, 1.0, 0.0])
 
 
 @pytest.fixture(scope="module")
-def model():
+def model() -> ImpactModel:
     return impact_model(load_robot("panda"))
 
 
-def test_agrees_with_analyse(model):
+def test_agrees_with_analyse(model: ImpactModel) -> None:
     found, reference = impact_factors(model, Q, Y), analyse(model, Q, Y)
     assert found.spatial is not None
     assert found.spatial.giaf == reference.giaf
@@ -38,12 +44,13 @@ def test_agrees_with_analyse(model):
     assert found.giaf_movable == pytest.approx(reference.giaf, rel=1e-9)
     assert found.reflected_mass_rigid == pytest.approx(reference.reflected_mass_rigid)
     assert found.mass_ratio == found.reflected_mass_free / found.reflected_mass_rigid
+    assert reference.osim is not None
     assert np.array_equal(found.spatial.osim, reference.osim)
     assert found.mitigation is None
     assert found.rank == 3
 
 
-def test_impulse_of_a_held_wall_is_the_reflected_mass(model):
+def test_impulse_of_a_held_wall_is_the_reflected_mass(model: ImpactModel) -> None:
     found = impact_factors(model, Q, 5 * Y, speed=0.5, restitution=0.2)
     expected = 1.2 * 0.5 * found.reflected_mass_rigid
     assert found.impulse.contact == pytest.approx(expected, rel=1e-9)
@@ -51,13 +58,13 @@ def test_impulse_of_a_held_wall_is_the_reflected_mass(model):
     np.testing.assert_allclose(found.impulse.joints, -push * expected, atol=1e-12)
 
 
-def test_struck_body_that_gives_way_takes_less(model):
+def test_struck_body_that_gives_way_takes_less(model: ImpactModel) -> None:
     held, free = (impact_factors(model, Q, Y, other_mass=m).impulse for m in (np.inf, 4.4))
     reduced = 1 / (1 / held.contact + 1 / 4.4)
     assert free.contact == pytest.approx(reduced, rel=1e-9)
 
 
-def test_planar_robots_have_factors_in_their_plane():
+def test_planar_robots_have_factors_in_their_plane() -> None:
     """Two directions of motion: three-dimensional factors do not apply, the rest does."""
     model = impact_model(load_robot("rr"))
     q = np.array([0.1, 0.0, 0.7, 0.0])
@@ -76,7 +83,7 @@ def test_planar_robots_have_factors_in_their_plane():
         impact_factors(model, q, [0, 0, 1])
 
 
-def test_two_joints_in_space_are_singular_not_nan():
+def test_two_joints_in_space_are_singular_not_nan() -> None:
     """With all but two joints locked the flange moves in a plane that turns with them."""
     robot = load_robot("panda", "flange")
     locked = dict(zip(robot.joint_names[2:], Q[2:], strict=True))
@@ -90,12 +97,12 @@ def test_two_joints_in_space_are_singular_not_nan():
         impact_factors(model, q, normal)
 
 
-def test_floating_robot_leaves_the_base_out_of_joint_results():
+def test_floating_robot_leaves_the_base_out_of_joint_results() -> None:
     robot = load_robot(example_urdf("go2.urdf"))
     free = floating_robot(robot)
     model = floating_model(free, "FL_foot", drives_=drives(robot, rotor_inertia=0.01))
     q = np.array(free.coordinates(ca.DM(np.tile([0.0, 0.9, -1.8], 4)))).ravel()
-    found = impact_factors(model, q, [0, 0, 1], floating=True)
+    found = impact_factors(model, q, [0, 0, 1])
     assert found.mitigation is not None
     assert found.spatial is not None
     assert 0 < found.mitigation.imf < found.mitigation.directional_imf < 1
@@ -118,13 +125,26 @@ def test_floating_robot_leaves_the_base_out_of_joint_results():
         ("other_mass", np.nan),
     ],
 )
-def test_numbers_out_of_range(model, field, value):
+def test_numbers_out_of_range(model: ImpactModel, field: str, value: float) -> None:
     with pytest.raises(InvalidValue, match=field):
         impact_factors(model, Q, Y, **{field: value})
 
 
-def test_bad_configurations(model):
+def test_bad_configurations(model: ImpactModel) -> None:
     with pytest.raises(WrongLength, match="q"):
         impact_factors(model, Q[:6], Y)
     with pytest.raises(InvalidValue, match="finite"):
         impact_factors(model, Q * np.nan, Y)
+
+
+def test_a_planar_closed_chain_has_what_a_plane_leaves() -> None:
+    robot = load_robot("rmin")
+    q = close_loops(robot, closed_chain(robot).home[list(closed_chain(robot).independent)])
+    model = impact_model(robot, "P", drives_=drives(robot, rotor_inertia=0.01))
+    found = impact_factors(model, q, [1.0, 0.0, 0.0])
+    assert found.rank == 2
+    assert found.spatial is None
+    assert 0 < found.mass_ratio < 1
+    assert len(found.impulse.joints) == len(found.impulse.gears) == robot.n
+    with pytest.raises(LoopCannotClose):
+        impact_factors(model, q + 0.1, [1.0, 0.0, 0.0])

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Customisation changes the expressions and nothing else."""
 
+from __future__ import annotations
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -22,12 +24,12 @@ from softimpact.symbolic.dynamics import _bias_torques, _mass_matrix, _potential
 from softimpact.symbolic.joint_frames import NEARLY_PARALLEL, customised
 from softimpact.symbolic.kinematics import _frame_pose
 from softimpact.symbolic.matrices import on_scalars
-from softimpact.symbolic.rigid import Inertia, Placement, rotation_from_axis
+from softimpact.symbolic.rigid import Array, Inertia, Placement, rotation_from_axis
 
 GRAVITY = (1.0, -2.0, -9.0)
 
 
-def assert_same(robot, q, velocity):
+def assert_same(robot: Robot, q: Array, velocity: Array) -> None:
     """Compare the recursions over the customised robot with those over the robot as it is."""
     assert_near(mass_matrix(robot, q), on_scalars(_mass_matrix, (robot,), q))
     plain = on_scalars(_potential_gradient, (robot, GRAVITY), q)
@@ -43,7 +45,7 @@ def assert_same(robot, q, velocity):
 @pytest.mark.parametrize(
     "name", ["panda.urdf", "xarm7.urdf", "tiago_pro.urdf", "talos_left_arm.urdf"]
 )
-def test_customisation_of_real_robots_changes_nothing(name):
+def test_customisation_of_real_robots_changes_nothing(name: str) -> None:
     robot = load_robot(example_urdf(name))
     q, velocity = configurations(robot, 2)
     assert_same(robot, q, velocity)
@@ -51,18 +53,20 @@ def test_customisation_of_real_robots_changes_nothing(name):
 
 @settings(max_examples=60)
 @given(robots(), vectors(5), vectors(5))
-def test_customisation_of_random_trees_changes_nothing(robot, q, velocity):
+def test_customisation_of_random_trees_changes_nothing(
+    robot: Robot, q: Array, velocity: Array
+) -> None:
     assert_same(robot, q[: robot.n], velocity[: robot.n])
 
 
 @settings(max_examples=20)
 @given(robots(), vectors(5), vectors(5))
-def test_customising_twice_changes_nothing(robot, q, velocity):
+def test_customising_twice_changes_nothing(robot: Robot, q: Array, velocity: Array) -> None:
     assert_same(customised(robot), q[: robot.n], velocity[: robot.n])
 
 
 @pytest.mark.parametrize("sine", [1.0, 0.3, 1.05 * NEARLY_PARALLEL, 0.95 * NEARLY_PARALLEL, 1e-6])
-def test_nearly_parallel_axes_cost_no_accuracy(sine):
+def test_nearly_parallel_axes_cost_no_accuracy(sine: float) -> None:
     """The common normal of nearly parallel axes is far away; seven of them add up."""
     random = np.random.default_rng(2)
     for _ in range(10):
@@ -79,7 +83,7 @@ def test_nearly_parallel_axes_cost_no_accuracy(sine):
         assert_near(mass_matrix(robot, q), Pinocchio.of_robot(robot).mass_matrix(q))
 
 
-def test_names_limits_and_drives_stay():
+def test_names_limits_and_drives_stay() -> None:
     robot = load_robot("panda")
     other = customised(robot)
     assert other.joint_names == robot.joint_names
@@ -90,7 +94,7 @@ def test_names_limits_and_drives_stay():
     assert list(other.frames) == list(robot.frames)
 
 
-def test_the_panda_keeps_few_constants():
+def test_the_panda_keeps_few_constants() -> None:
     """Denavit-Hartenberg frames and base parameters: what makes the expressions short."""
     joints = customised(load_robot("panda")).joints
     rotations = np.concatenate([joint.placement.rotation.ravel() for joint in joints])

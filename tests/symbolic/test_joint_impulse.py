@@ -1,24 +1,32 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """GIAF Eq. 14, derived anew, against the balance of impulse and momentum itself."""
 
+from __future__ import annotations
+
 import casadi as ca
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from oracles import column
 from random_robots import arms, robots, seeds, unit_vector, vectors
 
-from softimpact.symbolic import contact_mobility, impact_model, joint_impulse, load_robot
+from softimpact.symbolic import (
+    Robot,
+    contact_mobility,
+    impact_model,
+    joint_impulse,
+    load_robot,
+)
+from softimpact.symbolic.rigid import Array
 
 restitutions = st.sampled_from([0.0, 0.3, 1.0])
 masses = st.sampled_from([0.2, 4.4, 40.0, np.inf])
 
 
-def column(matrix):
-    return np.array(matrix).ravel()
-
-
-def balance(H, push, velocity, e, inverse_mass, other_speed):
+def balance(
+    H: Array, push: Array, velocity: Array, e: float, inverse_mass: float, other_speed: float
+) -> tuple[Array, float]:
     """Solve H Δq̇ + Jᵀn p = 0, Δv_2 = p/m_2 and Newton's law of restitution as one system."""
     n = len(H)
     A = np.zeros((n + 2, n + 2))
@@ -32,7 +40,9 @@ def balance(H, push, velocity, e, inverse_mass, other_speed):
 
 @settings(max_examples=40)
 @given(robots(max_joints=5), vectors(5), vectors(5), seeds, restitutions, masses)
-def test_agrees_with_the_balance(robot, q, velocity, seed, e, other):
+def test_agrees_with_the_balance(
+    robot: Robot, q: Array, velocity: Array, seed: int, e: float, other: float
+) -> None:
     q, velocity, n = q[: robot.n], velocity[: robot.n], unit_vector(seed)
     model = impact_model(robot)
     M, J = model.mass_matrix(q), model.jacobian(q)
@@ -55,7 +65,9 @@ def test_agrees_with_the_balance(robot, q, velocity, seed, e, other):
 
 @settings(max_examples=30)
 @given(arms(), vectors(5), vectors(5), seeds, restitutions, masses)
-def test_energy_and_rebound(robot, q, velocity, seed, e, other):
+def test_energy_and_rebound(
+    robot: Robot, q: Array, velocity: Array, seed: int, e: float, other: float
+) -> None:
     """An elastic impact keeps the energy, any other loses what 1 − e² says."""
     q, velocity, n = q[: robot.n], velocity[: robot.n], unit_vector(seed)
     model = impact_model(robot)
@@ -73,7 +85,7 @@ def test_energy_and_rebound(robot, q, velocity, seed, e, other):
     assert rebound == pytest.approx(-e * speed, rel=1e-7, abs=1e-9)
 
 
-def test_links_take_what_gears_do_not():
+def test_links_take_what_gears_do_not() -> None:
     """Each joint: link momentum M Δq̇ = Γ − b Δq̇, the contact's impulse less the rotor's."""
     model = impact_model(load_robot("panda"))
     q = np.array([0.0, 0.3, 0.0, -1.8, 0.1, 2.0, 0.5])
@@ -83,7 +95,7 @@ def test_links_take_what_gears_do_not():
     np.testing.assert_allclose(links, column(found.joints) - column(found.gears), atol=1e-12)
 
 
-def test_printed_equation_has_other_units():
+def test_printed_equation_has_other_units() -> None:
     """With nᵀΛn for nᵀΛ⁻¹n the impulse would shrink as the robot grows heavier."""
     J, n = ca.DM.eye(3), ca.DM([0, 0, 1])
     light, heavy = (joint_impulse(m * ca.DM.eye(3), ca.DM.zeros(3), J, n) for m in (1, 10))

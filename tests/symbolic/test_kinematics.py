@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Poses and Jacobians of any frame, against Pinocchio."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 import casadi as ca
 import numpy as np
 import pinocchio as pin
@@ -8,9 +12,11 @@ import pytest
 from hypothesis import given, settings
 from oracles import Pinocchio, assert_near, configurations, example_urdf
 from random_robots import robots, unit_vector, vectors
+from symbol_kinds import KINDS
 
 from softimpact.symbolic import (
     FrameNotFound,
+    Robot,
     WrongLength,
     contact_point_jacobian,
     direction_jacobian,
@@ -18,13 +24,14 @@ from softimpact.symbolic import (
     frame_pose,
     load_robot,
 )
+from softimpact.symbolic.rigid import Array
 from softimpact.symbolic.robot import BASE
 
 EXAMPLES = ("panda.urdf", "ur5_robot.urdf", "kinova.urdf", "baxter.urdf", "simple_humanoid.urdf")
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_frames_of_files_agree_with_pinocchio(name):
+def test_frames_of_files_agree_with_pinocchio(name: str) -> None:
     path = example_urdf(name)
     robot = load_robot(path)
     oracle = Pinocchio.of_urdf(path, robot)
@@ -40,7 +47,7 @@ def test_frames_of_files_agree_with_pinocchio(name):
 
 @settings(max_examples=40)
 @given(robots(), vectors(5))
-def test_frames_of_random_trees_agree_with_pinocchio(robot, q):
+def test_frames_of_random_trees_agree_with_pinocchio(robot: Robot, q: Array) -> None:
     q = q[: robot.n]
     oracle = Pinocchio.of_robot(robot)
     assert_near(frame_jacobian(robot, "tip", q), oracle.jacobian("tip", q))
@@ -50,7 +57,7 @@ def test_frames_of_random_trees_agree_with_pinocchio(robot, q):
 
 @settings(max_examples=40)
 @given(robots(), vectors(5))
-def test_direction_row_is_the_projected_jacobian(robot, q):
+def test_direction_row_is_the_projected_jacobian(robot: Robot, q: Array) -> None:
     q, n = q[: robot.n], unit_vector(3)
     J = np.array(contact_point_jacobian(robot, "tip", q))
     assert_near(direction_jacobian(robot, "tip", q, n), (n @ J)[None])
@@ -59,7 +66,7 @@ def test_direction_row_is_the_projected_jacobian(robot, q):
 
 @settings(max_examples=40)
 @given(robots(), vectors(5))
-def test_axes_of_a_joint_only_turn_the_jacobian(robot, q):
+def test_axes_of_a_joint_only_turn_the_jacobian(robot: Robot, q: Array) -> None:
     q = q[: robot.n]
     J = np.array(contact_point_jacobian(robot, "tip", q))
     for axes_of in range(BASE, robot.n):
@@ -72,7 +79,7 @@ def test_axes_of_a_joint_only_turn_the_jacobian(robot, q):
             assert np.linalg.det(R) > 0
 
 
-def test_the_jacobian_is_the_derivative_of_the_position():
+def test_the_jacobian_is_the_derivative_of_the_position() -> None:
     robot = load_robot("panda")
     q = next(configurations(robot, 1))
     x = ca.SX.sym("x", robot.n)
@@ -81,10 +88,10 @@ def test_the_jacobian_is_the_derivative_of_the_position():
     assert_near(contact_point_jacobian(robot, "hand_tcp", q), derivative(q))
 
 
-def test_every_kind_of_matrix_gives_the_same_numbers():
+def test_every_kind_of_matrix_gives_the_same_numbers() -> None:
     robot = load_robot("panda")
     q, n = next(configurations(robot, 1)), unit_vector(5)
-    for kind in (ca.SX, ca.MX):
+    for kind in KINDS:
         x, d = kind.sym("x", robot.n), kind.sym("d", 3)
         pose = frame_pose(robot, "flange", x)
         for build, number in (
@@ -108,7 +115,7 @@ def test_every_kind_of_matrix_gives_the_same_numbers():
 
 
 @pytest.mark.parametrize("n", [6, 8])
-def test_configurations_must_fit_the_robot(n):
+def test_configurations_must_fit_the_robot(n: int) -> None:
     robot = load_robot("panda")
     for quantity in (frame_pose, frame_jacobian, contact_point_jacobian):
         with pytest.raises(WrongLength, match=f"q: has {n} values, but 7 are needed"):
@@ -117,7 +124,7 @@ def test_configurations_must_fit_the_robot(n):
         direction_jacobian(robot, "flange", np.zeros(n), [0, 1, 0])
 
 
-def test_frames_of_the_base_do_not_move():
+def test_frames_of_the_base_do_not_move() -> None:
     robot = load_robot("panda")
     q = next(configurations(robot, 1))
     assert not np.array(frame_jacobian(robot, "link0", q)).any()
@@ -126,7 +133,9 @@ def test_frames_of_the_base_do_not_move():
 
 
 @pytest.mark.parametrize("quantity", [frame_pose, frame_jacobian, contact_point_jacobian])
-def test_unknown_frame_lists_the_known_ones(quantity):
+def test_unknown_frame_lists_the_known_ones(
+    quantity: Callable[[Robot, str, Array], object],
+) -> None:
     robot = load_robot("panda")
     with pytest.raises(FrameNotFound, match=r"unknown frame 'hnad'.*known:.*hand_tcp") as caught:
         quantity(robot, "hnad", np.zeros(7))

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from oracles import Pinocchio, assert_near
 from random_robots import robots, seeds
 
-from softimpact.symbolic import FrameNotFound, bias_torques, load_robot, mass_matrix
+from softimpact.symbolic import FrameNotFound, InvalidValue, bias_torques, load_robot, mass_matrix
 from softimpact.symbolic.rigid import Array
 from softimpact.symbolic.robot import Robot
 
@@ -55,3 +55,17 @@ def test_symbols_stand_for_any_payload() -> None:
 def test_unknown_frame() -> None:
     with pytest.raises(FrameNotFound, match=r"'palm'.*hand_tcp"):
         load_robot("panda").with_payload("palm", 1.0)
+
+
+@pytest.mark.parametrize(
+    ("mass", "com", "field"),
+    [
+        (-1.0, (0.0, 0.0, 0.0), "payload_mass"),
+        (np.nan, (0.0, 0.0, 0.0), "payload_mass"),
+        (1.0, (0.0, 0.0), "payload_com"),
+        (1.0, np.array([0.0, np.inf, 0.0]), "payload_com"),
+    ],
+)
+def test_payloads_that_cannot_be(panda: Robot, mass: float, com: Array, field: str) -> None:
+    with pytest.raises(InvalidValue, match=f"{field}: "):
+        panda.with_payload("hand_tcp", mass, com)

@@ -9,9 +9,11 @@ from hypothesis import strategies as st
 from linear_models import dense, linear_models, nullspace, random_linear_model, with_nullspace
 from oracles import assert_near
 from scipy.optimize import minimize_scalar
+from symbol_kinds import KINDS
 
 from softimpact.symbolic import (
     LinearModel,
+    Matrix,
     impact_model,
     load_robot,
     reduce_to_two_masses,
@@ -24,7 +26,9 @@ from softimpact.symbolic.reduction import contact_mode
 
 @settings(max_examples=60)
 @given(linear_models(), st.integers(0, 1000))
-def test_reduction_is_the_papers_for_every_orthonormal_nullspace(model, seed):
+def test_reduction_is_the_papers_for_every_orthonormal_nullspace(
+    model: LinearModel, seed: int
+) -> None:
     ours = reduce_to_two_masses(model)
     m_c, k_r, m_a = with_nullspace(model, nullspace(model, seed))
     assert_near([float(ours.m_c), float(ours.k_r)], [m_c, k_r])
@@ -32,7 +36,7 @@ def test_reduction_is_the_papers_for_every_orthonormal_nullspace(model, seed):
     assert float(ours.m_a) == pytest.approx(m_a, rel=1e-9)
 
 
-def test_m_a_minimises_the_norm_of_equation_38():
+def test_m_a_minimises_the_norm_of_equation_38() -> None:
     model = random_linear_model(5, 6)
     M, K, _ = dense(model)
     J_a = nullspace(model, 0)
@@ -47,7 +51,7 @@ def test_m_a_minimises_the_norm_of_equation_38():
 
 
 @given(linear_models())
-def test_contact_mode_is_the_dynamically_consistent_inverse(model):
+def test_contact_mode_is_the_dynamically_consistent_inverse(model: LinearModel) -> None:
     mode = contact_mode(model)
     M, _, j = dense(model)
     direction = np.array(mode.direction).ravel()
@@ -56,7 +60,7 @@ def test_contact_mode_is_the_dynamically_consistent_inverse(model):
 
 
 @given(linear_models())
-def test_reflected_mass_and_static_stiffness(model):
+def test_reflected_mass_and_static_stiffness(model: LinearModel) -> None:
     M, K, j = dense(model)
     assert_near(reflected_mass(ca.DM(M), model.jacobian), 1 / (j @ np.linalg.solve(M, j)))
     k_c = 1 / (j @ np.linalg.solve(K, j))
@@ -64,7 +68,7 @@ def test_reflected_mass_and_static_stiffness(model):
     assert k_c <= float(reduce_to_two_masses(model).k_r) * (1 + 1e-12)  # a slow push meets less
 
 
-def test_two_masses_are_found_exactly():
+def test_two_masses_are_found_exactly() -> None:
     """A mass, a spring and a mass are their own reduction, whatever the coordinates' scale."""
     M, K = np.diag([0.7, 3.0]), 2e4 * np.array([[1, -1], [-1, 1.0]])
     model = LinearModel(DenseMass(ca.DM(M)), ca.DM(K), ca.DM([[1.0, 0.0]]))
@@ -73,8 +77,8 @@ def test_two_masses_are_found_exactly():
     assert found == pytest.approx([0.7, 2e4, 3.0], rel=1e-12)
 
 
-@pytest.mark.parametrize("kind", [ca.SX, ca.MX])
-def test_symbols_give_the_same_numbers(kind):
+@pytest.mark.parametrize("kind", KINDS)
+def test_symbols_give_the_same_numbers(kind: Matrix) -> None:
     model = random_linear_model(7, 5)
     M, K, J = (
         kind.sym(name, *shape) for name, shape in (("M", (5, 5)), ("K", (5, 5)), ("J", (1, 5)))
@@ -88,7 +92,7 @@ def test_symbols_give_the_same_numbers(kind):
     assert_near([float(x) for x in found], [float(x) for x in expected], 1e-13)
 
 
-def test_a_rigid_robot_without_gains_has_no_spring():
+def test_a_rigid_robot_without_gains_has_no_spring() -> None:
     """Nothing holds it: k_r is zero and m_a is not defined."""
     robot = load_robot("panda")
     model = impact_model(robot)
