@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .failure import SolverFailure
 from .poses import Candidate
 from .problem import Problem, prepare
 from .repair import accurate_springs, largest_deflection
-from .solve import Mode, Outcome, SolverFailure, Start, better, solve
+from .solve import Mode, Outcome, Start, better, solve
 from .study import Study
 from .timing import Timing
 from .workers import workers

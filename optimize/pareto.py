@@ -16,13 +16,14 @@ import numpy as np
 
 from softimpact.symbolic.rigid import Array
 
+from .failure import SolverFailure
 from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
 from .levels import ROOM, even_bounds, level_range
 from .problem import Problem, prepare
 from .repair import largest_deflection
 from .searches import Progress, Searches
-from .solve import Outcome, SolverFailure, preference
+from .solve import Outcome, preference
 from .stiffest import Stiffest, stiffest
 from .study import Study
 from .sweep import Level, sweep
