@@ -16,12 +16,12 @@ RESULTS = "results.json"
 
 
 class ForeignFolder(SoftImpactError):
-    """The output folder holds files that an earlier run did not write."""
+    """The output folder holds files that an earlier run of the same command did not write."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, generator: str) -> None:
+        self.folder, self.generator = folder, generator
         super().__init__(
-            f"{folder}: exists and is no folder of earlier results; choose another --out"
+            f"{folder}: exists and holds no earlier results of '{generator}'; choose another --out"
         )
 
 
@@ -47,7 +47,7 @@ def require_replaceable(folder: Path, generator: str) -> None:
     if not folder.exists():
         return
     if not folder.is_dir() or (any(folder.iterdir()) and not _is_ours(folder, generator)):
-        raise ForeignFolder(folder)
+        raise ForeignFolder(folder, generator)
 
 
 def _is_ours(folder: Path, generator: str) -> bool:
