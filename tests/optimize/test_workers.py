@@ -20,6 +20,7 @@ if __name__ == "__main__":
     with workers(1) as pool:
         pool.submit(int).result()
         jobs = [pool.submit(time.sleep, 600) for _ in range(9)]
+        time.sleep(1)  # until the worker is at the first of them
         print("ready", flush=True)
         jobs[-1].result()
 """
