@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where searches run: a process for each core, or what the caller brings."""
+"""Where long work runs: a process for each core, or what the caller brings."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def workers(searches: int, given: Executor | None = None) -> Iterator[Executor]:
+def workers(jobs: int, given: Executor | None = None) -> Iterator[Executor]:
     """Return an executor to use with ``with``; one that was given stays open.
 
-    An interruption ends searches that run and drops those that wait.
+    An interruption ends jobs that run and drops those that wait.
 
     Args:
-        searches: most that will run at once.
+        jobs: most that will run at once.
         given: the caller's executor, None for a process for each core.
     """
     if given is not None:
         yield given
         return
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(searches, _cores()), context, initializer=_prepare_worker)
+    pool = ProcessPoolExecutor(min(jobs, _cores()), context, initializer=_prepare_worker)
     try:
         yield pool
     finally:
