@@ -160,15 +160,16 @@ def applicable(study: Study, modes: Sequence[Mode]) -> tuple[Mode, ...]:
 
 
 def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None) -> Start:
-    """Begin with equal joints that are just accurate, and with other stiffnesses.
+    """Begin with the stiffest and with the softest springs, which lead to different local optima.
 
-    These are the stiffest and the softest of all, from which other local optima are reached; or the
-    best found for the posture as given, so that freedom does not end in a worse one. If all fail,
-    the task's own posture is the last resort.
+    Where springs were sought for the posture as given, a free one begins with these, so that
+    freedom does not end in a worse optimum, and with equal joints that are just accurate. If all
+    fail, the task's own posture is the last resort.
     """
-    equal = np.full(study.robot.n, float(np.median(study.nominal)))
-    springs = [accurate_springs(study, candidate.q, equal)]
-    springs += [study.upper, study.lower] if table is None else [table.springs]
+    springs = [study.upper, study.lower]
+    if table is not None:
+        equal = np.full(study.robot.n, float(np.median(study.nominal)))
+        springs = [table.springs, accurate_springs(study, candidate.q, equal)]
     points = tuple((candidate.q, each) for each in springs)
     fallbacks = ((study.task_pose.q, study.upper),) if mode == "free" else ()
     return Start(candidate.pose.name, mode, points, fallbacks)
