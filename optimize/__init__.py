@@ -2,10 +2,11 @@
 """Design problems: which joint stiffness and which posture hurt least."""
 
 from .co_design import Design, Gains, PoseResult, design
+from .failure import SolverFailure
 from .front import Front, ParetoPoint
 from .pareto import Pareto, pareto_fronts
 from .poses import Candidate, candidates
-from .solve import Mode, Outcome, SolverFailure
+from .solve import Mode, Outcome
 from .study import Pose, Study, load_study
 
 __all__ = [

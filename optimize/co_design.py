@@ -9,10 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .poses import Candidate
+from softimpact.symbolic import InvalidValue
+
+from .failure import SolverFailure
+from .poses import Candidate, leaves_a_choice
 from .problem import Problem, prepare
 from .repair import accurate_springs, largest_deflection
-from .solve import Mode, Outcome, SolverFailure, Start, better, solve
+from .solve import Mode, Outcome, Start, better, solve
 from .study import Study
 from .timing import Timing
 from .workers import workers
@@ -67,7 +70,8 @@ class Design:
         study: what was asked.
         poses: results in the study's order.
         winner: the solved outcome of least force.
-        gains: what springs and posture bought; None where a mode was not run.
+        gains: what springs and posture bought; None if a mode that the task leaves open was not
+            run, or the springs of the task's pose were not solved.
         timing: of the impacts simulated.
         compiled: whether the NLP ran as machine code.
     """
@@ -95,25 +99,28 @@ def design(
 
     Args:
         study: the problem.
-        modes: ``table`` seeks k_s for each pose, ``free`` k_s and the posture from each pose.
+        modes: ``table`` seeks k_s for each pose, ``free`` k_s and the posture from each pose; see
+            ``applicable``.
         executor: where the searches run; default a process for each core. Threads of one process
             take turns, because Ipopt's linear solver is not thread-safe.
         on_outcome: called with every outcome as it arrives.
 
     Raises:
+        InvalidValue: a pose, the stiffness or the modes do not fit the task.
         SolverFailure: no search was solved.
     """
+    modes = applicable(study, modes)
     problem = prepare(study)
     poses = problem.poses
     outcomes: dict[tuple[str, Mode], Outcome] = {}
     with workers(len(poses), executor) as pool:
-        for mode in (mode for mode in MODES if mode in modes):
+        for mode in modes:
             starts = [_start(study, p, mode, outcomes.get((p.pose.name, "table"))) for p in poses]
             for outcome in _run(problem, starts, pool):
                 outcomes[outcome.name, outcome.mode] = outcome
                 if on_outcome is not None:
                     on_outcome(outcome)
-        again = _laggards(study, poses, outcomes) if set(MODES) <= set(modes) else []
+        again = _laggards(study, poses, outcomes) if modes == MODES else []
         for outcome in _run(problem, again, pool):
             key = outcome.name, outcome.mode
             outcomes[key] = better(outcomes[key], outcome)
@@ -131,21 +138,38 @@ def design(
         for pose, force in zip(poses, problem.before, strict=True)
     )
     winner = min(solved, key=lambda outcome: outcome.force)
-    gains = _gains(study, results, winner)
+    gains = _gains(study, results, winner.force)
     compiled = problem.program.library is not None
     return Design(study, results, winner, gains, problem.timing, compiled)
 
 
-def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None) -> Start:
-    """Begin with equal joints that are just accurate, and with a second stiffness.
+def applicable(study: Study, modes: Sequence[Mode]) -> tuple[Mode, ...]:
+    """Return those of some modes that a study's task leaves open, in the order of ``MODES``.
 
-    That is the stiffest of all where the posture is given, and where it is free the best found for
-    it as given, so that freedom does not end in a worse local optimum. If all fail, the task's own
-    posture is the last resort.
+    Raises:
+        InvalidValue: there are none.
     """
-    equal = np.full(study.robot.n, float(np.median(study.nominal)))
-    springs = [accurate_springs(study, candidate.q, equal)]
-    springs.append(study.upper if table is None else table.springs)
+    left = tuple(mode for mode in MODES if mode in modes)
+    if not leaves_a_choice(study):
+        left = tuple(mode for mode in left if mode == "table")
+    if not left:
+        raise InvalidValue(
+            "mode", "the task leaves this arm no other posture to seek; choose 'table'"
+        )
+    return left
+
+
+def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None) -> Start:
+    """Begin with the stiffest and with the softest springs, which lead to different local optima.
+
+    Where springs were sought for the posture as given, a free one begins with these, so that
+    freedom does not end in a worse optimum, and with equal joints that are just accurate. If all
+    fail, the task's own posture is the last resort.
+    """
+    springs = [study.upper, study.lower]
+    if table is not None:
+        equal = np.full(study.robot.n, float(np.median(study.nominal)))
+        springs = [table.springs, accurate_springs(study, candidate.q, equal)]
     points = tuple((candidate.q, each) for each in springs)
     fallbacks = ((study.task_pose.q, study.upper),) if mode == "free" else ()
     return Start(candidate.pose.name, mode, points, fallbacks)
@@ -159,11 +183,15 @@ def _laggards(
     Where the springs of a given posture were not sought, they have begun there already.
     """
     found = {name: outcome for (name, mode), outcome in outcomes.items() if mode == "free"}
-    best = min((outcome.force for outcome in found.values() if outcome.solved), default=np.inf)
+    solved = [outcome.force for outcome in found.values() if outcome.solved]
+    if not solved:
+        return []
+    enough = LAGS_BEHIND * min(solved)
+    late = {name for name, o in found.items() if not o.solved or o.force > enough}
     return [
         Start(pose.pose.name, "free", ((pose.q, study.upper),))
         for pose in poses
-        if (outcome := found.get(pose.pose.name)) and outcome.force > LAGS_BEHIND * best
+        if pose.pose.name in late
     ]
 
 
@@ -176,13 +204,15 @@ def _run(problem: Problem, starts: Sequence[Start], pool: Executor) -> Iterator[
         yield future.result()
 
 
-def _gains(study: Study, results: Sequence[PoseResult], winner: Outcome) -> Gains | None:
+def _gains(study: Study, results: Sequence[PoseResult], best: float) -> Gains | None:
     task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
-    if task.table is None or any(result.free is None for result in results):
+    if task.table is None or not task.table.solved:
+        return None
+    if leaves_a_choice(study) and task.free is None:
         return None
     return Gains(
         before=task.force_before,
         springs=task.table.force,
         posture=min(result.force_before for result in results),
-        both=winner.force,
+        both=best,
     )

@@ -14,20 +14,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.rigid import Array
 
+from .failure import SolverFailure
 from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
 from .levels import ROOM, even_bounds, level_range
 from .problem import Problem, prepare
 from .repair import largest_deflection
 from .searches import Progress, Searches
-from .solve import Outcome, SolverFailure, preference
+from .solve import Outcome, preference
 from .stiffest import Stiffest, stiffest
 from .study import Study
 from .sweep import Level, sweep
 from .timing import Timing
 from .workers import workers
+
+RIGID = 1e-12
+"""Deflection [m] that counts as none."""
 
 Outcomes = list[Outcome | None]
 """What was found at each level, None where it is out of reach."""
@@ -98,9 +103,11 @@ def pareto_fronts(
             number.
 
     Raises:
-        InvalidValue: the study asks for accuracies where there is nothing to find.
+        InvalidValue: the study asks for accuracies where there is nothing to find, or its forces
+            bend no spring.
         SolverFailure: no search with a free posture was solved.
     """
+    _require_deflection(study)
     problem = prepare(study)
     ends = {pose.pose.name: stiffest(study, pose.q, "table") for pose in problem.poses}
     accurate = _most_accurate(problem, ends)
@@ -113,6 +120,14 @@ def pareto_fronts(
     if not any(outcome.solved for outcome in free if outcome is not None):
         raise SolverFailure([outcome for outcome in free if outcome is not None])
     return _fronts(problem, [level.bound for level in levels], held, free)
+
+
+def _require_deflection(study: Study) -> None:
+    if largest_deflection(study, study.task_pose.q, study.upper) < RIGID:
+        raise InvalidValue(
+            f"{study.source}: accuracy.forces",
+            "none of them bends the springs, so that there is no accuracy to pay for",
+        )
 
 
 def _most_accurate(problem: Problem, ends: dict[str, Stiffest]) -> tuple[str, Stiffest]:

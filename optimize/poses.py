@@ -12,7 +12,8 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue, Joint, JointKind, frame_pose
 from softimpact.symbolic.rigid import Array
 
-from .repair import posture_at_pose
+from .nlp import tip_pose_error
+from .repair import POSE, posture_at_pose
 from .study import Pose, Study
 
 TURNED = 0.1
@@ -50,6 +51,22 @@ def _tip_function(model: ImpactModel) -> ca.Function:
     q = ca.SX.sym("q", model.robot.n)
     pose = frame_pose(model.robot, model.tip, q)
     return ca.Function("tip", [q], [pose.position, pose.rotation])
+
+
+def leaves_a_choice(study: Study) -> bool:
+    """Return whether an arm's posture can be sought while its tip is held as the task asks.
+
+    Six joints or more can be led there from any pose, even if they then have no choice. Fewer have
+    one posture nearby, that of the task itself, unless they move in a plane or the like.
+    """
+    n = study.robot.n
+    if n >= POSE:
+        return True
+    q = ca.SX.sym("q", n)
+    position, rotation = tip_pose(study.model, study.task_pose.q)
+    error = tip_pose_error(study.model, q, ca.DM(position), ca.DM(rotation))
+    jacobian = ca.Function("error", [q], [ca.jacobian(error, q)])(study.task_pose.q)
+    return bool(np.linalg.matrix_rank(np.array(jacobian), tol=1e-6) < n)
 
 
 def candidates(study: Study) -> list[Candidate]:

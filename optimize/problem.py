@@ -11,8 +11,7 @@ from softimpact.symbolic.rigid import Array
 
 from .compiled import c_compiler, compiled_nlp
 from .nlp import DesignNlp, build_nlp, parameters
-from .poses import Candidate, candidates, tip_pose
-from .repair import POSE
+from .poses import Candidate, candidates, leaves_a_choice, tip_pose
 from .solve import Bounds, Mode, Program, nlp_solver
 from .study import Study
 from .timing import Timing, impact_timing
@@ -42,8 +41,8 @@ class Problem:
 
     @property
     def freest(self) -> Mode:
-        """The mode that leaves most free: an arm of fewer than six joints has one posture only."""
-        return "free" if self.study.robot.n >= POSE else "table"
+        """The mode that leaves most free."""
+        return "free" if leaves_a_choice(self.study) else "table"
 
     def numbers(self, max_deflection: float | None = None) -> Array:
         """Return the NLP's parameters, with another bound on the deflection [m] if one is given."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -179,22 +178,6 @@ def better(first: Outcome, second: Outcome) -> Outcome:
         attempts=first.attempts + second.attempts,
         seconds=first.seconds + second.seconds,
     )
-
-
-class SolverFailure(Exception):
-    """No start of a study was solved; carries the best feasible point found, if any."""
-
-    exit_code = 3
-
-    def __init__(self, outcomes: Sequence[Outcome]) -> None:
-        self.outcomes = tuple(outcomes)
-        self.best = min(outcomes, key=preference)
-        statuses = sorted({outcome.status for outcome in outcomes})
-        super().__init__(
-            f"none of {len(outcomes)} starts was solved (Ipopt: {', '.join(statuses)}); "
-            f"the best point, from {self.best.name}, has a peak force of {self.best.force:.1f} N "
-            f"and violates a constraint by {self.best.violation:.2g}"
-        )
 
 
 def _constraint_bounds(program: Program, mode: Mode) -> tuple[Array, Array]:

@@ -69,20 +69,20 @@ def impact_timing(study: Study, postures: Sequence[Array]) -> Timing:
     frequency = max(_largest_frequency(study, q) for q in postures)
     duration = SHORTEST
     while True:
-        timing = _timing(duration, frequency)
+        timing = _timing(study, duration, frequency)
         longest = _longest_contact(study, postures, timing)
         if longest is not None or duration >= LONGEST:
             break
         duration *= 2.0
     wanted = min(LONGEST, MARGIN * (duration if longest is None else float(longest)))
-    return _timing(wanted, frequency)
+    return _timing(study, wanted, frequency)
 
 
-def _timing(duration: float, frequency: float) -> Timing:
+def _timing(study: Study, duration: float, frequency: float) -> Timing:
     steps = max(NODES, int(np.ceil(duration * frequency / LARGEST_PHASE)))
     if steps > MOST_STEPS:
         raise InvalidValue(
-            "stiffness.upper",
+            f"{study.source}: stiffness.upper",
             f"joints that stiff vibrate so fast that {duration:g} s of impact need {steps} time "
             f"steps, more than {MOST_STEPS}; lower the bound or raise robot.rotor_inertia",
         )

@@ -40,15 +40,17 @@ def design(
     from softimpact.optimize import load_study
 
     from .design_report import GENERATOR, as_record, design_report
-    from .output import print_json
+    from .output import failures_as_json, print_json
     from .results_folder import replaced_folder, require_replaceable
     from .values import given
 
-    modes = _modes(mode)
     problem = load_study(study, {"impact": given(region=region, speed=speed)})
+    modes = _modes(mode, problem)
     folder = out or Path("results") / problem.source.stem
     require_replaceable(folder, GENERATOR)
-    report = design_report(_search(problem, modes))
+    with failures_as_json(json):
+        found = _search(problem, modes)
+    report = design_report(found)
     record = as_record(report)
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(report, record, fresh)
@@ -58,17 +60,17 @@ def design(
         _print(report, folder)
 
 
-def _modes(name: str) -> tuple[Mode, ...]:
+def _modes(name: str, study: Study) -> tuple[Mode, ...]:
     from typing import Literal
 
-    from softimpact.optimize.co_design import MODES
+    from softimpact.optimize.co_design import MODES, applicable
 
     from .values import one_of
 
     chosen: Literal["table", "free", "both"] = one_of(
         "mode", name, Literal["table", "free", "both"]
     )
-    return MODES if chosen == "both" else (chosen,)
+    return applicable(study, MODES if chosen == "both" else (chosen,))
 
 
 def _search(study: Study, modes: tuple[Mode, ...]) -> Design:

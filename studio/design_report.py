@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from softimpact.optimize import Design, Gains, Outcome, PoseResult, Study
+from softimpact.optimize.solve import preference
 from softimpact.simulate import ImpactHistory
 from softimpact.symbolic import Analysis, analyse
 
@@ -77,15 +78,15 @@ class DesignReport:
 
 
 def best_outcome(result: PoseResult) -> Outcome:
-    """Return the better of a pose's outcomes; solved ones come first."""
+    """Return the better of a pose's outcomes; solved ones come first, then feasible ones."""
     found = [outcome for outcome in (result.table, result.free) if outcome is not None]
-    return min(found, key=lambda outcome: (not outcome.solved, outcome.force))
+    return min(found, key=preference)
 
 
 def design_report(design: Design) -> DesignReport:
     """Rank the poses, simulate the winner and find the speeds that meet the limit."""
     study, winner = design.study, design.winner
-    ordered = sorted(design.poses, key=lambda pose: _order(best_outcome(pose)))
+    ordered = sorted(design.poses, key=lambda pose: preference(best_outcome(pose)))
     poses = tuple(
         RankedPose(i + 1, pose, analyse(study.model, pose.candidate.q, study.direction))
         for i, pose in enumerate(ordered)
@@ -104,10 +105,6 @@ def design_report(design: Design) -> DesignReport:
         speed_before=safe_speed(study, task.candidate.q, study.nominal),
         speed_after=safe_speed(study, winner.q, winner.springs),
     )
-
-
-def _order(outcome: Outcome) -> tuple[bool, float]:
-    return not outcome.solved, outcome.force
 
 
 def as_record(report: DesignReport) -> dict[str, Any]:

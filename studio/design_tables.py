@@ -6,6 +6,7 @@ from __future__ import annotations
 from rich.console import Console
 
 from softimpact.optimize import Outcome
+from softimpact.optimize.poses import leaves_a_choice
 from softimpact.symbolic.rigid import Array
 
 from .design_report import DesignReport, RankedPose, gains_in_words, limit_kind
@@ -102,12 +103,13 @@ def _notes(report: DesignReport) -> list[str]:
     for mode in ("table", "free"):
         outcomes = report.design.outcomes(mode)
         if outcomes:
-            solved = sum(outcome.solved for outcome in outcomes)
-            least = min(outcome.force for outcome in outcomes)
-            near = sum(outcome.force <= 1.005 * least for outcome in outcomes)
+            forces = [outcome.force for outcome in outcomes if outcome.solved]
+            near = sum(force <= 1.005 * min(forces) for force in forces)
             notes.append(
-                f"{mode}: {solved} of {len(outcomes)} solved, {near} within 0.5 % of the best"
+                f"{mode}: {len(forces)} of {len(outcomes)} solved, {near} within 0.5 % of the best"
             )
+    if not leaves_a_choice(report.study):
+        notes.append("free: left out, because the task leaves this arm no other posture")
     return notes
 
 

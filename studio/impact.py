@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,23 +55,24 @@ def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
     scene = situation(where)
     velocity = None if how.joint_velocity is None else _per_speed(scene, how.joint_velocity)
     approach = Approach(scene.q, scene.direction, how.speed, velocity)
-    controller = _controller(how)
-    history = simulate_impact(
-        scene.model, approach, contact, fidelity, order=how.order, controller=controller
-    )
-    peak, limit = history.peak(definition), contact.region.force_limit
-    safe_speed = None
-    if how.safe_speed:
-        safe_speed = largest_safe_speed(
-            scene.model,
-            approach,
-            contact,
-            limit,
-            fidelity,
-            definition,
-            order=how.order,
-            controller=controller,
+    limit, safe_speed = contact.region.force_limit, None
+    with _naming_options():
+        controller = _controller(how)
+        history = simulate_impact(
+            scene.model, approach, contact, fidelity, order=how.order, controller=controller
         )
+        if how.safe_speed:
+            safe_speed = largest_safe_speed(
+                scene.model,
+                approach,
+                contact,
+                limit,
+                fidelity,
+                definition,
+                order=how.order,
+                controller=controller,
+            )
+    peak = history.peak(definition)
     return {
         "robot": scene.model.robot.name,
         "tip": scene.model.tip,
@@ -94,6 +96,25 @@ def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
         "time": history.time,
         "force": history.force,
     }
+
+
+OPTIONS = {
+    "fidelity": "--model",
+    "controller": "--pid",
+    "controller.proportional": "--pid, k_p",
+    "controller.derivative": "--pid, k_d",
+    "controller.integral": "--pid, k_i",
+}
+"""What the command line calls the fields of an impact."""
+
+
+@contextmanager
+def _naming_options() -> Iterator[None]:
+    """Let errors name fields as they were typed."""
+    try:
+        yield
+    except InvalidValue as error:
+        raise InvalidValue(OPTIONS.get(error.field, error.field), error.reason) from None
 
 
 def _controller(how: TypedImpact) -> Controller | None:

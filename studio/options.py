@@ -23,7 +23,7 @@ Tip = Annotated[
     typer.Option(
         "--tip",
         metavar="FRAME",
-        help="Contact frame, or BODY@x,y,z for any point of a body [m]; default the model's own.",
+        help="Contact frame, or BODY@x,y,z for any point of a body (m); default the model's own.",
     ),
 ]
 Configuration = Annotated[

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -41,6 +42,20 @@ def plain(value: Any) -> Any:
 def print_json(result: Mapping[str, Any]) -> None:
     """Print one JSON object to stdout."""
     typer.echo(json.dumps(plain(result), allow_nan=False))
+
+
+@contextmanager
+def failures_as_json(wanted: bool) -> Iterator[None]:
+    """Print what a failed solver found best as one JSON object, too, if that is wanted."""
+    from softimpact.optimize import SolverFailure
+
+    try:
+        yield
+    except SolverFailure as failure:
+        if wanted:
+            best = {**vars(failure.best), "feasible": failure.feasible}
+            print_json({"error": str(failure), "status": failure.statuses, "best": best})
+        raise
 
 
 def write_json(path: Path, result: Any) -> None:

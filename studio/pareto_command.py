@@ -36,7 +36,7 @@ def pareto(
     """Find the least peak force at every accuracy: fronts with the posture free and held."""
     from softimpact.optimize import load_study
 
-    from .output import print_json
+    from .output import failures_as_json, print_json
     from .pareto_record import GENERATOR, as_record
     from .results_folder import replaced_folder, require_replaceable
     from .values import given
@@ -45,7 +45,8 @@ def pareto(
     problem = load_study(study, overrides)
     folder = out or Path("results") / f"{problem.source.stem}_pareto"
     require_replaceable(folder, GENERATOR)
-    report = _search(problem)
+    with failures_as_json(json):
+        report = _search(problem)
     record = as_record(report)
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(report, record, fresh)

@@ -16,12 +16,12 @@ RESULTS = "results.json"
 
 
 class ForeignFolder(SoftImpactError):
-    """The output folder holds files that an earlier run did not write."""
+    """The output folder holds files that an earlier run of the same command did not write."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, generator: str) -> None:
+        self.folder, self.generator = folder, generator
         super().__init__(
-            f"{folder}: exists and is no folder of earlier results; choose another --out"
+            f"{folder}: exists and holds no earlier results of '{generator}'; choose another --out"
         )
 
 
@@ -38,16 +38,19 @@ def require_replaceable(folder: Path, generator: str) -> None:
 
     Called before long work, so that it is not lost for want of a place.
     """
+    place = folder.resolve()
+    if place.is_mount() or Path.cwd().is_relative_to(place):
+        raise FolderNotWritable(folder, "a folder in use cannot be replaced: name one in it")
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent):
+        place.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{place.name}.", dir=place.parent):
             pass
     except OSError as error:
         raise FolderNotWritable(folder, error.strerror or str(error)) from error
     if not folder.exists():
         return
     if not folder.is_dir() or (any(folder.iterdir()) and not _is_ours(folder, generator)):
-        raise ForeignFolder(folder)
+        raise ForeignFolder(folder, generator)
 
 
 def _is_ours(folder: Path, generator: str) -> bool:
@@ -67,14 +70,17 @@ def replaced_folder(folder: Path, generator: str) -> Iterator[Path]:
         generator: that marks the results of earlier runs.
     """
     require_replaceable(folder, generator)
-    fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    place = folder.resolve()  # of a link, the folder that it leads to
+    fresh = Path(tempfile.mkdtemp(prefix=f".{place.name}.", dir=place.parent))
+    old = fresh.with_name(f"{fresh.name}.old")
     try:
         yield fresh
         fresh.chmod(0o755)
-        old = fresh.with_name(f"{fresh.name}.old")
-        if folder.exists():
-            folder.rename(old)
-        fresh.rename(folder)
-        shutil.rmtree(old, ignore_errors=True)
+        if place.exists():
+            place.rename(old)
+        fresh.rename(place)
     finally:
-        shutil.rmtree(fresh, ignore_errors=True)
+        if old.exists() and not place.exists():
+            old.rename(place)
+        for left in (fresh, old):
+            shutil.rmtree(left, ignore_errors=True)

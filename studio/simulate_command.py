@@ -30,7 +30,7 @@ Pid = Annotated[
     str | None,
     typer.Option(
         metavar="LIST",
-        help="[k_p, k_d, k_i] of MSM's computed-torque controller (rad/s², rad/s, rad/s³), which "
+        help="k_p, k_d, k_i of MSM's computed-torque controller (rad/s², rad/s, rad/s³), which "
         "reacts after 20 ms; for chain, linearised and full.",
     ),
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from typing import Any, get_args
 
 from softimpact.symbolic import InvalidValue, Robot, UnknownName
@@ -57,7 +58,7 @@ def _parsed(field: str, text: str) -> object:
     if _is_number(text):
         return float(text)
     try:
-        return json.loads(text)
+        return json.loads(re.sub(r"\binf\b", "Infinity", text))  # which JSON lacks, Python's has
     except (ValueError, RecursionError):
         raise InvalidValue(
             field, f"needs a number or a JSON list such as [0, 0.5], not '{text}'"

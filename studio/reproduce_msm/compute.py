@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, as_completed
 from dataclasses import dataclass
 from typing import Any, get_args
 
 import numpy as np
 
+from softimpact.optimize.workers import workers
 from softimpact.simulate import Decoupling, PeakDefinition, decoupling_stiffness
 from softimpact.symbolic import Contact, InvalidValue, body_region, static_stiffness
 from softimpact.symbolic.rigid import Array
@@ -182,19 +181,14 @@ def compute(
         on_done: told the kind of each task when it ends.
     """
     tasks = work_of(scenarios, between)
-    context = multiprocessing.get_context("spawn")
     found: dict[Task, Any] = {}
-    with ProcessPoolExecutor(min(os.cpu_count() or 1, len(tasks)), context) as pool:
+    with workers(len(tasks)) as pool:
         futures: dict[Future[Any], Task] = {
             pool.submit(WORK[kind], *arguments): (kind, arguments) for kind, arguments in tasks
         }
-        try:
-            for future in as_completed(futures):
-                found[futures[future]] = future.result()
-                on_done(futures[future][0])
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
+        for future in as_completed(futures):
+            found[futures[future]] = future.result()
+            on_done(futures[future][0])
     return _collected(scenarios, tasks, found)
 
 

@@ -14,17 +14,31 @@ from .ladder import LADDER, REGIONS
 
 COLOURS = {name: f"C{i}" for i, name in enumerate("abcdef")}
 
-LINES = {
-    "one_mass": ("0.55", ":"),
-    "two_mass": ("C3", "--"),
-    "linearised": ("C1", "-."),
-    "chain_controlled": ("C2", "--"),
-    "full_held": ("C4", "-"),
-    "full": ("C0", "-"),
+RUNGS = {
+    "one_mass": "0.55",
+    "two_mass": "C3",
+    "chain": "C5",
+    "linearised": "C1",
+    "chain_controlled": "C2",
+    "linearised_controlled": "C0",
+    "full_uncontrolled": "C6",
+    "full_held": "C4",
+    "full": "C0",
 }
-"""Colour and line of the models that can be told apart; the others lie on these."""
+"""Colour of each model; two that lie on each other share one and are not drawn together."""
 
-REFERENCE = "full"
+LINES = {
+    "one_mass": ":",
+    "two_mass": "--",
+    "linearised": "-.",
+    "chain_controlled": "--",
+    "full_held": "-",
+    "full": "-",
+}
+"""Line of the models that can be told apart; the others lie on these."""
+
+BARS = {rung: colour for rung, colour in RUNGS.items() if rung != "full"}
+"""Colour of the models that have an error: the last is what they are held against."""
 
 
 def ladder_figure(results: Results, region: str = "head") -> Figure:
@@ -36,9 +50,9 @@ def ladder_figure(results: Results, region: str = "head") -> Figure:
     for i, name in enumerate(names):
         axes = figure.add_subplot(rows, columns, i + 1)
         points = results.sweeps[name]
-        for rung, (colour, line) in LINES.items():
+        for rung, line in LINES.items():
             forces = [p.peaks[region][rung]["first_contact"] for p in points]
-            axes.semilogx([p.stiffness for p in points], forces, line, color=colour)
+            axes.semilogx([p.stiffness for p in points], forces, line, color=RUNGS[rung])
         axes.set_title(f"({name})", fontsize=9)
         axes.set_ylim(bottom=0)
     for drawn, rung in zip(figure.axes[0].lines, LINES, strict=True):
@@ -51,22 +65,21 @@ def ladder_figure(results: Results, region: str = "head") -> Figure:
 
 def error_figure(results: Results) -> Figure:
     """Draw the mean error of each model on a logarithmic scale, a group a scenario."""
-    rungs = [rung for rung in LADDER if rung != REFERENCE]
     figure = Figure(figsize=(7.6, 5.0), layout="constrained")
     names = list(results.sweeps)
     for row, region in enumerate(REGIONS):
         axes = figure.add_subplot(2, 1, row + 1)
-        width = 0.85 / len(rungs)
-        for k, rung in enumerate(rungs):
+        width = 0.85 / len(BARS)
+        for k, (rung, colour) in enumerate(BARS.items()):
             errors = [mean_error(results.sweeps[s], region, rung, "first_contact") for s in names]
-            places = np.arange(len(names)) + (k - (len(rungs) - 1) / 2) * width
-            axes.bar(places, np.maximum(errors, 1e-2), width, color=f"C{k}")
+            places = np.arange(len(names)) + (k - (len(BARS) - 1) / 2) * width
+            axes.bar(places, np.maximum(errors, 1e-2), width, color=colour)
         axes.set_yscale("log")
         axes.set_ylim(1e-2, 100)
         axes.yaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
         axes.set_xticks(range(len(names)), [f"({s})" for s in names])
         axes.grid(False, axis="x")
         axes.set_ylabel(f"mean error, {region} [%]")
-    handles = [Patch(color=f"C{k}", label=LADDER[rung].title) for k, rung in enumerate(rungs)]
+    handles = [Patch(color=colour, label=LADDER[rung].title) for rung, colour in BARS.items()]
     figure.legend(handles=handles, loc="outside upper center", ncols=3)
     return figure

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the README shows beside Python: its C program and its commands."""
 
+from __future__ import annotations
+
 import re
 import shlex
 import shutil
@@ -15,10 +17,10 @@ from softimpact.symbolic import analyse, drives, impact_model, load_robot
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"^\$ softimpact (.+)$", README, re.MULTILINE)
-PROGRAM = re.search(r"^```c\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)[1]
+(PROGRAM,) = re.findall(r"^```c\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
 
 
-def test_c_program_prints_what_python_computes(tmp_path):
+def test_c_program_prints_what_python_computes(tmp_path: Path) -> None:
     compiler = shutil.which("cc") or shutil.which("gcc")
     assert compiler is not None, "a C compiler is needed"
     source, program = tmp_path / "main.c", tmp_path / "main"
@@ -34,11 +36,11 @@ def test_c_program_prints_what_python_computes(tmp_path):
     assert printed == f"m_c = {found.m_c:.2f} kg, k_r = {found.k_r:.0f} N/m\n"
 
 
-def test_readme_shows_commands():
+def test_readme_shows_commands() -> None:
     assert {command.split()[0] for command in COMMANDS} >= {"robots", "analyze", "simulate"}
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_commands_run(command, monkeypatch):
+def test_commands_run(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     assert run(*shlex.split(command)).code == 0

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every Python block of the documentation runs; the blocks of one file share a namespace."""
 
+from __future__ import annotations
+
 import re
 import textwrap
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -15,7 +18,7 @@ FENCE = re.compile(
 LINK = re.compile(r"\]\((?!\w+:|#)(?P<target>[^)#\s]+)")
 
 
-def blocks(page):
+def blocks(page: Path) -> Iterator[tuple[int, str]]:
     """Yield line number and code of each Python block."""
     text = page.read_text(encoding="utf-8")
     for fence in FENCE.finditer(text):
@@ -23,7 +26,7 @@ def blocks(page):
         yield line, textwrap.dedent(fence["code"])
 
 
-def test_there_are_pages_with_code():
+def test_there_are_pages_with_code() -> None:
     assert ROOT / "docs" / "derivations.md" in PAGES
     assert len(list(blocks(ROOT / "docs" / "derivations.md"))) == 3
 
@@ -31,7 +34,7 @@ def test_there_are_pages_with_code():
 @pytest.mark.parametrize(
     "page", [page for page in PAGES if list(blocks(page))], ids=lambda page: page.name
 )
-def test_python_blocks_run(page, tmp_path, monkeypatch):
+def test_python_blocks_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)  # what a block writes stays out of the repository
     monkeypatch.setenv("MPLBACKEND", "Agg")
     namespace = {"__name__": "__main__"}
@@ -41,6 +44,6 @@ def test_python_blocks_run(page, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_links_lead_somewhere(page):
+def test_links_lead_somewhere(page: Path) -> None:
     for link in LINK.finditer(page.read_text(encoding="utf-8")):
         assert (page.parent / link["target"]).exists(), link["target"]

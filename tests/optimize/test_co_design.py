@@ -208,7 +208,9 @@ def test_nothing_solved(tmp_path: Path) -> None:
     assert failure.best in feasible
     assert failure.best.force == min(outcome.force for outcome in feasible)
     assert "Maximum_Iterations_Exceeded" in str(failure)
-    assert f"{failure.best.force:.1f} N" in str(failure)
+    assert failure.feasible
+    assert f"best feasible point, from {failure.best.name}" in str(failure)
+    assert f"{failure.best.force:.1f} N at q = [{failure.best.q[0]:.4f}" in str(failure)
 
 
 @pytest.mark.parametrize(("failing", "attempts"), [(1, 2), (2, 3)])
@@ -240,6 +242,8 @@ def test_a_bound_that_no_spring_can_meet(tmp_path: Path) -> None:
     with pytest.raises(SolverFailure) as caught:
         design(study, ["table"], InProcess())
     best = caught.value.best
+    assert not caught.value.feasible
+    assert "no point found is feasible" in str(caught.value)
     assert best.violation > solving.FEASIBLE
     stiffest = largest_deflection(study, best.q, study.upper)
     assert largest_deflection(study, best.q, best.springs) == pytest.approx(stiffest, rel=0.05)

@@ -137,11 +137,15 @@ print(compiled_nlp(solver, c_compiler()))
 """
 
 
+def _twin() -> subprocess.Popen[str]:
+    command = [sys.executable, "-c", TWIN]
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True)
+
+
 @needs_compiler
 def test_two_processes_may_compile_the_same_at_once(cache: Path) -> None:
-    command = [sys.executable, "-c", TWIN]
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    with subprocess.Popen(command, **pipes) as a, subprocess.Popen(command, **pipes) as b:
+    with _twin() as a, _twin() as b:
         for twin in (a, b):
             assert twin.stdout is not None
             assert twin.stdout.readline() == "ready\n"

@@ -121,7 +121,7 @@ def test_the_whole_history_is_that_of_sundials(head: Impacts) -> None:
 
 
 def test_soft_springs_at_the_stiffest_bounds_of_a_stiff_study(tmp_path: Path) -> None:
-    stiff = {"impact": {"region": "head"}, "stiffness": {"upper": 2e6}}
+    stiff: dict[str, dict[str, Any]] = {"impact": {"region": "head"}, "stiffness": {"upper": 2e6}}
     impacts = Impacts.of(study_of(tmp_path, stiff, POSES))
     random = np.random.default_rng(4)
     for springs in (impacts.study.upper, impacts.study.lower, impacts.springs(random)):

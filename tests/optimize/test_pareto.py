@@ -251,6 +251,12 @@ def test_levels_where_there_is_nothing(
     assert reason in str(caught.value)
 
 
+def test_forces_that_bend_no_spring(tmp_path: Path) -> None:
+    study = replace(study_of(tmp_path, None, ("q9",)), forces=np.zeros((2, 3)))
+    with pytest.raises(InvalidValue, match=r"accuracy\.forces: none of them bends"):
+        pareto_fronts(study, InProcess())
+
+
 def test_one_design_is_a_front_of_one_point(tmp_path: Path) -> None:
     rigid = {"lower": 15000.0, "upper": 15000.0, "nominal": 15000.0}
     fields: dict[str, dict[str, Any]] = {"stiffness": rigid, "pareto": {"points": 3}}

@@ -64,7 +64,7 @@ def elastic(ref: Reference, n: Array, B: Array, k_s: Array, K_p: Array) -> dict[
 
 def reduced(M0: Array, K0: Array, J_c: Array) -> dict[str, Any]:
     W = np.linalg.inv(M0)
-    m_c = 1 / (J_c @ W @ J_c)
+    m_c = float(1 / (J_c @ W @ J_c))
     mode = W @ J_c * m_c
     k_r = mode @ K0 @ mode
     J_a = scipy.linalg.null_space(mode[None, :]).T  # orthonormal rows with J_a J_c# = 0
@@ -213,9 +213,7 @@ def test_gear_ratios_square_the_motors_inertia() -> None:
 def test_some_joints_may_be_rigid() -> None:
     """Eq. 36-37 do not depend on coordinates: rigid is the limit of ever stiffer springs."""
     rotors = ("--rotor-inertia", 0.3)
-    mixed = analyze_panda(
-        *rotors, "--joint-stiffness", '[1e4, "inf", 1e4, Infinity, 1e4, 1e4, 1e4]'
-    )
+    mixed = analyze_panda(*rotors, "--joint-stiffness", "[1e4, inf, 1e4, Infinity, 1e4, 1e4, 1e4]")
     ref, E = panda_urdf(), [0, 2, 4, 5, 6]
     M0 = np.block([[ref.M + 0.3 * np.eye(7), ref.M[:, E]], [ref.M[E, :], ref.M[np.ix_(E, E)]]])
     K0 = np.diag([0.0] * 7 + [1e4] * 5)

@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``softimpact design`` on a study of two poses."""
 
+from __future__ import annotations
+
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 from command_line import refusal, run, run_json
 
+Results = tuple[Path, dict[str, Any]]
+
 STUDY = Path(__file__).resolve().parents[2] / "robots" / "studies" / "panda_24_poses.toml"
 
 
-def small_study(folder, *replacements):
+def small_study(folder: Path, *replacements: tuple[str, str]) -> Path:
     """Write the Panda's study with two of its poses and some lines replaced."""
     head, *poses = STUDY.read_text(encoding="utf-8").split("[[poses]]")
     kept = [pose for pose in poses if '"q9"' in pose or '"q22"' in pose]
@@ -25,7 +30,7 @@ def small_study(folder, *replacements):
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
+def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     """Return the folder of a design and the object it printed."""
     folder = tmp_path_factory.mktemp("design")
     out = folder / "out"
@@ -34,7 +39,7 @@ def results(tmp_path_factory):
     return out, json.loads(outcome.out)
 
 
-def test_results_are_complete(results):
+def test_results_are_complete(results: Results) -> None:
     out, printed = results
     written = json.loads((out / "results.json").read_text(encoding="utf-8"))
     assert {**written, "out": str(out)} == printed
@@ -47,7 +52,7 @@ def test_results_are_complete(results):
     }
 
 
-def test_poses_are_ranked_and_solved(results):
+def test_poses_are_ranked_and_solved(results: Results) -> None:
     _, record = results
     best = [min(pose["table"]["force"], pose["free"]["force"]) for pose in record["poses"]]
     assert best == sorted(best)
@@ -58,7 +63,7 @@ def test_poses_are_ranked_and_solved(results):
     assert turned["q22"] == pytest.approx(0.31, abs=0.01)
 
 
-def test_winner_is_confirmed_by_simulation(results):
+def test_winner_is_confirmed_by_simulation(results: Results) -> None:
     _, record = results
     check = record["check"]
     assert check["linearised"] == pytest.approx(check["nlp"], rel=1e-3)
@@ -66,7 +71,7 @@ def test_winner_is_confirmed_by_simulation(results):
     assert record["winner"]["meets_limit"] == (record["winner"]["force"] <= record["limit"])
 
 
-def test_speed_that_meets_the_limit_meets_it(results):
+def test_speed_that_meets_the_limit_meets_it(results: Results) -> None:
     _, record = results
     winner = record["winner"]
     found = run_json(
@@ -77,14 +82,14 @@ def test_speed_that_meets_the_limit_meets_it(results):
     assert found["peak_force"] == pytest.approx(record["limit"], rel=1e-5)
 
 
-def test_gains_add_up(results):
+def test_gains_add_up(results: Results) -> None:
     _, record = results
     gains = record["gains"]
     assert gains["both"] <= min(gains["springs"], gains["posture"]) * (1 + 1e-3)
     assert gains["before"] >= gains["springs"]
 
 
-def test_tables_say_what_was_found(tmp_path):
+def test_tables_say_what_was_found(tmp_path: Path) -> None:
     outcome = run("design", small_study(tmp_path), "--out", tmp_path / "out", "--mode", "table")
     assert outcome.code == 0
     for piece in ("Winner:", "limit", "m/s", "SUNDIALS", "kN·m/rad", "turned about the base"):
@@ -92,7 +97,7 @@ def test_tables_say_what_was_found(tmp_path):
     assert "2 of 2 solved" in outcome.out
 
 
-def test_region_and_speed_override_the_study(tmp_path):
+def test_region_and_speed_override_the_study(tmp_path: Path) -> None:
     record = run_json_without_progress(
         *("design", small_study(tmp_path), "--out", tmp_path / "out", "--mode", "table"),
         *("--region", "head", "--speed", 0.5),
@@ -106,28 +111,35 @@ def test_region_and_speed_override_the_study(tmp_path):
     assert record["gains"] is None
 
 
-def run_json_without_progress(*arguments):
+def run_json_without_progress(*arguments: object) -> dict[str, Any]:
     """Run a command whose progress goes to stderr."""
     outcome = run(*arguments, "--json")
     assert outcome.code == 0, outcome.err
-    return json.loads(outcome.out)
+    result = json.loads(outcome.out)
+    assert isinstance(result, dict)
+    return result
 
 
-def test_infeasible_study_fails_with_ipopts_status_and_keeps_older_results(tmp_path):
+def test_infeasible_study_fails_with_ipopts_status_and_keeps_older_results(tmp_path: Path) -> None:
     out = tmp_path / "out"
     out.mkdir()
     (out / "results.json").write_text('{"generator": "softimpact design"}')
     study = small_study(tmp_path, ("max_deflection = 0.001", "max_deflection = 1e-6"))
-    outcome = run("design", study, "--out", out)
+    outcome = run("design", study, "--out", out, "--json")
     assert outcome.code == 3
     assert "Traceback" not in outcome.err
     message = outcome.err.splitlines()[-1]
     assert re.search(r"none of 4 starts was solved \(Ipopt: \w+", message)
+    printed = json.loads(outcome.out)
+    assert message == f"error: {printed['error']}"
+    assert printed["best"]["status"] in printed["status"]
+    assert not printed["best"]["feasible"]
+    assert len(printed["best"]["q"]) == len(printed["best"]["springs"]) == 7
     assert (out / "results.json").read_text() == '{"generator": "softimpact design"}'
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
 
 
-def test_bad_input_is_refused_before_the_search(tmp_path):
+def test_bad_input_is_refused_before_the_search(tmp_path: Path) -> None:
     study = small_study(tmp_path)
     foreign = tmp_path / "foreign"
     foreign.mkdir()

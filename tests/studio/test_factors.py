@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``softimpact factors`` on fixed and floating robots, and what it refuses."""
 
+from __future__ import annotations
+
 import numpy as np
 import pytest
 from command_line import refusal, run, run_json
@@ -13,7 +15,7 @@ GO2 = example_urdf("go2.urdf")
 LEGGED = ("factors", GO2, "--tip", "FL_foot", "--q", STANCE, "--direction", "[0, 0, 1]")
 
 
-def test_agrees_with_analyze():
+def test_agrees_with_analyze() -> None:
     found = run_json(*PANDA)
     reference = run_json("analyze", *PANDA[1:])
     for name in ("giaf", "giif", "directional_giaf", "osim", "osim_free", "reflected_mass_rigid"):
@@ -24,20 +26,20 @@ def test_agrees_with_analyze():
     assert len(found["single_joint_giaf"]) == len(found["impulse"]["joints"]) == 7
 
 
-def test_gear_ratio_counts_squared():
+def test_gear_ratio_counts_squared() -> None:
     reflected = run_json(*PANDA, "--rotor-inertia", "0.4")
     geared = run_json(*PANDA, "--rotor-inertia", "0.0001", "--gear-ratio", f"{4000**0.5}")
     assert geared["giaf"] == pytest.approx(reflected["giaf"], rel=1e-9)
 
 
-def test_named_rotor_inertias():
+def test_named_rotor_inertias() -> None:
     found = [
         run_json(*PANDA, "--rotor-inertia", name)["giaf"] for name in ("drake_fr3", "menagerie_fr3")
     ]
     assert found[0] < found[1]
 
 
-def test_restitution_adds_impulse():
+def test_restitution_adds_impulse() -> None:
     plastic = run_json(*PANDA)["impulse"]
     elastic = run_json(*PANDA, "--restitution", "1")["impulse"]
     np.testing.assert_allclose(elastic["joints"], 2 * np.array(plastic["joints"]))
@@ -46,7 +48,7 @@ def test_restitution_adds_impulse():
     assert light["contact"] == pytest.approx(expected)
 
 
-def test_quadruped_on_its_feet():
+def test_quadruped_on_its_feet() -> None:
     found = run_json(*LEGGED, "--floating", "--rotor-inertia", "0.01")
     assert found["floating"] is True
     assert len(found["joints"]) == len(found["q"]) == 12
@@ -69,7 +71,7 @@ def test_quadruped_on_its_feet():
     assert held["giaf"] != found["giaf"]
 
 
-def test_planar_robot_has_null_where_nothing_applies():
+def test_planar_robot_has_null_where_nothing_applies() -> None:
     found = run_json("factors", "rr", "--q", "[0.1, 0, 0.7, 0]", "--direction", "[0, 1, 0]")
     assert found["rank"] == 2
     assert found["giaf"] is None
@@ -85,7 +87,7 @@ def test_planar_robot_has_null_where_nothing_applies():
         ("factors", "rr", "--q", "[0,0,1,0]", "--direction", "[0,1,0]"),
     ],
 )
-def test_tables(arguments):
+def test_tables(arguments: tuple[str, ...]) -> None:
     outcome = run(*arguments)
     assert (outcome.code, outcome.err) == (0, "")
     assert "GIAF" in outcome.out
@@ -105,11 +107,11 @@ def test_tables(arguments):
         (("--floating",), "its base has no mass"),
     ],
 )
-def test_bad_options(options, words):
+def test_bad_options(options: tuple[str, ...], words: str) -> None:
     assert words in refusal(*PANDA, *options)
 
 
-def test_floating_takes_all_joints():
+def test_floating_takes_all_joints() -> None:
     message = refusal(
         "factors",
         GO2,
@@ -124,12 +126,12 @@ def test_floating_takes_all_joints():
     assert "q: has 3 values, but 12 are needed" in message
 
 
-def test_floating_needs_a_tip():
+def test_floating_needs_a_tip() -> None:
     message = refusal("factors", GO2, "--floating", "--q", STANCE, "--direction", "[0, 0, 1]")
     assert "tip" in message
     assert "FL_foot" in message
 
 
-def test_direction_that_cannot_be():
+def test_direction_that_cannot_be() -> None:
     message = refusal("factors", "rr", "--q", "[0, 0, 1, 0]", "--direction", "[0, 0, 1]")
     assert "cannot move along direction" in message

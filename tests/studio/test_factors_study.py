@@ -104,7 +104,7 @@ def test_unknown_tip(small: Path) -> None:
 def test_foreign_folder_is_left_alone(small: Path, tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("years of work")
     message = refusal("factors-study", small, "--out", tmp_path)
-    assert "no folder of earlier results" in message
+    assert "no earlier results of 'softimpact factors-study'" in message
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
 
 

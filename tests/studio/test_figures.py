@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from design_reports import panda_report, ur5_report
 from matplotlib.image import imread
-from matplotlib.text import Text
+from matplotlib.text import Annotation, Text
+from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from softimpact.optimize.poses import tip_pose
 from softimpact.studio.design_report import DesignReport
@@ -135,8 +136,8 @@ def test_forces_are_those_of_the_first_contact(name: str, request: pytest.Fixtur
         )
         ends.append(time[-1])
     assert axes.get_xlim() == (0.0, max(ends))
-    limit = [line for line in axes.lines if "ISO/TS 15066" in line.get_label()]
-    assert set(limit[0].get_ydata()) == {report.limit}
+    limit = [line for line in axes.lines if "ISO/TS 15066" in str(line.get_label())]
+    assert np.unique(limit[0].get_ydata()) == [report.limit]
 
 
 def test_a_cut_history_is_drawn_to_its_end(ur5: DesignReport) -> None:
@@ -150,7 +151,7 @@ def test_peaks_late_in_the_contact_are_named_on_the_left(ur5: DesignReport) -> N
     assert end is not None
     late = replace(ur5.worst_history, time_of_first_contact_peak=0.9 * end)
     (axes,) = figure_of_forces(replace(ur5, worst_history=late)).axes
-    assert [text.get_ha() for text in axes.texts] == ["left", "left"]
+    assert [text.get_horizontalalignment() for text in axes.texts] == ["left", "left"]
 
 
 def test_ranking_shows_every_force_in_its_row(panda: DesignReport) -> None:
@@ -195,13 +196,13 @@ def test_ranking_says_where_a_far_limit_is(ur5: DesignReport, region: str, side:
     (axes,) = figure_of_ranking(report).axes
     assert f"beyond the axis to the {side}" in axes.get_xlabel()
     assert f"{contact.region.force_limit:g} N" in axes.get_xlabel()
-    assert not [line for line in axes.lines if "limit" in line.get_label()]
+    assert not [line for line in axes.lines if "limit" in str(line.get_label())]
 
 
 def test_ranking_shows_a_limit_that_is_near(ur5: DesignReport) -> None:
     (axes,) = figure_of_ranking(_shifted(ur5, 190.0)).axes  # to 260 to 281 N; the limit is 280 N
-    (line,) = [line for line in axes.lines if "limit" in line.get_label()]
-    assert set(line.get_xdata()) == {ur5.limit}
+    (line,) = [line for line in axes.lines if "limit" in str(line.get_label())]
+    assert np.unique(line.get_xdata()) == [ur5.limit]
     assert axes.get_xlim()[0] < ur5.limit < axes.get_xlim()[1]
     assert "beyond" not in axes.get_xlabel()
 
@@ -254,6 +255,7 @@ def test_postures_show_the_files_own_joint_frames(panda: DesignReport) -> None:
 def test_postures_have_equal_axes_and_hold_all(ur5: DesignReport) -> None:
     figure = figure_of_postures(ur5)
     space = figure.axes[0]
+    assert isinstance(space, Axes3D)
     limits = np.array([space.get_xlim(), space.get_ylim(), space.get_zlim()])
     np.testing.assert_allclose(np.ptp(limits, axis=1), np.ptp(limits[0]))
     points = np.hstack([np.array(stick) for stick in _sticks(figure, 0)])
@@ -266,6 +268,7 @@ def test_the_arrow_points_along_the_impact_from_the_winners_tip(ur5: DesignRepor
     tip = tip_pose(ur5.study.model, ur5.design.winner.q)[0]
     for view, plane in ((1, [0, 1]), (2, [1, 2])):
         (arrow,) = figure.axes[view].texts
+        assert isinstance(arrow, Annotation)
         start, end = np.array(arrow.xyann), np.array(arrow.xy)
         np.testing.assert_allclose(start, tip[plane], atol=1e-12)
         expected = ur5.study.direction[plane] / np.linalg.norm(ur5.study.direction[plane])

@@ -200,7 +200,7 @@ def test_figures_are_legible_and_the_same_each_time(report: ParetoReport, tmp_pa
     for figure in (figure_of_fronts(report), figure_of_speeds(report), figure_of_designs(report)):
         figure.draw_without_rendering()
         shown = [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip()]
-        assert min(text.get_size() for text in shown) >= 9
+        assert min(float(text.get_fontsize()) for text in shown) >= 9
         box = figure.get_tightbbox()
         width, height = figure.get_size_inches()
         assert 0 <= box.x0 < box.x1 <= width

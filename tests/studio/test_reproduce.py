@@ -10,12 +10,16 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import pytest
 from command_line import refusal
+from matplotlib.colors import to_rgb
 
 from softimpact.studio.reproduce_msm.compare import Comparison, compared, grid_points
 from softimpact.studio.reproduce_msm.compute import Results, compute
-from softimpact.studio.reproduce_msm.figures import draw
+from softimpact.studio.reproduce_msm.figures import STYLE, draw
+from softimpact.studio.reproduce_msm.ladder import LADDER
+from softimpact.studio.reproduce_msm.ladder_figures import BARS
 from softimpact.studio.reproduce_msm.page import page
 from softimpact.studio.reproduce_msm.scenarios import RR, SCENARIOS
 
@@ -68,6 +72,12 @@ def test_the_page_shows_every_number_and_figure(
     assert sorted(shown) == sorted(path.name for path in tmp_path.iterdir())
     assert {name[:5] for name in shown} == {"fig05", "fig06", "fig07", "fig08", "fig09", "ladde"}
     assert all((tmp_path / name).read_bytes().startswith(PNG) for name in shown)
+
+
+def test_bars_of_errors_are_told_apart() -> None:
+    assert list(BARS) == list(LADDER)[:-1]
+    with mpl.rc_context(STYLE):
+        assert len({to_rgb(colour) for colour in BARS.values()}) == len(BARS)
 
 
 def reproduced(paper: str, out: Path) -> dict[str, Any]:
@@ -140,6 +150,6 @@ def test_a_folder_to_write_into_is_needed() -> None:
 def test_finer_sweeps_hold_the_papers_grid() -> None:
     fine, coarse = RR.stiffnesses(2), RR.stiffnesses()
     assert len(fine) == 34
-    assert grid_points(list(fine)) == pytest.approx(list(coarse))  # type: ignore[arg-type]
+    assert grid_points(list(fine)) == pytest.approx(list(coarse))
     assert coarse[5] == pytest.approx(4056, abs=0.5)
     assert SCENARIOS["f"].arm.stiffnesses()[3] == pytest.approx(351, abs=0.5)

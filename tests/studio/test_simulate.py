@@ -26,7 +26,7 @@ def single_mass_peak(mass: float, speed: float, k_h: float, c_h: float) -> float
     """Peak of f = k_f δ^1.5 on a body held by a spring and damper, with SciPy."""
 
     def force(state: np.ndarray) -> np.ndarray:
-        return 1.9e7 * np.maximum(state[0] - state[2], 0) ** 1.5
+        return np.asarray(1.9e7 * np.maximum(state[0] - state[2], 0) ** 1.5)
 
     def rates(_: float, state: np.ndarray) -> list[float]:
         f = force(state)
@@ -168,6 +168,6 @@ def test_controller_is_msms() -> None:
 def test_controllers_that_cannot_be_are_refused() -> None:
     arriving = (*RR, "--speed", 1)
     assert "pid" in refusal(*arriving, "--pid", "[6050, 121]")
-    assert "proportional" in refusal(*arriving, "--pid", "[-1, 121, 0]")
+    assert "--pid, k_p: must be" in refusal(*arriving, "--pid", "[-1, 121, 0]")
     assert "moving, held" in refusal(*arriving, "--pid", "[1, 1, 1]", "--reference", "lost")
-    refusal(*arriving, "--pid", "[1, 1, 1]", "--model", "one_mass")
+    assert "--pid: needs motors" in refusal(*arriving, "--pid", "[1, 1, 1]", "--model", "one_mass")
