@@ -25,6 +25,7 @@ lint: $(VENV)/installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/mypy tests benchmarks examples
 
 format: $(VENV)/installed-test
 	$(BIN)/ruff check --fix .
