@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from .tridiagonal import Numbers, eigen_rows
+from .tridiagonal import Numbers, eigen_rows, sharpened
 
 LEVELS = 3
 """How often spacing doubles after the first nodes."""
@@ -131,6 +131,7 @@ def modes_of_chain(mass: Numbers, stiffness: Numbers, velocity: Numbers) -> Mode
     squared_frequency, (shape, rate) = eigen_rows(
         ((before + stiffness) / mass)[::-1], off[::-1], rows
     )
+    squared_frequency = sharpened(mass, stiffness, squared_frequency)
     return Modes(squared_frequency, shape * shape, shape * rate)
 
 
