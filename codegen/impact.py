@@ -33,7 +33,7 @@ CONTACT_STEP = 0.24
 MODE_STEP = 1.6
 """Most radians of the fastest mode in a step."""
 
-ROUGH_CONTACT_STEP, ROUGH_MODE_STEP = 0.48, 2.5
+ROUGH_CONTACT_STEP, ROUGH_MODE_STEP = 0.48, 2.8
 """The same of rough steps, which find about the speed that the others are needed at."""
 
 STANDS = 3e-5
@@ -61,10 +61,11 @@ share of the limit at which it then aims."""
 NEAR, REACH = 3e-3, 1 / 32
 """How near its aim, as a share of it, an impact must come for the force to be proportional to
 speed; how much farther off it may be where the last one's force tells the exponent of a power law,
-as a share of the distance to that."""
+as a share of the distance to that or of the aim, whichever is less."""
 
-APART, EXPONENTS = 0.05, (0.95, 1.15)
-"""How far off the last one's force must be to tell it; other exponents are of a peak that jumps."""
+EXPONENT, EXPONENTS, APART = 1.025, (0.95, 1.15), 0.05
+"""Usual exponent of the force over speed; those there are, others being of a peak that jumps; and
+how far apart two forces must be to tell it."""
 
 LARGE, LATER, GRAZES = 0.8, 1.1, 0.15
 """Impacts at about the same speed may be left after 1.1 times the time when one's force was last
@@ -72,7 +73,7 @@ LARGE, LATER, GRAZES = 0.8, 1.1, 0.15
 
 GUESS, SLOW = 1.05, 1.5
 """First guess of a safe speed over that of its simple model, and the squared frequency, over the
-contact's, at which a mode counts half there; both save trials, neither changes what is found."""
+contact's, at which a mode counts half there; neither changes what is found."""
 
 LINEAR = (1 / 6, -1 / 120, 1 / 5040)
 """(θ − sin θ)/θ³ over θ²: what a force that grows linearly does to a mode in a step."""
