@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from .tridiagonal import Numbers, eigen_rows
+from .tridiagonal import Numbers, eigen_rows, sharpened
 
 LEVELS = 3
 """How often spacing doubles after the first nodes."""
@@ -30,8 +30,11 @@ FIRST_NODES, NODES = 1, 2
 CONTACT_STEP = 0.24
 """Most radians in a step of the vibration of the contact point, held by body and robot."""
 
-MODE_STEP = 2.5
+MODE_STEP = 1.6
 """Most radians of the fastest mode in a step."""
+
+ROUGH_CONTACT_STEP, ROUGH_MODE_STEP = 0.48, 2.8
+"""The same of rough steps, which find about the speed that the others are needed at."""
 
 STANDS = 3e-5
 """Share of the displacement below which a mode's own motion counts as none."""
@@ -42,18 +45,35 @@ STEPS = 1024
 REFERENCE_STEPS = 2**20
 """The same with finer steps, so many that references end where C does not."""
 
-NEWTON, CLOSE = 32, 3e-3
+HALLEY, CLOSE = 32, 0.03
 """Most iterations for a force, and the relative change after which the next would be nothing."""
 
 TRIALS = 16
-"""Most impacts integrated for one safe speed; two or three do."""
+"""Most impacts integrated for one safe speed; two do, the first of them in rough steps."""
 
-AIM, NEAR = 0.9993, 2.9e-4
-"""Share of the limit at which a safe speed aims, and how near it must come."""
+AIM = 0.99915
+"""Share of the limit at which a safe speed aims, for the sake of what integration may be off by."""
+
+LONG, AIM_IF_LONG = 52, 0.997
+"""Nodes in rough steps above which all impacts of a safe speed are integrated in these, and the
+share of the limit at which it then aims."""
+
+NEAR, REACH = 3e-3, 1 / 32
+"""How near its aim, as a share of it, an impact must come for the force to be proportional to
+speed; how much farther off it may be where the last one's force tells the exponent of a power law,
+as a share of the distance to that or of the aim, whichever is less."""
+
+EXPONENT, EXPONENTS, APART = 1.025, (0.95, 1.15), 0.05
+"""Usual exponent of the force over speed; those there are, others being of a peak that jumps; and
+how far apart two forces must be to tell it."""
+
+LARGE, LATER, GRAZES = 0.8, 1.1, 0.15
+"""Impacts at about the same speed may be left after 1.1 times the time when one's force was last
+0.8 of its peak, unless it parts by less than 0.15 of its depth in the last step."""
 
 GUESS, SLOW = 1.05, 1.5
 """First guess of a safe speed over that of its simple model, and the squared frequency, over the
-contact's, at which a mode counts half there; both save trials, neither changes what is found."""
+contact's, at which a mode counts half there; neither changes what is found."""
 
 LINEAR = (1 / 6, -1 / 120, 1 / 5040)
 """(θ − sin θ)/θ³ over θ²: what a force that grows linearly does to a mode in a step."""
@@ -112,6 +132,7 @@ def modes_of_chain(mass: Numbers, stiffness: Numbers, velocity: Numbers) -> Mode
     squared_frequency, (shape, rate) = eigen_rows(
         ((before + stiffness) / mass)[::-1], off[::-1], rows
     )
+    squared_frequency = sharpened(mass, stiffness, squared_frequency)
     return Modes(squared_frequency, shape * shape, shape * rate)
 
 
@@ -241,8 +262,10 @@ class _Run:
         if not depth > 0:
             return self.real(0)
         cubic, u = soft * self.skin, guess
-        for _ in range(NEWTON):
-            change = (u * u * (1 + cubic * u) - depth) / (u * (2 + 3 * cubic * u))
+        for _ in range(HALLEY):
+            bend = 1 + 3 * cubic * u
+            slope, over = u * (1 + bend), u * u * (1 + cubic * u) - depth
+            change = over * slope / (slope * slope - over * bend)
             u = u - change
             if abs(change) <= CLOSE * u:
                 break

@@ -70,7 +70,8 @@ def simulated(
         (elastic,) * robot.n,
         ca.DM(parameter(package, sample, "position_gain") * np.array(robot.actuated)),
     )
-    model = ImpactModel(robot, package.tip, drives, package.manifest.gravity)
+    x, y, z = package.manifest.gravity
+    model = ImpactModel(robot, package.tip, drives, (x, y, z))
     approach = Approach(closed(robot, np.array(sample.q)), np.array(sample.n), case.speed)
     contact = Contact(case.region, case.clamped)
     end: ChainEnd | None = "grounded" if order == model.size else None
@@ -121,7 +122,7 @@ def check_against_sundials(package: Generated, count: int, seed: int) -> None:
         status, (speed, reached) = double.safe_speed(case, right)
         assert status == OK
         assert reached <= right
-        if speed < (1 - 2e-3) * case.speed:  # the peak jumps below the limit
+        if speed < (1 - 5e-3) * case.speed:  # the peak jumps below the limit
             faster = replace(case, speed=1.001 * speed)
             assert double.peak_force(faster)[1][0] > right, case
         else:
@@ -142,14 +143,34 @@ def test_force_at_the_safe_speed_is_just_below_the_limit(
         if status == SINGULAR:
             continue
         assert status == OK, case
-        assert force <= limit
-        again = replace(case, speed=speed)
-        assert compiled.peak_force(again)[1][0] == pytest.approx(force, rel=1e-6)
-        if force < (1 - 1e-3) * limit:
-            faster = replace(case, speed=speed * (1 + 4 * impact.NEAR))
+        again = compiled.peak_force(replace(case, speed=speed))[1][0]
+        assert max(again, force) < limit
+        if force < 0.995 * limit:  # the peak jumps
+            faster = replace(case, speed=speed * (1 + 2 * impact.NEAR))
             assert compiled.peak_force(faster)[1][0] > (1 - 1e-3) * limit, case
+        else:
+            assert force / limit == pytest.approx(impact.AIM, abs=1e-6)
+            assert again == pytest.approx(force, rel=5e-4), case
         found += 1
     assert found > 50
+
+
+def test_safe_speeds_of_long_contacts_are_found_in_rough_steps_and_a_little_lower(
+    package: Callable[[str], Generated],
+) -> None:
+    generated = package("panda")
+    compiled, aims = Impacts(generated, "double"), set()
+    for case in impacts(generated, 40, seed=23):
+        region = compiled.region("chest", clamped=True)
+        region.stiffness, region.damping = 3e6, 30.0
+        status, (speed, force) = compiled.call("safe_speed", case.sample, 400.0, region)
+        if status == SINGULAR:
+            continue
+        assert status == OK
+        again = compiled.call("peak_force", case.sample, speed, region)[1][0]
+        assert 0.994 * 400 < again < 400
+        aims.add(round(force / 400, 6))
+    assert aims >= {impact.AIM, impact.AIM_IF_LONG}
 
 
 def test_chain_of_a_closed_chain_is_as_near_to_the_linear_robot_as_it_says(

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from softimpact.codegen.tridiagonal import Numbers, eigen_rows
+from softimpact.codegen.tridiagonal import Numbers, eigen_rows, sharpened
 
 
 def dense(diagonal: Numbers, off: Numbers) -> Numbers:
@@ -42,3 +42,22 @@ def test_slow_modes_of_a_chain_survive_in_float_if_its_soft_end_comes_first() ->
     falls, _ = eigen_rows(diagonal, off, rows)
     assert grows.dtype == shapes.dtype == np.float32
     assert abs(np.sort(grows)[1] / slow - 1) < 1e-3 < abs(np.sort(falls)[1] / slow - 1)
+
+
+def test_sharpened_frequencies_are_right_by_themselves() -> None:
+    """A light mass between stiff springs: in float its fast mode hides what the others do to QL."""
+    mass = np.array([29.6, 0.0278, 30.3, 28.7, 7.02, 4.18, 1.19])
+    springs = np.array([4.83e6, 4.9e6, 4.15e6, 5.61e5, 9.92e5, 5630, 0])
+    root = np.sqrt(mass)
+    diagonal = (springs + np.append(0, springs[:-1])) / mass
+    off = -springs[:-1] / (root[:-1] * root[1:])
+    right = np.linalg.eigvalsh(dense(diagonal, off))[1:]
+    narrow, beside = (x[::-1].astype(np.float32) for x in (diagonal, off))
+    found, _ = eigen_rows(narrow, beside, np.eye(7, dtype=np.float32))
+    sharp = sharpened(mass.astype(np.float32), springs.astype(np.float32), found)
+    assert sharp.dtype == np.float32
+    rough, fine = (abs(np.sort(x)[1:] / right - 1).max() for x in (found, sharp))
+    assert rough > 1e-4
+    assert fine < 2e-6
+    exact, _ = eigen_rows(diagonal[::-1], off[::-1], np.eye(7))
+    np.testing.assert_allclose(np.sort(sharpened(mass, springs, exact))[1:], right, rtol=1e-9)
