@@ -58,27 +58,40 @@ int panda_default_params(panda_params *p)
 }
 
 #if defined(PANDA_USE_FLOAT)
-/* Takes the nearest quarter turns off the angle; then a polynomial each. Error < 1.2e-07. */
-void panda_sine_cosine(float x, float *s, float *c)
+static void ask_library(const float *x, int count, float *s, float *c)
 {
-    if (!(fabsf(x) < 200.0f)) {
-        *s = sinf(x);
-        *c = cosf(x);
-        return;
+    for (int i = 0; i < count; ++i) {
+        s[i] = sinf(x[i]);
+        c[i] = cosf(x[i]);
     }
-    const float quarters = x*0.636619772f + (x < 0.0f ? -0.5f : 0.5f);
-    const int nearest = (int)quarters;
-    const unsigned int quarter = (unsigned int)nearest;
-    const float k = (float)nearest;
-    const float about = (x - k*1.5703125f) - k*0.00048375129699707f;
-    const float r = about - k*7.54978995489188e-08f;
-    const float z = r*r;
-    const float sine = r + r*z*(-0.166666552f + z*(0.00833217334f + z*-0.000195166562f));
-    const float tail = 0.0416666456f + z*(-0.00138873619f + z*2.44377297e-05f);
-    const float cosine = 1.0f - 0.5f*z + z*z*tail;
-    const float first = (quarter & 1u) != 0u ? cosine : sine;
-    const float second = (quarter & 1u) != 0u ? sine : cosine;
-    *s = (quarter & 2u) != 0u ? -first : first;
-    *c = ((quarter + 1u) & 2u) != 0u ? -second : second;
+}
+
+/*
+ * Takes the nearest quarter turns off each angle; then a polynomial each. Error < 1.2e-07.
+ * Whole turns are added before, so that truncation finds the nearest.
+ */
+void panda_sines_cosines(const float *x, int count, float *s, float *c)
+{
+    for (int i = 0; i < count; ++i) {
+        if (!(fabsf(x[i]) < 200.0f)) {
+            ask_library(x, count, s, c);
+            return;
+        }
+        const float quarters = x[i]*0.636619772f + 128.5f;
+        const int nearest = (int)quarters;
+        const unsigned int quarter = (unsigned int)nearest;
+        const float k = (float)nearest - 128.0f;
+        const float about = (x[i] - k*1.5703125f) - k*0.00048375129699707f;
+        const float r = about - k*7.54978995489188e-08f;
+        const float z = r*r;
+        const float odd = -0.166666552f + z*(0.00833217334f + z*-0.000195166562f);
+        const float even = 0.0416666456f + z*(-0.00138873619f + z*2.44377297e-05f);
+        const float sine = r + r*z*odd;
+        const float cosine = 1.0f - 0.5f*z + z*z*even;
+        const float first = (quarter & 1u) != 0u ? cosine : sine;
+        const float second = (quarter & 1u) != 0u ? sine : cosine;
+        s[i] = (quarter & 2u) != 0u ? -first : first;
+        c[i] = ((quarter + 1u) & 2u) != 0u ? -second : second;
+    }
 }
 #endif

@@ -21,10 +21,12 @@ static panda_real root_of_depth(panda_real depth, panda_real cubic, panda_real g
     panda_real u = guess;
     for (int k = 0; k < 32; ++k) {
         const panda_real cu = cubic*u;
-        const panda_real change =
-            (u*u*(PANDA_R(1.0) + cu) - depth)/(u*(PANDA_R(2.0) + PANDA_R(3.0)*cu));
+        const panda_real bend = PANDA_R(1.0) + PANDA_R(3.0)*cu;
+        const panda_real slope = u*(PANDA_R(1.0) + bend);
+        const panda_real over = u*u*(PANDA_R(1.0) + cu) - depth;
+        const panda_real change = over*slope/(slope*slope - over*bend); /* Halley's */
         u -= change;
-        if (PANDA_FABS(change) <= PANDA_R(0.003)*u) {
+        if (PANDA_FABS(change) <= PANDA_R(0.03)*u) {
             break;
         }
     }
@@ -49,16 +51,19 @@ typedef struct {
     motion mode[PANDA_MODES];
     node last[3];                /* nodes, the newest first */
     int even;                    /* how many of them are evenly spaced */
-    panda_real depth;           /* that skin and body would have without the last force */
+    panda_real depth;           /* that the skin would have without the last force */
     panda_real time;
     panda_real best;            /* largest force, and when */
     panda_real best_time;
+    panda_real best_u;
+    panda_real late;            /* when the force was last nearly as large */
 } state;
 
 static void first_node(const panda_impact *impact, panda_real skin, state *at)
 {
+    const panda_level *const level = &impact->level[0];
     panda_real depth = PANDA_R(0.0);
-    panda_real soft = PANDA_R(1.0)/(impact->stiffness + impact->damping/impact->step);
+    panda_real soft = PANDA_R(1.0)/(impact->stiffness + level->rate);
     const panda_real hold = soft;
     soft += impact->compliance;
     for (int i = 0; i < impact->modes; ++i) {
@@ -71,18 +76,20 @@ static void first_node(const panda_impact *impact, panda_real skin, state *at)
     const panda_real u = root_of_depth(depth, soft*skin, guess);
     const panda_real f = skin*u*u*u;
     for (int i = 0; i < impact->modes; ++i) {
-        at->mode[i].g = impact->start[i] + (impact->level[0].edge[i] - impact->start_edge[i])*f;
+        at->mode[i].g = impact->start[i] + (level->edge[i] - impact->start_edge[i])*f;
         at->mode[i].d = at->mode[i].g;
     }
     const node touch = {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)};
-    const node first = {f, u, f*hold};
-    at->last[0] = first;
+    const node newest = {f, u, f*hold};
+    at->last[0] = newest;
     at->last[1] = touch;
     at->last[2] = touch;
     at->even = 1;
-    at->time = impact->step;
-    at->best_time = impact->step;
+    at->time = level->h;
+    at->best_time = level->h;
+    at->late = level->h;
     at->best = f;
+    at->best_u = u;
 }
 
 /* Notes the largest force near the last node, before force f: of a cubic, or first of a parabola. */
@@ -107,7 +114,17 @@ static void note_peak(state *at, panda_real h, panda_real f)
     if (top > at->best) {
         at->best = top;
         at->best_time = at->time + h*x;
+        at->best_u = at->last[0].u;
     }
+}
+
+/* Displacement of a mode after a step, without the force there; f is the force before. */
+static inline panda_real moved(const panda_mode_step *step, panda_real f, motion *mode)
+{
+    mode->d -= step->kappa*mode->g;
+    mode->d -= step->middle*f;
+    mode->g += mode->d;
+    return mode->g;
 }
 
 /* Takes a step; if `doubles`, the next is of the next level. Returns the force, 0 at the end. */
@@ -119,12 +136,9 @@ static panda_real step(const panda_level *level, int modes, panda_real skin, boo
     if (doubles) {
         (void)memcpy(earlier, at->mode, sizeof earlier);
     }
-    for (int i = 0; i < modes; ++i) {
-        motion *const mode = &at->mode[i];
-        mode->d -= level->mode[i].kappa*mode->g;
-        mode->d -= level->mode[i].middle*last[0].f;
-        mode->g += mode->d;
-        depth += mode->g;
+    for (int i = 0; i < modes; i += 2) { /* in pairs, which takes fewer instructions */
+        depth += moved(&level->mode[i], last[0].f, &at->mode[i]);
+        depth += moved(&level->mode[i + 1], last[0].f, &at->mode[i + 1]);
     }
     const bool even = at->even >= 3;
     const panda_real hold = level->hold[even ? 1 : 0];
@@ -138,7 +152,8 @@ static panda_real step(const panda_level *level, int modes, panda_real skin, boo
     }
     memory *= level->rate;
     const panda_real least = PANDA_R(0.5)*last[0].u;
-    const panda_real u = root_of_depth(depth - memory*hold, (level->soft + hold)*skin, guess > least ? guess : least);
+    depth -= memory*hold;
+    const panda_real u = root_of_depth(depth, (level->soft + hold)*skin, guess > least ? guess : least);
     const panda_real f = skin*u*u*u;
     const node next = {f, u, (f + memory)*hold};
     at->depth = depth;
@@ -160,21 +175,39 @@ static panda_real step(const panda_level *level, int modes, panda_real skin, boo
     return f;
 }
 
-int panda_impact_run(const panda_impact *impact, panda_real speed, panda_peak_force_t *out)
+/*
+ * Whether robot and body part so slowly that at another speed they might not: in the last step the
+ * skin's depth falls by a small share of what it was at the peak.
+ */
+static bool grazes(const state *at)
+{
+    const panda_real u = at->last[1].u;
+    return u*u - at->depth < PANDA_R(0.15)*at->best_u*at->best_u;
+}
+
+int panda_impact_run(const panda_impact *impact, panda_real speed, panda_real until,
+    panda_impact_peak *out)
 {
     state at;
     const panda_real skin = impact->skin*PANDA_SQRT(speed);
     first_node(impact, skin, &at);
-    bool parted = false;
-    for (int k = 0; k <= PANDA_LEVELS && !parted; ++k) {
+    bool ends = false;
+    int nodes = 1;
+    for (int k = 0; k <= PANDA_LEVELS && !ends; ++k) {
         const bool last = k == PANDA_LEVELS;
-        const int nodes = last ? 1024 : (k == 0 ? 1 : 2);
-        for (int left = nodes - 1; left >= 0 && !parted; --left) {
+        const int most = last ? 1024 : (k == 0 ? 1 : 2);
+        for (int left = most - 1; left >= 0 && !ends; --left) {
             const bool doubles = !last && left == 0;
-            parted = !(step(&impact->level[k], impact->modes, skin, doubles, &at) > PANDA_R(0.0));
+            const panda_real f = step(&impact->level[k], impact->modes, skin, doubles, &at);
+            if (f >= PANDA_R(0.8)*at.best) {
+                at.late = at.time;
+            } else {
+                ends = !(f > PANDA_R(0.0) && at.time <= until);
+            }
+            ++nodes;
         }
     }
-    if (!parted) {
+    if (!ends) {
         return PANDA_UNRESOLVED;
     }
     const panda_real found[4] = {at.best*speed, at.best_time, at.depth, at.last[0].f};
@@ -183,5 +216,7 @@ int panda_impact_run(const panda_impact *impact, panda_real speed, panda_peak_fo
     }
     out->force = found[0];
     out->time = found[1];
+    out->nodes = nodes;
+    out->until = grazes(&at) ? PANDA_REAL_MAX : at.late*PANDA_R(1.1);
     return PANDA_OK;
 }

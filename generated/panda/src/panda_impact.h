@@ -6,7 +6,7 @@
 #include "panda_internal.h"
 
 #define PANDA_MASSES PANDA_IMPACT_CHAIN_ORDER
-#define PANDA_MODES (PANDA_MASSES + 1) /* one for a body that gives way */
+#define PANDA_MODES (2*((PANDA_MASSES + 2)/2)) /* one for a body that gives way; even */
 #define PANDA_LEVELS 3
 
 typedef struct {
@@ -43,13 +43,14 @@ typedef struct {
  * are for an approach of 1 m/s; spacing doubles from one level to the next.
  */
 typedef struct {
-    int modes;
+    int modes; /* an even number */
     panda_real stiffness; /* k_h */
     panda_real damping; /* c_h */
     panda_real skin; /* k_f */
     panda_real mobility; /* of the contact, 1/kg */
     panda_real compliance; /* of modes that stand, m/N */
-    panda_real step; /* at level 0, s */
+    panda_real rate2; /* of the contact point's vibration, squared, 1/s^2 */
+    panda_real fastest; /* squared frequency, 1/s^2 */
     panda_real squared[PANDA_MODES]; /* frequency, 1/s^2 */
     panda_real weight[PANDA_MODES]; /* share of the mobility */
     panda_real velocity[PANDA_MODES]; /* share of the velocity at first touch */
@@ -58,11 +59,23 @@ typedef struct {
     panda_level level[PANDA_LEVELS + 1];
 } panda_impact;
 
-/* Prepares the impacts of a configuration; checks everything but the speed. */
+/* Prepares the impacts of a configuration, but for their steps; checks everything but the speed. */
 int panda_impact_prepare(const panda_real q[7], const panda_real n[3],
     const panda_region *region, const panda_params *p, panda_impact *impact);
 
-/* Integrates one impact. */
-int panda_impact_run(const panda_impact *impact, panda_real speed, panda_peak_force_t *out);
+/* Chooses the steps; `rough` ones are about twice as long. */
+void panda_impact_steps(panda_impact *impact, bool rough);
+
+/* Largest force of an impact. */
+typedef struct {
+    panda_real force; /* N */
+    panda_real time; /* since first touch, s */
+    panda_real until; /* as long as forces of impacts at about this speed may be the largest, s */
+    int nodes; /* it took */
+} panda_impact_peak;
+
+/* Integrates one impact until robot and body part, or to a time after which the force is small. */
+int panda_impact_run(const panda_impact *impact, panda_real speed, panda_real until,
+    panda_impact_peak *out);
 
 #endif

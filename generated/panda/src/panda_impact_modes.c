@@ -100,6 +100,24 @@ static bool eigenvalues(int count, panda_real *d, panda_real *e, panda_real *x, 
     return true;
 }
 
+/*
+ * A slow squared frequency after a step of Newton's on the dynamic stiffness z at the contact, built
+ * up from the last mass: QL's error is a share of the largest frequency, what remains is one of this.
+ */
+static panda_real sharpened(const panda_impact_chain_t *chain, int count, panda_real squared,
+    panda_real most)
+{
+    panda_real z = chain->stiffness[count - 1] - squared*chain->mass[count - 1];
+    panda_real slope = -chain->mass[count - 1];
+    for (int i = count - 2; i >= 0; --i) {
+        const panda_real share = chain->stiffness[i]/(z + chain->stiffness[i]);
+        z = z*share - squared*chain->mass[i];
+        slope = slope*share*share - chain->mass[i];
+    }
+    const panda_real change = z/slope;
+    return PANDA_FABS(change) <= PANDA_R(1e-05)*most ? squared - change : squared;
+}
+
 /* Modes of the chain: squared frequency, mobility and velocity at the contact point. */
 static int modes_of(panda_impact_chain_t *chain, bool held, panda_real *squared, panda_real *weight,
     panda_real *velocity)
@@ -130,9 +148,16 @@ static int modes_of(panda_impact_chain_t *chain, bool held, panda_real *squared,
     if (!eigenvalues(count, squared, off, weight, velocity)) {
         return 0;
     }
+    panda_real most = PANDA_R(0.0);
     for (int i = 0; i < count; ++i) {
         velocity[i] *= weight[i];
         weight[i] *= weight[i];
+        most = PANDA_FMAX(most, squared[i]);
+    }
+    for (int i = 0; i < count; ++i) {
+        if (squared[i] < PANDA_R(0.01)*most) {
+            squared[i] = sharpened(chain, count, squared[i], most);
+        }
     }
     return count;
 }
@@ -169,14 +194,15 @@ static void let_stand(panda_impact *impact)
 }
 
 /* Steps of mode i at all levels. */
-static void prepare_mode(panda_impact *impact, int i)
+static void mode_steps(panda_impact *impact, int i)
 {
     const panda_real weight = impact->weight[i];
-    panda_real h2 = impact->step*impact->step;
+    const panda_real h = impact->level[0].h;
+    panda_real h2 = h*h;
     panda_real theta2 = impact->squared[i]*h2;
     const panda_real lean = polynomial(theta2, PANDA_R(0.16666666666666666),
         PANDA_R(-0.008333333333333333), PANDA_R(0.0001984126984126984), PANDA_R(0.0));
-    impact->start[i] = impact->velocity[i]*impact->step*(PANDA_R(1.0) - theta2*lean);
+    impact->start[i] = impact->velocity[i]*h*(PANDA_R(1.0) - theta2*lean);
     impact->start_edge[i] = weight*h2*lean;
     panda_real alpha = polynomial(theta2, PANDA_R(0.08333333333333333), PANDA_R(-0.002777777777777778),
         PANDA_R(4.96031746031746e-05), PANDA_R(-5.511463844797178e-07));
@@ -194,10 +220,13 @@ static void prepare_mode(panda_impact *impact, int i)
     }
 }
 
-/* Steps of all levels. */
-static void prepare_levels(panda_impact *impact)
+void panda_impact_steps(panda_impact *impact, bool rough)
 {
-    panda_real h = impact->step;
+    /* most radians of the contact point's vibration, and of any mode's, to the power of -2 */
+    const panda_real contact = rough ? PANDA_R(4.340277777777778) : PANDA_R(17.36111111111111);
+    const panda_real mode = rough ? PANDA_R(0.1275510204081633) : PANDA_R(0.39062499999999994);
+    const panda_real rate2 = PANDA_FMAX(impact->rate2*contact, impact->fastest*mode);
+    panda_real h = PANDA_R(0.125)/PANDA_SQRT(rate2);
     for (int k = 0; k <= PANDA_LEVELS; ++k) {
         panda_level *const level = &impact->level[k];
         level->h = h;
@@ -208,7 +237,7 @@ static void prepare_levels(panda_impact *impact)
         h += h;
     }
     for (int i = 0; i < impact->modes; ++i) {
-        prepare_mode(impact, i);
+        mode_steps(impact, i);
     }
 }
 
@@ -245,21 +274,21 @@ int panda_impact_prepare(const panda_real q[7], const panda_real n[3],
     for (int i = 0; i < impact->modes; ++i) {
         impact->mobility += impact->weight[i];
     }
-    panda_real rate2 = impact->stiffness*impact->mobility;
+    impact->rate2 = impact->stiffness*impact->mobility;
     for (int i = 0; i < impact->modes; ++i) {
-        rate2 += impact->velocity[i]*impact->velocity[i]*PANDA_FMAX(impact->squared[i], PANDA_R(0.0));
+        impact->rate2 += impact->velocity[i]*impact->velocity[i]*PANDA_FMAX(impact->squared[i], PANDA_R(0.0));
     }
     let_stand(impact);
-    panda_real fastest = PANDA_R(0.0);
+    if (impact->modes % 2 != 0) { /* one that stays is added */
+        impact->squared[impact->modes] = PANDA_R(0.0);
+        impact->weight[impact->modes] = PANDA_R(0.0);
+        impact->velocity[impact->modes] = PANDA_R(0.0);
+        ++impact->modes;
+    }
+    impact->fastest = PANDA_R(0.0);
     for (int i = 0; i < impact->modes; ++i) {
-        fastest = PANDA_FMAX(fastest, impact->squared[i]);
+        impact->fastest = PANDA_FMAX(impact->fastest, impact->squared[i]);
     }
-    /* at most 0.24 rad of the contact point's vibration and 2.5 rad of any mode's */
-    rate2 = PANDA_FMAX(rate2*PANDA_R(17.36111111111111), fastest*PANDA_R(0.16));
-    impact->step = PANDA_R(0.125)/PANDA_SQRT(rate2);
-    if (!(impact->step > PANDA_R(0.0))) {
-        return PANDA_SINGULAR;
-    }
-    prepare_levels(impact);
-    return PANDA_OK;
+    const panda_real rates[2] = {impact->rate2, impact->fastest};
+    return panda_all_finite(rates, 2) && rates[0] > PANDA_R(0.0) ? PANDA_OK : PANDA_SINGULAR;
 }

@@ -35,26 +35,30 @@
 #define PANDA_COPYSIGN(x, y) PANDA_F(copysign)(x, y)
 #define PANDA_POW(x, y) PANDA_F(pow)(x, y)
 
-/* Sine s and cosine c of a finite x. */
+/* Sines s and cosines c of finite angles x. */
 #if defined(PANDA_USE_FLOAT)
-void panda_sine_cosine(float x, float *s, float *c);
+void panda_sines_cosines(const float *x, int count, float *s, float *c);
 #else
-static inline void panda_sine_cosine(double x, double *s, double *c)
+static inline void panda_sines_cosines(const double *x, int count, double *s, double *c)
 {
-    *s = sin(x);
-    *c = cos(x);
+    for (int i = 0; i < count; ++i) {
+        s[i] = sin(x[i]);
+        c[i] = cos(x[i]);
+    }
 }
 #endif
 
-/* Whether all numbers are finite; a comparison with a NaN is false. */
+/*
+ * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.
+ * A comparison with a NaN is false.
+ */
 static inline bool panda_all_finite(const panda_real *x, int count)
 {
+    panda_real sum = PANDA_R(0.0);
     for (int i = 0; i < count; ++i) {
-        if (!(PANDA_FABS(x[i]) <= PANDA_REAL_MAX)) {
-            return false;
-        }
+        sum += PANDA_R(0.0009765625)*x[i];
     }
-    return true;
+    return PANDA_FABS(sum) <= PANDA_REAL_MAX;
 }
 
 /* Status of inputs that must be greater than 0. */
@@ -110,10 +114,10 @@ static inline int panda_unit_vector(const panda_real n[3], panda_real u[3])
     const panda_real x = n[0]/largest;
     const panda_real y = n[1]/largest;
     const panda_real z = n[2]/largest;
-    const panda_real length = PANDA_SQRT(x*x + y*y + z*z);
-    u[0] = x/length;
-    u[1] = y/length;
-    u[2] = z/length;
+    const panda_real scale = PANDA_R(1.0)/PANDA_SQRT(x*x + y*y + z*z);
+    u[0] = x*scale;
+    u[1] = y*scale;
+    u[2] = z*scale;
     return PANDA_OK;
 }
 

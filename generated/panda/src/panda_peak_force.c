@@ -54,6 +54,16 @@ int panda_peak_force(
         return PANDA_OUT_OF_RANGE;
     }
     panda_impact impact;
-    const int status = panda_impact_prepare(q, n, region, p, &impact);
-    return status == PANDA_OK ? panda_impact_run(&impact, speed, out) : status;
+    int status = panda_impact_prepare(q, n, region, p, &impact);
+    if (status != PANDA_OK) {
+        return status;
+    }
+    panda_impact_steps(&impact, false);
+    panda_impact_peak peak;
+    status = panda_impact_run(&impact, speed, PANDA_REAL_MAX, &peak);
+    if (status == PANDA_OK) {
+        out->force = peak.force;
+        out->time = peak.time;
+    }
+    return status;
 }

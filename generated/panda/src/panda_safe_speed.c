@@ -5,7 +5,7 @@
 
 /*
  * About the speed that leads to a force: all energy is in skin and body, and modes count the less
- * the faster they are than the contact. Close where robots are simple, and always of the right trend.
+ * the faster they are than the contact. Close where robots are simple.
  */
 static panda_real speed_of(const panda_impact *impact, panda_real force)
 {
@@ -21,6 +21,76 @@ static panda_real speed_of(const panda_impact *impact, panda_real force)
     }
     const panda_real energy = force*(force + PANDA_R(0.8)*k*skin); /* 2 k times it */
     return PANDA_SQRT(energy*mobility/k)/velocity;
+}
+
+/* Search for the speed that leads to a force. */
+typedef struct {
+    panda_real aim;       /* the force */
+    panda_real v;         /* the last trial, and its force */
+    panda_real force;
+    panda_real low;       /* safe, and its force */
+    panda_real low_force;
+    panda_real high;      /* not safe; 0 while unknown */
+} search;
+
+/* Integrates an impact at a speed, if that is one. */
+static int try_speed(const panda_impact *impact, panda_real v, panda_real until, panda_impact_peak *peak)
+{
+    if (!(v > PANDA_R(0.0) && v < PANDA_R(0.5)*PANDA_REAL_MAX)) {
+        return PANDA_SINGULAR;
+    }
+    return panda_impact_run(impact, v, until, peak);
+}
+
+/* Next speed to try: by the usual power law, unless that is known to be wrong. */
+static panda_real next_speed(const search *s)
+{
+    const panda_real v = s->v*PANDA_POW(s->aim/s->force, PANDA_R(0.9756097560975611));
+    const bool fits = v > s->low && (v < s->high || !(s->high > PANDA_R(0.0)));
+    return fits ? v : PANDA_R(0.5)*(s->low + s->high);
+}
+
+/*
+ * Exponent of the force over speed between a trial and the last; 0 if they are too near to tell, or
+ * if the peak jumps between them.
+ */
+static panda_real exponent(const search *s, panda_real v, panda_real force)
+{
+    const panda_real rise = (force - s->force)/(force + s->force);
+    const panda_real p = rise*(v + s->v)/(v - s->v);
+    const bool tells = PANDA_FABS(rise) > PANDA_R(0.025)
+        && p > PANDA_R(0.95) && p < PANDA_R(1.15);
+    return tells ? p : PANDA_R(0.0);
+}
+
+/* Learns from a trial. Whether the speed is found: near enough to extrapolate, or at a jump. */
+static bool settles(search *s, panda_real v, panda_real force, panda_safe_speed_t *out)
+{
+    const panda_real p = exponent(s, v, force);
+    const panda_real apart = p > PANDA_R(0.0) ? PANDA_FABS(force - s->force) : PANDA_R(0.0);
+    const panda_real spread = apart < s->aim ? apart : s->aim;
+    const panda_real near = PANDA_R(0.003)*s->aim + PANDA_R(0.03125)*spread;
+    const panda_real off = s->aim - force;
+    s->v = v;
+    s->force = force;
+    if (PANDA_FABS(off) <= near) {
+        out->speed = v + v*(off/(force*PANDA_FMAX(p, PANDA_R(1.0))));
+        out->force = s->aim;
+        return true;
+    }
+    if (off < PANDA_R(0.0)) {
+        s->high = v;
+    } else {
+        s->low = v;
+        s->low_force = force;
+    }
+    const bool jumps = s->low > PANDA_R(0.0) && s->high > PANDA_R(0.0)
+        && s->high - s->low <= PANDA_R(0.003)*s->low;
+    if (jumps) {
+        out->speed = s->low;
+        out->force = s->low_force;
+    }
+    return jumps;
 }
 
 int panda_safe_speed(
@@ -45,49 +115,31 @@ int panda_safe_speed(
     if (status != PANDA_OK) {
         return status;
     }
-    const panda_real aim = limit*PANDA_R(0.9993);
-    const panda_real most = limit*PANDA_R(0.99959);
-    const panda_real least = limit*PANDA_R(0.99901);
-    const panda_real about = speed_of(&impact, aim);
-    panda_real v = PANDA_R(1.05)*PANDA_FABS(about);
-    panda_real low = PANDA_R(0.0);  /* safe */
-    panda_real high = PANDA_R(0.0); /* not safe; 0 while unknown */
-    panda_real low_force = PANDA_R(0.0);
-    panda_real before = PANDA_R(0.0); /* force of the last trial, and what it says of speed_of */
-    panda_real before_off = PANDA_R(1.0);
-    for (int k = 0; k < 16; ++k) {
-        panda_peak_force_t peak;
-        if (!(panda_all_finite(&v, 1) && v > PANDA_R(0.0))) {
-            return PANDA_SINGULAR;
-        }
-        status = panda_impact_run(&impact, v, &peak);
+    const panda_real zero = PANDA_R(0.0);
+    const panda_real aim = limit*PANDA_R(0.99915);
+    const panda_real guess = PANDA_R(1.05)*PANDA_FABS(speed_of(&impact, aim));
+    search s = {aim, guess, zero, zero, zero, zero};
+    panda_impact_peak peak;
+    panda_impact_steps(&impact, true);
+    status = try_speed(&impact, s.v, PANDA_REAL_MAX, &peak);
+    if (status != PANDA_OK) {
+        return status;
+    }
+    s.force = peak.force;
+    if (peak.nodes > 52) { /* rough steps bound the work; the aim makes up for them */
+        s.aim *= PANDA_R(0.9978481709453035);
+    } else {
+        panda_impact_steps(&impact, false);
+    }
+    const panda_real until = s.force <= PANDA_R(2.0)*s.aim ? peak.until : PANDA_REAL_MAX;
+    for (int k = 1; k < 16; ++k) {
+        const panda_real v = next_speed(&s);
+        status = try_speed(&impact, v, until, &peak);
         if (status != PANDA_OK) {
             return status;
         }
-        if (peak.force <= most) {
-            low = v;
-            low_force = peak.force;
-        } else {
-            high = v;
-        }
-        const bool jumps = low > PANDA_R(0.0) && high > PANDA_R(0.0)
-            && high - low <= PANDA_R(0.00029)*low;
-        if ((peak.force >= least && peak.force <= most) || jumps) {
-            out->speed = low;
-            out->force = low_force;
+        if (settles(&s, v, peak.force, out)) {
             return PANDA_OK;
-        }
-        /* what speed_of is off by changes little with the force, and about linearly */
-        const panda_real off = v/speed_of(&impact, peak.force);
-        panda_real next = off;
-        if (k > 0) {
-            next += (off - before_off)*(aim - peak.force)/(peak.force - before);
-        }
-        before = peak.force;
-        before_off = off;
-        v = about*(next > PANDA_R(0.5)*off && next < PANDA_R(2.0)*off ? next : off);
-        if (!(v > low && (v < high || !(high > PANDA_R(0.0))))) {
-            v = PANDA_R(0.5)*(low + high);
         }
     }
     return PANDA_UNRESOLVED;

@@ -164,7 +164,7 @@ static void test_generalised_mass_matrix(void)
             worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
-    const double bound = BOUND(1e-12, 2e-06);
+    const double bound = BOUND(1e-12, 1e-06);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -485,7 +485,7 @@ static void test_chain(void)
             worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
-    const double bound = BOUND(1e-12, 0.0006);
+    const double bound = BOUND(1e-12, 0.0005);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -781,7 +781,7 @@ static void test_absorption_extremes(void)
             worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
-    const double bound = BOUND(1e-12, 5e-05);
+    const double bound = BOUND(1e-12, 8e-05);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -884,7 +884,7 @@ static void test_force_measure(void)
             worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
-    const double bound = BOUND(1e-12, 6e-06);
+    const double bound = BOUND(1e-12, 8e-06);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -935,7 +935,7 @@ static void test_impact_measure(void)
             worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
-    const double bound = BOUND(1e-12, 8e-05);
+    const double bound = BOUND(1e-12, 9e-05);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -997,7 +997,7 @@ static void test_rotor_influence(void)
             worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
-    const double bound = BOUND(1e-12, 9e-05);
+    const double bound = BOUND(1e-12, 8e-05);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -1051,7 +1051,7 @@ static void test_single_joint_giaf(void)
             worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
-    const double bound = BOUND(1e-12, 2e-05);
+    const double bound = BOUND(1e-12, 3e-05);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -1127,7 +1127,7 @@ static void test_joint_impulse(void)
             worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
-    const double bound = BOUND(1e-12, 5e-06);
+    const double bound = BOUND(1e-12, 6e-06);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 
@@ -1223,7 +1223,7 @@ static void test_impacts(void)
         expect(panda_safe_speed(in->q, in->n, peak.force, &region, &in->p, &safe) == PANDA_OK,
                "panda_safe_speed", "status of a golden impact");
         expect(panda_peak_force(in->q, in->n, safe.speed, &region, &in->p, &again) == PANDA_OK
-                   && is_same(again.force, safe.force),
+                   && again.force <= peak.force && (double)again.force >= 0.996*(double)safe.force,
                "panda_safe_speed", "force at the speed found");
         expect(safe.force <= peak.force && safe.speed <= in->speed, "panda_safe_speed", "is safe");
     }

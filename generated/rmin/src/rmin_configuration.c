@@ -21,24 +21,21 @@
 static void equations(const rmin_real q[6], const rmin_real force[FORCES],
                       rmin_real residual[UNKNOWNS], rmin_real matrix[UNKNOWNS][UNKNOWNS])
 {
-    rmin_real s1;
-    rmin_real c1;
-    rmin_sine_cosine(q[0], &s1, &c1);
-    rmin_real s2;
-    rmin_real c2;
-    rmin_sine_cosine(q[1], &s2, &c2);
-    rmin_real s3;
-    rmin_real c3;
-    rmin_sine_cosine(q[2], &s3, &c3);
-    rmin_real s4;
-    rmin_real c4;
-    rmin_sine_cosine(q[3], &s4, &c4);
-    rmin_real s5;
-    rmin_real c5;
-    rmin_sine_cosine(q[4], &s5, &c5);
-    rmin_real s6;
-    rmin_real c6;
-    rmin_sine_cosine(q[5], &s6, &c6);
+    rmin_real sines[6];
+    rmin_real cosines[6];
+    rmin_sines_cosines(&q[0], 6, sines, cosines);
+    const rmin_real s1 = sines[0];
+    const rmin_real c1 = cosines[0];
+    const rmin_real s2 = sines[1];
+    const rmin_real c2 = cosines[1];
+    const rmin_real s3 = sines[2];
+    const rmin_real c3 = cosines[2];
+    const rmin_real s4 = sines[3];
+    const rmin_real c4 = cosines[3];
+    const rmin_real s5 = sines[4];
+    const rmin_real c5 = cosines[4];
+    const rmin_real s6 = sines[5];
+    const rmin_real c6 = cosines[5];
     const rmin_real t1 = RMIN_R(0.2)*force[1];
     const rmin_real t2 = c3*t1;
     const rmin_real t3 = t2 + t1;
@@ -195,24 +192,21 @@ static void equations(const rmin_real q[6], const rmin_real force[FORCES],
 /* Whether the rest is stable and the chain is assembled as the model is. */
 static bool is_sound(const rmin_real q[6])
 {
-    rmin_real s1;
-    rmin_real c1;
-    rmin_sine_cosine(q[0], &s1, &c1);
-    rmin_real s2;
-    rmin_real c2;
-    rmin_sine_cosine(q[1], &s2, &c2);
-    rmin_real s3;
-    rmin_real c3;
-    rmin_sine_cosine(q[2], &s3, &c3);
-    rmin_real s4;
-    rmin_real c4;
-    rmin_sine_cosine(q[3], &s4, &c4);
-    rmin_real s5;
-    rmin_real c5;
-    rmin_sine_cosine(q[4], &s5, &c5);
-    rmin_real s6;
-    rmin_real c6;
-    rmin_sine_cosine(q[5], &s6, &c6);
+    rmin_real sines[6];
+    rmin_real cosines[6];
+    rmin_sines_cosines(&q[0], 6, sines, cosines);
+    const rmin_real s1 = sines[0];
+    const rmin_real c1 = cosines[0];
+    const rmin_real s2 = sines[1];
+    const rmin_real c2 = cosines[1];
+    const rmin_real s3 = sines[2];
+    const rmin_real c3 = cosines[2];
+    const rmin_real s4 = sines[3];
+    const rmin_real c4 = cosines[3];
+    const rmin_real s5 = sines[4];
+    const rmin_real c5 = cosines[4];
+    const rmin_real s6 = sines[5];
+    const rmin_real c6 = cosines[5];
     const rmin_real t1 = RMIN_R(0.2)*s3;
     const rmin_real t2 = RMIN_R(0.2)*c3 + RMIN_R(0.2);
     const rmin_real t3 = c1*t1 + s1*t2;

@@ -6,7 +6,7 @@
 #include "rmin_internal.h"
 
 #define RMIN_MASSES RMIN_IMPACT_CHAIN_ORDER
-#define RMIN_MODES (RMIN_MASSES + 1) /* one for a body that gives way */
+#define RMIN_MODES (2*((RMIN_MASSES + 2)/2)) /* one for a body that gives way; even */
 #define RMIN_LEVELS 3
 
 typedef struct {
@@ -43,13 +43,14 @@ typedef struct {
  * are for an approach of 1 m/s; spacing doubles from one level to the next.
  */
 typedef struct {
-    int modes;
+    int modes; /* an even number */
     rmin_real stiffness; /* k_h */
     rmin_real damping; /* c_h */
     rmin_real skin; /* k_f */
     rmin_real mobility; /* of the contact, 1/kg */
     rmin_real compliance; /* of modes that stand, m/N */
-    rmin_real step; /* at level 0, s */
+    rmin_real rate2; /* of the contact point's vibration, squared, 1/s^2 */
+    rmin_real fastest; /* squared frequency, 1/s^2 */
     rmin_real squared[RMIN_MODES]; /* frequency, 1/s^2 */
     rmin_real weight[RMIN_MODES]; /* share of the mobility */
     rmin_real velocity[RMIN_MODES]; /* share of the velocity at first touch */
@@ -58,11 +59,23 @@ typedef struct {
     rmin_level level[RMIN_LEVELS + 1];
 } rmin_impact;
 
-/* Prepares the impacts of a configuration; checks everything but the speed. */
+/* Prepares the impacts of a configuration, but for their steps; checks everything but the speed. */
 int rmin_impact_prepare(const rmin_real q[6], const rmin_real n[3],
     const rmin_region *region, const rmin_params *p, rmin_impact *impact);
 
-/* Integrates one impact. */
-int rmin_impact_run(const rmin_impact *impact, rmin_real speed, rmin_peak_force_t *out);
+/* Chooses the steps; `rough` ones are about twice as long. */
+void rmin_impact_steps(rmin_impact *impact, bool rough);
+
+/* Largest force of an impact. */
+typedef struct {
+    rmin_real force; /* N */
+    rmin_real time; /* since first touch, s */
+    rmin_real until; /* as long as forces of impacts at about this speed may be the largest, s */
+    int nodes; /* it took */
+} rmin_impact_peak;
+
+/* Integrates one impact until robot and body part, or to a time after which the force is small. */
+int rmin_impact_run(const rmin_impact *impact, rmin_real speed, rmin_real until,
+    rmin_impact_peak *out);
 
 #endif

@@ -100,6 +100,24 @@ static bool eigenvalues(int count, rmin_real *d, rmin_real *e, rmin_real *x, rmi
     return true;
 }
 
+/*
+ * A slow squared frequency after a step of Newton's on the dynamic stiffness z at the contact, built
+ * up from the last mass: QL's error is a share of the largest frequency, what remains is one of this.
+ */
+static rmin_real sharpened(const rmin_impact_chain_t *chain, int count, rmin_real squared,
+    rmin_real most)
+{
+    rmin_real z = chain->stiffness[count - 1] - squared*chain->mass[count - 1];
+    rmin_real slope = -chain->mass[count - 1];
+    for (int i = count - 2; i >= 0; --i) {
+        const rmin_real share = chain->stiffness[i]/(z + chain->stiffness[i]);
+        z = z*share - squared*chain->mass[i];
+        slope = slope*share*share - chain->mass[i];
+    }
+    const rmin_real change = z/slope;
+    return RMIN_FABS(change) <= RMIN_R(1e-05)*most ? squared - change : squared;
+}
+
 /* Modes of the chain: squared frequency, mobility and velocity at the contact point. */
 static int modes_of(rmin_impact_chain_t *chain, bool held, rmin_real *squared, rmin_real *weight,
     rmin_real *velocity)
@@ -130,9 +148,16 @@ static int modes_of(rmin_impact_chain_t *chain, bool held, rmin_real *squared, r
     if (!eigenvalues(count, squared, off, weight, velocity)) {
         return 0;
     }
+    rmin_real most = RMIN_R(0.0);
     for (int i = 0; i < count; ++i) {
         velocity[i] *= weight[i];
         weight[i] *= weight[i];
+        most = RMIN_FMAX(most, squared[i]);
+    }
+    for (int i = 0; i < count; ++i) {
+        if (squared[i] < RMIN_R(0.01)*most) {
+            squared[i] = sharpened(chain, count, squared[i], most);
+        }
     }
     return count;
 }
@@ -169,14 +194,15 @@ static void let_stand(rmin_impact *impact)
 }
 
 /* Steps of mode i at all levels. */
-static void prepare_mode(rmin_impact *impact, int i)
+static void mode_steps(rmin_impact *impact, int i)
 {
     const rmin_real weight = impact->weight[i];
-    rmin_real h2 = impact->step*impact->step;
+    const rmin_real h = impact->level[0].h;
+    rmin_real h2 = h*h;
     rmin_real theta2 = impact->squared[i]*h2;
     const rmin_real lean = polynomial(theta2, RMIN_R(0.16666666666666666),
         RMIN_R(-0.008333333333333333), RMIN_R(0.0001984126984126984), RMIN_R(0.0));
-    impact->start[i] = impact->velocity[i]*impact->step*(RMIN_R(1.0) - theta2*lean);
+    impact->start[i] = impact->velocity[i]*h*(RMIN_R(1.0) - theta2*lean);
     impact->start_edge[i] = weight*h2*lean;
     rmin_real alpha = polynomial(theta2, RMIN_R(0.08333333333333333), RMIN_R(-0.002777777777777778),
         RMIN_R(4.96031746031746e-05), RMIN_R(-5.511463844797178e-07));
@@ -194,10 +220,13 @@ static void prepare_mode(rmin_impact *impact, int i)
     }
 }
 
-/* Steps of all levels. */
-static void prepare_levels(rmin_impact *impact)
+void rmin_impact_steps(rmin_impact *impact, bool rough)
 {
-    rmin_real h = impact->step;
+    /* most radians of the contact point's vibration, and of any mode's, to the power of -2 */
+    const rmin_real contact = rough ? RMIN_R(4.340277777777778) : RMIN_R(17.36111111111111);
+    const rmin_real mode = rough ? RMIN_R(0.1275510204081633) : RMIN_R(0.39062499999999994);
+    const rmin_real rate2 = RMIN_FMAX(impact->rate2*contact, impact->fastest*mode);
+    rmin_real h = RMIN_R(0.125)/RMIN_SQRT(rate2);
     for (int k = 0; k <= RMIN_LEVELS; ++k) {
         rmin_level *const level = &impact->level[k];
         level->h = h;
@@ -208,7 +237,7 @@ static void prepare_levels(rmin_impact *impact)
         h += h;
     }
     for (int i = 0; i < impact->modes; ++i) {
-        prepare_mode(impact, i);
+        mode_steps(impact, i);
     }
 }
 
@@ -242,21 +271,21 @@ int rmin_impact_prepare(const rmin_real q[6], const rmin_real n[3],
     for (int i = 0; i < impact->modes; ++i) {
         impact->mobility += impact->weight[i];
     }
-    rmin_real rate2 = impact->stiffness*impact->mobility;
+    impact->rate2 = impact->stiffness*impact->mobility;
     for (int i = 0; i < impact->modes; ++i) {
-        rate2 += impact->velocity[i]*impact->velocity[i]*RMIN_FMAX(impact->squared[i], RMIN_R(0.0));
+        impact->rate2 += impact->velocity[i]*impact->velocity[i]*RMIN_FMAX(impact->squared[i], RMIN_R(0.0));
     }
     let_stand(impact);
-    rmin_real fastest = RMIN_R(0.0);
+    if (impact->modes % 2 != 0) { /* one that stays is added */
+        impact->squared[impact->modes] = RMIN_R(0.0);
+        impact->weight[impact->modes] = RMIN_R(0.0);
+        impact->velocity[impact->modes] = RMIN_R(0.0);
+        ++impact->modes;
+    }
+    impact->fastest = RMIN_R(0.0);
     for (int i = 0; i < impact->modes; ++i) {
-        fastest = RMIN_FMAX(fastest, impact->squared[i]);
+        impact->fastest = RMIN_FMAX(impact->fastest, impact->squared[i]);
     }
-    /* at most 0.24 rad of the contact point's vibration and 2.5 rad of any mode's */
-    rate2 = RMIN_FMAX(rate2*RMIN_R(17.36111111111111), fastest*RMIN_R(0.16));
-    impact->step = RMIN_R(0.125)/RMIN_SQRT(rate2);
-    if (!(impact->step > RMIN_R(0.0))) {
-        return RMIN_SINGULAR;
-    }
-    prepare_levels(impact);
-    return RMIN_OK;
+    const rmin_real rates[2] = {impact->rate2, impact->fastest};
+    return rmin_all_finite(rates, 2) && rates[0] > RMIN_R(0.0) ? RMIN_OK : RMIN_SINGULAR;
 }

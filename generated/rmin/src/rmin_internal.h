@@ -35,26 +35,30 @@
 #define RMIN_COPYSIGN(x, y) RMIN_F(copysign)(x, y)
 #define RMIN_POW(x, y) RMIN_F(pow)(x, y)
 
-/* Sine s and cosine c of a finite x. */
+/* Sines s and cosines c of finite angles x. */
 #if defined(RMIN_USE_FLOAT)
-void rmin_sine_cosine(float x, float *s, float *c);
+void rmin_sines_cosines(const float *x, int count, float *s, float *c);
 #else
-static inline void rmin_sine_cosine(double x, double *s, double *c)
+static inline void rmin_sines_cosines(const double *x, int count, double *s, double *c)
 {
-    *s = sin(x);
-    *c = cos(x);
+    for (int i = 0; i < count; ++i) {
+        s[i] = sin(x[i]);
+        c[i] = cos(x[i]);
+    }
 }
 #endif
 
-/* Whether all numbers are finite; a comparison with a NaN is false. */
+/*
+ * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.
+ * A comparison with a NaN is false.
+ */
 static inline bool rmin_all_finite(const rmin_real *x, int count)
 {
+    rmin_real sum = RMIN_R(0.0);
     for (int i = 0; i < count; ++i) {
-        if (!(RMIN_FABS(x[i]) <= RMIN_REAL_MAX)) {
-            return false;
-        }
+        sum += RMIN_R(0.0009765625)*x[i];
     }
-    return true;
+    return RMIN_FABS(sum) <= RMIN_REAL_MAX;
 }
 
 /* Status of inputs that must be greater than 0. */
@@ -110,10 +114,10 @@ static inline int rmin_unit_vector(const rmin_real n[3], rmin_real u[3])
     const rmin_real x = n[0]/largest;
     const rmin_real y = n[1]/largest;
     const rmin_real z = n[2]/largest;
-    const rmin_real length = RMIN_SQRT(x*x + y*y + z*z);
-    u[0] = x/length;
-    u[1] = y/length;
-    u[2] = z/length;
+    const rmin_real scale = RMIN_R(1.0)/RMIN_SQRT(x*x + y*y + z*z);
+    u[0] = x*scale;
+    u[1] = y*scale;
+    u[2] = z*scale;
     return RMIN_OK;
 }
 

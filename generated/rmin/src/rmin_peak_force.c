@@ -54,6 +54,16 @@ int rmin_peak_force(
         return RMIN_OUT_OF_RANGE;
     }
     rmin_impact impact;
-    const int status = rmin_impact_prepare(q, n, region, p, &impact);
-    return status == RMIN_OK ? rmin_impact_run(&impact, speed, out) : status;
+    int status = rmin_impact_prepare(q, n, region, p, &impact);
+    if (status != RMIN_OK) {
+        return status;
+    }
+    rmin_impact_steps(&impact, false);
+    rmin_impact_peak peak;
+    status = rmin_impact_run(&impact, speed, RMIN_REAL_MAX, &peak);
+    if (status == RMIN_OK) {
+        out->force = peak.force;
+        out->time = peak.time;
+    }
+    return status;
 }

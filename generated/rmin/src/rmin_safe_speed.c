@@ -5,7 +5,7 @@
 
 /*
  * About the speed that leads to a force: all energy is in skin and body, and modes count the less
- * the faster they are than the contact. Close where robots are simple, and always of the right trend.
+ * the faster they are than the contact. Close where robots are simple.
  */
 static rmin_real speed_of(const rmin_impact *impact, rmin_real force)
 {
@@ -21,6 +21,76 @@ static rmin_real speed_of(const rmin_impact *impact, rmin_real force)
     }
     const rmin_real energy = force*(force + RMIN_R(0.8)*k*skin); /* 2 k times it */
     return RMIN_SQRT(energy*mobility/k)/velocity;
+}
+
+/* Search for the speed that leads to a force. */
+typedef struct {
+    rmin_real aim;       /* the force */
+    rmin_real v;         /* the last trial, and its force */
+    rmin_real force;
+    rmin_real low;       /* safe, and its force */
+    rmin_real low_force;
+    rmin_real high;      /* not safe; 0 while unknown */
+} search;
+
+/* Integrates an impact at a speed, if that is one. */
+static int try_speed(const rmin_impact *impact, rmin_real v, rmin_real until, rmin_impact_peak *peak)
+{
+    if (!(v > RMIN_R(0.0) && v < RMIN_R(0.5)*RMIN_REAL_MAX)) {
+        return RMIN_SINGULAR;
+    }
+    return rmin_impact_run(impact, v, until, peak);
+}
+
+/* Next speed to try: by the usual power law, unless that is known to be wrong. */
+static rmin_real next_speed(const search *s)
+{
+    const rmin_real v = s->v*RMIN_POW(s->aim/s->force, RMIN_R(0.9756097560975611));
+    const bool fits = v > s->low && (v < s->high || !(s->high > RMIN_R(0.0)));
+    return fits ? v : RMIN_R(0.5)*(s->low + s->high);
+}
+
+/*
+ * Exponent of the force over speed between a trial and the last; 0 if they are too near to tell, or
+ * if the peak jumps between them.
+ */
+static rmin_real exponent(const search *s, rmin_real v, rmin_real force)
+{
+    const rmin_real rise = (force - s->force)/(force + s->force);
+    const rmin_real p = rise*(v + s->v)/(v - s->v);
+    const bool tells = RMIN_FABS(rise) > RMIN_R(0.025)
+        && p > RMIN_R(0.95) && p < RMIN_R(1.15);
+    return tells ? p : RMIN_R(0.0);
+}
+
+/* Learns from a trial. Whether the speed is found: near enough to extrapolate, or at a jump. */
+static bool settles(search *s, rmin_real v, rmin_real force, rmin_safe_speed_t *out)
+{
+    const rmin_real p = exponent(s, v, force);
+    const rmin_real apart = p > RMIN_R(0.0) ? RMIN_FABS(force - s->force) : RMIN_R(0.0);
+    const rmin_real spread = apart < s->aim ? apart : s->aim;
+    const rmin_real near = RMIN_R(0.003)*s->aim + RMIN_R(0.03125)*spread;
+    const rmin_real off = s->aim - force;
+    s->v = v;
+    s->force = force;
+    if (RMIN_FABS(off) <= near) {
+        out->speed = v + v*(off/(force*RMIN_FMAX(p, RMIN_R(1.0))));
+        out->force = s->aim;
+        return true;
+    }
+    if (off < RMIN_R(0.0)) {
+        s->high = v;
+    } else {
+        s->low = v;
+        s->low_force = force;
+    }
+    const bool jumps = s->low > RMIN_R(0.0) && s->high > RMIN_R(0.0)
+        && s->high - s->low <= RMIN_R(0.003)*s->low;
+    if (jumps) {
+        out->speed = s->low;
+        out->force = s->low_force;
+    }
+    return jumps;
 }
 
 int rmin_safe_speed(
@@ -45,49 +115,31 @@ int rmin_safe_speed(
     if (status != RMIN_OK) {
         return status;
     }
-    const rmin_real aim = limit*RMIN_R(0.9993);
-    const rmin_real most = limit*RMIN_R(0.99959);
-    const rmin_real least = limit*RMIN_R(0.99901);
-    const rmin_real about = speed_of(&impact, aim);
-    rmin_real v = RMIN_R(1.05)*RMIN_FABS(about);
-    rmin_real low = RMIN_R(0.0);  /* safe */
-    rmin_real high = RMIN_R(0.0); /* not safe; 0 while unknown */
-    rmin_real low_force = RMIN_R(0.0);
-    rmin_real before = RMIN_R(0.0); /* force of the last trial, and what it says of speed_of */
-    rmin_real before_off = RMIN_R(1.0);
-    for (int k = 0; k < 16; ++k) {
-        rmin_peak_force_t peak;
-        if (!(rmin_all_finite(&v, 1) && v > RMIN_R(0.0))) {
-            return RMIN_SINGULAR;
-        }
-        status = rmin_impact_run(&impact, v, &peak);
+    const rmin_real zero = RMIN_R(0.0);
+    const rmin_real aim = limit*RMIN_R(0.99915);
+    const rmin_real guess = RMIN_R(1.05)*RMIN_FABS(speed_of(&impact, aim));
+    search s = {aim, guess, zero, zero, zero, zero};
+    rmin_impact_peak peak;
+    rmin_impact_steps(&impact, true);
+    status = try_speed(&impact, s.v, RMIN_REAL_MAX, &peak);
+    if (status != RMIN_OK) {
+        return status;
+    }
+    s.force = peak.force;
+    if (peak.nodes > 52) { /* rough steps bound the work; the aim makes up for them */
+        s.aim *= RMIN_R(0.9978481709453035);
+    } else {
+        rmin_impact_steps(&impact, false);
+    }
+    const rmin_real until = s.force <= RMIN_R(2.0)*s.aim ? peak.until : RMIN_REAL_MAX;
+    for (int k = 1; k < 16; ++k) {
+        const rmin_real v = next_speed(&s);
+        status = try_speed(&impact, v, until, &peak);
         if (status != RMIN_OK) {
             return status;
         }
-        if (peak.force <= most) {
-            low = v;
-            low_force = peak.force;
-        } else {
-            high = v;
-        }
-        const bool jumps = low > RMIN_R(0.0) && high > RMIN_R(0.0)
-            && high - low <= RMIN_R(0.00029)*low;
-        if ((peak.force >= least && peak.force <= most) || jumps) {
-            out->speed = low;
-            out->force = low_force;
+        if (settles(&s, v, peak.force, out)) {
             return RMIN_OK;
-        }
-        /* what speed_of is off by changes little with the force, and about linearly */
-        const rmin_real off = v/speed_of(&impact, peak.force);
-        rmin_real next = off;
-        if (k > 0) {
-            next += (off - before_off)*(aim - peak.force)/(peak.force - before);
-        }
-        before = peak.force;
-        before_off = off;
-        v = about*(next > RMIN_R(0.5)*off && next < RMIN_R(2.0)*off ? next : off);
-        if (!(v > low && (v < high || !(high > RMIN_R(0.0))))) {
-            v = RMIN_R(0.5)*(low + high);
         }
     }
     return RMIN_UNRESOLVED;

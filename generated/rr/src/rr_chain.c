@@ -25,18 +25,17 @@ int rr_chain(const rr_real q[4], const rr_real n[3], const rr_params *p, rr_chai
         return status;
     }
 
-    rr_real s1;
-    rr_real c1;
-    rr_sine_cosine(q[0], &s1, &c1);
-    rr_real s2;
-    rr_real c2;
-    rr_sine_cosine(q[1], &s2, &c2);
-    rr_real s3;
-    rr_real c3;
-    rr_sine_cosine(q[2], &s3, &c3);
-    rr_real s4;
-    rr_real c4;
-    rr_sine_cosine(q[3], &s4, &c4);
+    rr_real sines[4];
+    rr_real cosines[4];
+    rr_sines_cosines(&q[0], 4, sines, cosines);
+    const rr_real s1 = sines[0];
+    const rr_real c1 = cosines[0];
+    const rr_real s2 = sines[1];
+    const rr_real c2 = cosines[1];
+    const rr_real s3 = sines[2];
+    const rr_real c3 = cosines[2];
+    const rr_real s4 = sines[3];
+    const rr_real c4 = cosines[3];
     const rr_real t1 = c1*u[1] - s1*u[0];
     const rr_real t2 = c1*u[0] + s1*u[1];
     const rr_real t3 = c2*t1 - s2*t2;

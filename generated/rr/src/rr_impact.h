@@ -6,7 +6,7 @@
 #include "rr_internal.h"
 
 #define RR_MASSES RR_IMPACT_CHAIN_ORDER
-#define RR_MODES (RR_MASSES + 1) /* one for a body that gives way */
+#define RR_MODES (2*((RR_MASSES + 2)/2)) /* one for a body that gives way; even */
 #define RR_LEVELS 3
 
 typedef struct {
@@ -43,13 +43,14 @@ typedef struct {
  * are for an approach of 1 m/s; spacing doubles from one level to the next.
  */
 typedef struct {
-    int modes;
+    int modes; /* an even number */
     rr_real stiffness; /* k_h */
     rr_real damping; /* c_h */
     rr_real skin; /* k_f */
     rr_real mobility; /* of the contact, 1/kg */
     rr_real compliance; /* of modes that stand, m/N */
-    rr_real step; /* at level 0, s */
+    rr_real rate2; /* of the contact point's vibration, squared, 1/s^2 */
+    rr_real fastest; /* squared frequency, 1/s^2 */
     rr_real squared[RR_MODES]; /* frequency, 1/s^2 */
     rr_real weight[RR_MODES]; /* share of the mobility */
     rr_real velocity[RR_MODES]; /* share of the velocity at first touch */
@@ -58,11 +59,23 @@ typedef struct {
     rr_level level[RR_LEVELS + 1];
 } rr_impact;
 
-/* Prepares the impacts of a configuration; checks everything but the speed. */
+/* Prepares the impacts of a configuration, but for their steps; checks everything but the speed. */
 int rr_impact_prepare(const rr_real q[4], const rr_real n[3],
     const rr_region *region, const rr_params *p, rr_impact *impact);
 
-/* Integrates one impact. */
-int rr_impact_run(const rr_impact *impact, rr_real speed, rr_peak_force_t *out);
+/* Chooses the steps; `rough` ones are about twice as long. */
+void rr_impact_steps(rr_impact *impact, bool rough);
+
+/* Largest force of an impact. */
+typedef struct {
+    rr_real force; /* N */
+    rr_real time; /* since first touch, s */
+    rr_real until; /* as long as forces of impacts at about this speed may be the largest, s */
+    int nodes; /* it took */
+} rr_impact_peak;
+
+/* Integrates one impact until robot and body part, or to a time after which the force is small. */
+int rr_impact_run(const rr_impact *impact, rr_real speed, rr_real until,
+    rr_impact_peak *out);
 
 #endif

@@ -100,6 +100,24 @@ static bool eigenvalues(int count, rr_real *d, rr_real *e, rr_real *x, rr_real *
     return true;
 }
 
+/*
+ * A slow squared frequency after a step of Newton's on the dynamic stiffness z at the contact, built
+ * up from the last mass: QL's error is a share of the largest frequency, what remains is one of this.
+ */
+static rr_real sharpened(const rr_impact_chain_t *chain, int count, rr_real squared,
+    rr_real most)
+{
+    rr_real z = chain->stiffness[count - 1] - squared*chain->mass[count - 1];
+    rr_real slope = -chain->mass[count - 1];
+    for (int i = count - 2; i >= 0; --i) {
+        const rr_real share = chain->stiffness[i]/(z + chain->stiffness[i]);
+        z = z*share - squared*chain->mass[i];
+        slope = slope*share*share - chain->mass[i];
+    }
+    const rr_real change = z/slope;
+    return RR_FABS(change) <= RR_R(1e-05)*most ? squared - change : squared;
+}
+
 /* Modes of the chain: squared frequency, mobility and velocity at the contact point. */
 static int modes_of(rr_impact_chain_t *chain, bool held, rr_real *squared, rr_real *weight,
     rr_real *velocity)
@@ -130,9 +148,16 @@ static int modes_of(rr_impact_chain_t *chain, bool held, rr_real *squared, rr_re
     if (!eigenvalues(count, squared, off, weight, velocity)) {
         return 0;
     }
+    rr_real most = RR_R(0.0);
     for (int i = 0; i < count; ++i) {
         velocity[i] *= weight[i];
         weight[i] *= weight[i];
+        most = RR_FMAX(most, squared[i]);
+    }
+    for (int i = 0; i < count; ++i) {
+        if (squared[i] < RR_R(0.01)*most) {
+            squared[i] = sharpened(chain, count, squared[i], most);
+        }
     }
     return count;
 }
@@ -169,14 +194,15 @@ static void let_stand(rr_impact *impact)
 }
 
 /* Steps of mode i at all levels. */
-static void prepare_mode(rr_impact *impact, int i)
+static void mode_steps(rr_impact *impact, int i)
 {
     const rr_real weight = impact->weight[i];
-    rr_real h2 = impact->step*impact->step;
+    const rr_real h = impact->level[0].h;
+    rr_real h2 = h*h;
     rr_real theta2 = impact->squared[i]*h2;
     const rr_real lean = polynomial(theta2, RR_R(0.16666666666666666),
         RR_R(-0.008333333333333333), RR_R(0.0001984126984126984), RR_R(0.0));
-    impact->start[i] = impact->velocity[i]*impact->step*(RR_R(1.0) - theta2*lean);
+    impact->start[i] = impact->velocity[i]*h*(RR_R(1.0) - theta2*lean);
     impact->start_edge[i] = weight*h2*lean;
     rr_real alpha = polynomial(theta2, RR_R(0.08333333333333333), RR_R(-0.002777777777777778),
         RR_R(4.96031746031746e-05), RR_R(-5.511463844797178e-07));
@@ -194,10 +220,13 @@ static void prepare_mode(rr_impact *impact, int i)
     }
 }
 
-/* Steps of all levels. */
-static void prepare_levels(rr_impact *impact)
+void rr_impact_steps(rr_impact *impact, bool rough)
 {
-    rr_real h = impact->step;
+    /* most radians of the contact point's vibration, and of any mode's, to the power of -2 */
+    const rr_real contact = rough ? RR_R(4.340277777777778) : RR_R(17.36111111111111);
+    const rr_real mode = rough ? RR_R(0.1275510204081633) : RR_R(0.39062499999999994);
+    const rr_real rate2 = RR_FMAX(impact->rate2*contact, impact->fastest*mode);
+    rr_real h = RR_R(0.125)/RR_SQRT(rate2);
     for (int k = 0; k <= RR_LEVELS; ++k) {
         rr_level *const level = &impact->level[k];
         level->h = h;
@@ -208,7 +237,7 @@ static void prepare_levels(rr_impact *impact)
         h += h;
     }
     for (int i = 0; i < impact->modes; ++i) {
-        prepare_mode(impact, i);
+        mode_steps(impact, i);
     }
 }
 
@@ -242,21 +271,21 @@ int rr_impact_prepare(const rr_real q[4], const rr_real n[3],
     for (int i = 0; i < impact->modes; ++i) {
         impact->mobility += impact->weight[i];
     }
-    rr_real rate2 = impact->stiffness*impact->mobility;
+    impact->rate2 = impact->stiffness*impact->mobility;
     for (int i = 0; i < impact->modes; ++i) {
-        rate2 += impact->velocity[i]*impact->velocity[i]*RR_FMAX(impact->squared[i], RR_R(0.0));
+        impact->rate2 += impact->velocity[i]*impact->velocity[i]*RR_FMAX(impact->squared[i], RR_R(0.0));
     }
     let_stand(impact);
-    rr_real fastest = RR_R(0.0);
+    if (impact->modes % 2 != 0) { /* one that stays is added */
+        impact->squared[impact->modes] = RR_R(0.0);
+        impact->weight[impact->modes] = RR_R(0.0);
+        impact->velocity[impact->modes] = RR_R(0.0);
+        ++impact->modes;
+    }
+    impact->fastest = RR_R(0.0);
     for (int i = 0; i < impact->modes; ++i) {
-        fastest = RR_FMAX(fastest, impact->squared[i]);
+        impact->fastest = RR_FMAX(impact->fastest, impact->squared[i]);
     }
-    /* at most 0.24 rad of the contact point's vibration and 2.5 rad of any mode's */
-    rate2 = RR_FMAX(rate2*RR_R(17.36111111111111), fastest*RR_R(0.16));
-    impact->step = RR_R(0.125)/RR_SQRT(rate2);
-    if (!(impact->step > RR_R(0.0))) {
-        return RR_SINGULAR;
-    }
-    prepare_levels(impact);
-    return RR_OK;
+    const rr_real rates[2] = {impact->rate2, impact->fastest};
+    return rr_all_finite(rates, 2) && rates[0] > RR_R(0.0) ? RR_OK : RR_SINGULAR;
 }

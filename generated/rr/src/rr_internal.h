@@ -35,26 +35,30 @@
 #define RR_COPYSIGN(x, y) RR_F(copysign)(x, y)
 #define RR_POW(x, y) RR_F(pow)(x, y)
 
-/* Sine s and cosine c of a finite x. */
+/* Sines s and cosines c of finite angles x. */
 #if defined(RR_USE_FLOAT)
-void rr_sine_cosine(float x, float *s, float *c);
+void rr_sines_cosines(const float *x, int count, float *s, float *c);
 #else
-static inline void rr_sine_cosine(double x, double *s, double *c)
+static inline void rr_sines_cosines(const double *x, int count, double *s, double *c)
 {
-    *s = sin(x);
-    *c = cos(x);
+    for (int i = 0; i < count; ++i) {
+        s[i] = sin(x[i]);
+        c[i] = cos(x[i]);
+    }
 }
 #endif
 
-/* Whether all numbers are finite; a comparison with a NaN is false. */
+/*
+ * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.
+ * A comparison with a NaN is false.
+ */
 static inline bool rr_all_finite(const rr_real *x, int count)
 {
+    rr_real sum = RR_R(0.0);
     for (int i = 0; i < count; ++i) {
-        if (!(RR_FABS(x[i]) <= RR_REAL_MAX)) {
-            return false;
-        }
+        sum += RR_R(0.0009765625)*x[i];
     }
-    return true;
+    return RR_FABS(sum) <= RR_REAL_MAX;
 }
 
 /* Status of inputs that must be greater than 0. */
@@ -110,10 +114,10 @@ static inline int rr_unit_vector(const rr_real n[3], rr_real u[3])
     const rr_real x = n[0]/largest;
     const rr_real y = n[1]/largest;
     const rr_real z = n[2]/largest;
-    const rr_real length = RR_SQRT(x*x + y*y + z*z);
-    u[0] = x/length;
-    u[1] = y/length;
-    u[2] = z/length;
+    const rr_real scale = RR_R(1.0)/RR_SQRT(x*x + y*y + z*z);
+    u[0] = x*scale;
+    u[1] = y*scale;
+    u[2] = z*scale;
     return RR_OK;
 }
 

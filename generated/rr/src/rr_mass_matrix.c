@@ -12,12 +12,13 @@ int rr_mass_matrix(const rr_real q[4], rr_real M[4][4])
         return RR_NOT_FINITE;
     }
 
-    rr_real s3;
-    rr_real c3;
-    rr_sine_cosine(q[2], &s3, &c3);
-    rr_real s4;
-    rr_real c4;
-    rr_sine_cosine(q[3], &s4, &c4);
+    rr_real sines[2];
+    rr_real cosines[2];
+    rr_sines_cosines(&q[2], 2, sines, cosines);
+    const rr_real s3 = sines[0];
+    const rr_real c3 = cosines[0];
+    const rr_real s4 = sines[1];
+    const rr_real c4 = cosines[1];
     const rr_real t1 = c3*(RR_R(0.86372)*c4) - s3*(RR_R(0.86372)*s4);
     const rr_real M_21 = RR_R(2.5044576) + (RR_R(1.03951196) + t1);
     const rr_real M_11 = RR_R(4.71) + M_21;

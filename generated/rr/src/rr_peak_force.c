@@ -54,6 +54,16 @@ int rr_peak_force(
         return RR_OUT_OF_RANGE;
     }
     rr_impact impact;
-    const int status = rr_impact_prepare(q, n, region, p, &impact);
-    return status == RR_OK ? rr_impact_run(&impact, speed, out) : status;
+    int status = rr_impact_prepare(q, n, region, p, &impact);
+    if (status != RR_OK) {
+        return status;
+    }
+    rr_impact_steps(&impact, false);
+    rr_impact_peak peak;
+    status = rr_impact_run(&impact, speed, RR_REAL_MAX, &peak);
+    if (status == RR_OK) {
+        out->force = peak.force;
+        out->time = peak.time;
+    }
+    return status;
 }

@@ -5,7 +5,7 @@
 
 /*
  * About the speed that leads to a force: all energy is in skin and body, and modes count the less
- * the faster they are than the contact. Close where robots are simple, and always of the right trend.
+ * the faster they are than the contact. Close where robots are simple.
  */
 static rr_real speed_of(const rr_impact *impact, rr_real force)
 {
@@ -21,6 +21,76 @@ static rr_real speed_of(const rr_impact *impact, rr_real force)
     }
     const rr_real energy = force*(force + RR_R(0.8)*k*skin); /* 2 k times it */
     return RR_SQRT(energy*mobility/k)/velocity;
+}
+
+/* Search for the speed that leads to a force. */
+typedef struct {
+    rr_real aim;       /* the force */
+    rr_real v;         /* the last trial, and its force */
+    rr_real force;
+    rr_real low;       /* safe, and its force */
+    rr_real low_force;
+    rr_real high;      /* not safe; 0 while unknown */
+} search;
+
+/* Integrates an impact at a speed, if that is one. */
+static int try_speed(const rr_impact *impact, rr_real v, rr_real until, rr_impact_peak *peak)
+{
+    if (!(v > RR_R(0.0) && v < RR_R(0.5)*RR_REAL_MAX)) {
+        return RR_SINGULAR;
+    }
+    return rr_impact_run(impact, v, until, peak);
+}
+
+/* Next speed to try: by the usual power law, unless that is known to be wrong. */
+static rr_real next_speed(const search *s)
+{
+    const rr_real v = s->v*RR_POW(s->aim/s->force, RR_R(0.9756097560975611));
+    const bool fits = v > s->low && (v < s->high || !(s->high > RR_R(0.0)));
+    return fits ? v : RR_R(0.5)*(s->low + s->high);
+}
+
+/*
+ * Exponent of the force over speed between a trial and the last; 0 if they are too near to tell, or
+ * if the peak jumps between them.
+ */
+static rr_real exponent(const search *s, rr_real v, rr_real force)
+{
+    const rr_real rise = (force - s->force)/(force + s->force);
+    const rr_real p = rise*(v + s->v)/(v - s->v);
+    const bool tells = RR_FABS(rise) > RR_R(0.025)
+        && p > RR_R(0.95) && p < RR_R(1.15);
+    return tells ? p : RR_R(0.0);
+}
+
+/* Learns from a trial. Whether the speed is found: near enough to extrapolate, or at a jump. */
+static bool settles(search *s, rr_real v, rr_real force, rr_safe_speed_t *out)
+{
+    const rr_real p = exponent(s, v, force);
+    const rr_real apart = p > RR_R(0.0) ? RR_FABS(force - s->force) : RR_R(0.0);
+    const rr_real spread = apart < s->aim ? apart : s->aim;
+    const rr_real near = RR_R(0.003)*s->aim + RR_R(0.03125)*spread;
+    const rr_real off = s->aim - force;
+    s->v = v;
+    s->force = force;
+    if (RR_FABS(off) <= near) {
+        out->speed = v + v*(off/(force*RR_FMAX(p, RR_R(1.0))));
+        out->force = s->aim;
+        return true;
+    }
+    if (off < RR_R(0.0)) {
+        s->high = v;
+    } else {
+        s->low = v;
+        s->low_force = force;
+    }
+    const bool jumps = s->low > RR_R(0.0) && s->high > RR_R(0.0)
+        && s->high - s->low <= RR_R(0.003)*s->low;
+    if (jumps) {
+        out->speed = s->low;
+        out->force = s->low_force;
+    }
+    return jumps;
 }
 
 int rr_safe_speed(
@@ -45,49 +115,31 @@ int rr_safe_speed(
     if (status != RR_OK) {
         return status;
     }
-    const rr_real aim = limit*RR_R(0.9993);
-    const rr_real most = limit*RR_R(0.99959);
-    const rr_real least = limit*RR_R(0.99901);
-    const rr_real about = speed_of(&impact, aim);
-    rr_real v = RR_R(1.05)*RR_FABS(about);
-    rr_real low = RR_R(0.0);  /* safe */
-    rr_real high = RR_R(0.0); /* not safe; 0 while unknown */
-    rr_real low_force = RR_R(0.0);
-    rr_real before = RR_R(0.0); /* force of the last trial, and what it says of speed_of */
-    rr_real before_off = RR_R(1.0);
-    for (int k = 0; k < 16; ++k) {
-        rr_peak_force_t peak;
-        if (!(rr_all_finite(&v, 1) && v > RR_R(0.0))) {
-            return RR_SINGULAR;
-        }
-        status = rr_impact_run(&impact, v, &peak);
+    const rr_real zero = RR_R(0.0);
+    const rr_real aim = limit*RR_R(0.99915);
+    const rr_real guess = RR_R(1.05)*RR_FABS(speed_of(&impact, aim));
+    search s = {aim, guess, zero, zero, zero, zero};
+    rr_impact_peak peak;
+    rr_impact_steps(&impact, true);
+    status = try_speed(&impact, s.v, RR_REAL_MAX, &peak);
+    if (status != RR_OK) {
+        return status;
+    }
+    s.force = peak.force;
+    if (peak.nodes > 52) { /* rough steps bound the work; the aim makes up for them */
+        s.aim *= RR_R(0.9978481709453035);
+    } else {
+        rr_impact_steps(&impact, false);
+    }
+    const rr_real until = s.force <= RR_R(2.0)*s.aim ? peak.until : RR_REAL_MAX;
+    for (int k = 1; k < 16; ++k) {
+        const rr_real v = next_speed(&s);
+        status = try_speed(&impact, v, until, &peak);
         if (status != RR_OK) {
             return status;
         }
-        if (peak.force <= most) {
-            low = v;
-            low_force = peak.force;
-        } else {
-            high = v;
-        }
-        const bool jumps = low > RR_R(0.0) && high > RR_R(0.0)
-            && high - low <= RR_R(0.00029)*low;
-        if ((peak.force >= least && peak.force <= most) || jumps) {
-            out->speed = low;
-            out->force = low_force;
+        if (settles(&s, v, peak.force, out)) {
             return RR_OK;
-        }
-        /* what speed_of is off by changes little with the force, and about linearly */
-        const rr_real off = v/speed_of(&impact, peak.force);
-        rr_real next = off;
-        if (k > 0) {
-            next += (off - before_off)*(aim - peak.force)/(peak.force - before);
-        }
-        before = peak.force;
-        before_off = off;
-        v = about*(next > RR_R(0.5)*off && next < RR_R(2.0)*off ? next : off);
-        if (!(v > low && (v < high || !(high > RR_R(0.0))))) {
-            v = RR_R(0.5)*(low + high);
         }
     }
     return RR_UNRESOLVED;

@@ -16,21 +16,19 @@ int ur5e_generalised_mass_matrix(const ur5e_real q[6], const ur5e_params *p, ur5
         return status;
     }
 
-    ur5e_real s2;
-    ur5e_real c2;
-    ur5e_sine_cosine(q[1], &s2, &c2);
-    ur5e_real s3;
-    ur5e_real c3;
-    ur5e_sine_cosine(q[2], &s3, &c3);
-    ur5e_real s4;
-    ur5e_real c4;
-    ur5e_sine_cosine(q[3], &s4, &c4);
-    ur5e_real s5;
-    ur5e_real c5;
-    ur5e_sine_cosine(q[4], &s5, &c5);
-    ur5e_real s6;
-    ur5e_real c6;
-    ur5e_sine_cosine(q[5], &s6, &c6);
+    ur5e_real sines[5];
+    ur5e_real cosines[5];
+    ur5e_sines_cosines(&q[1], 5, sines, cosines);
+    const ur5e_real s2 = sines[0];
+    const ur5e_real c2 = cosines[0];
+    const ur5e_real s3 = sines[1];
+    const ur5e_real c3 = cosines[1];
+    const ur5e_real s4 = sines[2];
+    const ur5e_real c4 = cosines[2];
+    const ur5e_real s5 = sines[3];
+    const ur5e_real c5 = cosines[3];
+    const ur5e_real s6 = sines[4];
+    const ur5e_real c6 = cosines[4];
     const ur5e_real t1 = UR5E_R(1.20000000000001e-07)*c6 - UR5E_R(2.13999999999987e-06)*s6;
     const ur5e_real t2 = s6*t1;
     const ur5e_real M0_11_5 = UR5E_R(0.00535152440556501) + t2;

@@ -21,10 +21,12 @@ static ur5e_real root_of_depth(ur5e_real depth, ur5e_real cubic, ur5e_real guess
     ur5e_real u = guess;
     for (int k = 0; k < 32; ++k) {
         const ur5e_real cu = cubic*u;
-        const ur5e_real change =
-            (u*u*(UR5E_R(1.0) + cu) - depth)/(u*(UR5E_R(2.0) + UR5E_R(3.0)*cu));
+        const ur5e_real bend = UR5E_R(1.0) + UR5E_R(3.0)*cu;
+        const ur5e_real slope = u*(UR5E_R(1.0) + bend);
+        const ur5e_real over = u*u*(UR5E_R(1.0) + cu) - depth;
+        const ur5e_real change = over*slope/(slope*slope - over*bend); /* Halley's */
         u -= change;
-        if (UR5E_FABS(change) <= UR5E_R(0.003)*u) {
+        if (UR5E_FABS(change) <= UR5E_R(0.03)*u) {
             break;
         }
     }
@@ -49,16 +51,19 @@ typedef struct {
     motion mode[UR5E_MODES];
     node last[3];                /* nodes, the newest first */
     int even;                    /* how many of them are evenly spaced */
-    ur5e_real depth;           /* that skin and body would have without the last force */
+    ur5e_real depth;           /* that the skin would have without the last force */
     ur5e_real time;
     ur5e_real best;            /* largest force, and when */
     ur5e_real best_time;
+    ur5e_real best_u;
+    ur5e_real late;            /* when the force was last nearly as large */
 } state;
 
 static void first_node(const ur5e_impact *impact, ur5e_real skin, state *at)
 {
+    const ur5e_level *const level = &impact->level[0];
     ur5e_real depth = UR5E_R(0.0);
-    ur5e_real soft = UR5E_R(1.0)/(impact->stiffness + impact->damping/impact->step);
+    ur5e_real soft = UR5E_R(1.0)/(impact->stiffness + level->rate);
     const ur5e_real hold = soft;
     soft += impact->compliance;
     for (int i = 0; i < impact->modes; ++i) {
@@ -71,18 +76,20 @@ static void first_node(const ur5e_impact *impact, ur5e_real skin, state *at)
     const ur5e_real u = root_of_depth(depth, soft*skin, guess);
     const ur5e_real f = skin*u*u*u;
     for (int i = 0; i < impact->modes; ++i) {
-        at->mode[i].g = impact->start[i] + (impact->level[0].edge[i] - impact->start_edge[i])*f;
+        at->mode[i].g = impact->start[i] + (level->edge[i] - impact->start_edge[i])*f;
         at->mode[i].d = at->mode[i].g;
     }
     const node touch = {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
-    const node first = {f, u, f*hold};
-    at->last[0] = first;
+    const node newest = {f, u, f*hold};
+    at->last[0] = newest;
     at->last[1] = touch;
     at->last[2] = touch;
     at->even = 1;
-    at->time = impact->step;
-    at->best_time = impact->step;
+    at->time = level->h;
+    at->best_time = level->h;
+    at->late = level->h;
     at->best = f;
+    at->best_u = u;
 }
 
 /* Notes the largest force near the last node, before force f: of a cubic, or first of a parabola. */
@@ -107,7 +114,17 @@ static void note_peak(state *at, ur5e_real h, ur5e_real f)
     if (top > at->best) {
         at->best = top;
         at->best_time = at->time + h*x;
+        at->best_u = at->last[0].u;
     }
+}
+
+/* Displacement of a mode after a step, without the force there; f is the force before. */
+static inline ur5e_real moved(const ur5e_mode_step *step, ur5e_real f, motion *mode)
+{
+    mode->d -= step->kappa*mode->g;
+    mode->d -= step->middle*f;
+    mode->g += mode->d;
+    return mode->g;
 }
 
 /* Takes a step; if `doubles`, the next is of the next level. Returns the force, 0 at the end. */
@@ -119,12 +136,9 @@ static ur5e_real step(const ur5e_level *level, int modes, ur5e_real skin, bool d
     if (doubles) {
         (void)memcpy(earlier, at->mode, sizeof earlier);
     }
-    for (int i = 0; i < modes; ++i) {
-        motion *const mode = &at->mode[i];
-        mode->d -= level->mode[i].kappa*mode->g;
-        mode->d -= level->mode[i].middle*last[0].f;
-        mode->g += mode->d;
-        depth += mode->g;
+    for (int i = 0; i < modes; i += 2) { /* in pairs, which takes fewer instructions */
+        depth += moved(&level->mode[i], last[0].f, &at->mode[i]);
+        depth += moved(&level->mode[i + 1], last[0].f, &at->mode[i + 1]);
     }
     const bool even = at->even >= 3;
     const ur5e_real hold = level->hold[even ? 1 : 0];
@@ -138,7 +152,8 @@ static ur5e_real step(const ur5e_level *level, int modes, ur5e_real skin, bool d
     }
     memory *= level->rate;
     const ur5e_real least = UR5E_R(0.5)*last[0].u;
-    const ur5e_real u = root_of_depth(depth - memory*hold, (level->soft + hold)*skin, guess > least ? guess : least);
+    depth -= memory*hold;
+    const ur5e_real u = root_of_depth(depth, (level->soft + hold)*skin, guess > least ? guess : least);
     const ur5e_real f = skin*u*u*u;
     const node next = {f, u, (f + memory)*hold};
     at->depth = depth;
@@ -160,21 +175,39 @@ static ur5e_real step(const ur5e_level *level, int modes, ur5e_real skin, bool d
     return f;
 }
 
-int ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_peak_force_t *out)
+/*
+ * Whether robot and body part so slowly that at another speed they might not: in the last step the
+ * skin's depth falls by a small share of what it was at the peak.
+ */
+static bool grazes(const state *at)
+{
+    const ur5e_real u = at->last[1].u;
+    return u*u - at->depth < UR5E_R(0.15)*at->best_u*at->best_u;
+}
+
+int ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_real until,
+    ur5e_impact_peak *out)
 {
     state at;
     const ur5e_real skin = impact->skin*UR5E_SQRT(speed);
     first_node(impact, skin, &at);
-    bool parted = false;
-    for (int k = 0; k <= UR5E_LEVELS && !parted; ++k) {
+    bool ends = false;
+    int nodes = 1;
+    for (int k = 0; k <= UR5E_LEVELS && !ends; ++k) {
         const bool last = k == UR5E_LEVELS;
-        const int nodes = last ? 1024 : (k == 0 ? 1 : 2);
-        for (int left = nodes - 1; left >= 0 && !parted; --left) {
+        const int most = last ? 1024 : (k == 0 ? 1 : 2);
+        for (int left = most - 1; left >= 0 && !ends; --left) {
             const bool doubles = !last && left == 0;
-            parted = !(step(&impact->level[k], impact->modes, skin, doubles, &at) > UR5E_R(0.0));
+            const ur5e_real f = step(&impact->level[k], impact->modes, skin, doubles, &at);
+            if (f >= UR5E_R(0.8)*at.best) {
+                at.late = at.time;
+            } else {
+                ends = !(f > UR5E_R(0.0) && at.time <= until);
+            }
+            ++nodes;
         }
     }
-    if (!parted) {
+    if (!ends) {
         return UR5E_UNRESOLVED;
     }
     const ur5e_real found[4] = {at.best*speed, at.best_time, at.depth, at.last[0].f};
@@ -183,5 +216,7 @@ int ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_peak_force_
     }
     out->force = found[0];
     out->time = found[1];
+    out->nodes = nodes;
+    out->until = grazes(&at) ? UR5E_REAL_MAX : at.late*UR5E_R(1.1);
     return UR5E_OK;
 }

@@ -6,7 +6,7 @@
 #include "ur5e_internal.h"
 
 #define UR5E_MASSES UR5E_IMPACT_CHAIN_ORDER
-#define UR5E_MODES (UR5E_MASSES + 1) /* one for a body that gives way */
+#define UR5E_MODES (2*((UR5E_MASSES + 2)/2)) /* one for a body that gives way; even */
 #define UR5E_LEVELS 3
 
 typedef struct {
@@ -43,13 +43,14 @@ typedef struct {
  * are for an approach of 1 m/s; spacing doubles from one level to the next.
  */
 typedef struct {
-    int modes;
+    int modes; /* an even number */
     ur5e_real stiffness; /* k_h */
     ur5e_real damping; /* c_h */
     ur5e_real skin; /* k_f */
     ur5e_real mobility; /* of the contact, 1/kg */
     ur5e_real compliance; /* of modes that stand, m/N */
-    ur5e_real step; /* at level 0, s */
+    ur5e_real rate2; /* of the contact point's vibration, squared, 1/s^2 */
+    ur5e_real fastest; /* squared frequency, 1/s^2 */
     ur5e_real squared[UR5E_MODES]; /* frequency, 1/s^2 */
     ur5e_real weight[UR5E_MODES]; /* share of the mobility */
     ur5e_real velocity[UR5E_MODES]; /* share of the velocity at first touch */
@@ -58,11 +59,23 @@ typedef struct {
     ur5e_level level[UR5E_LEVELS + 1];
 } ur5e_impact;
 
-/* Prepares the impacts of a configuration; checks everything but the speed. */
+/* Prepares the impacts of a configuration, but for their steps; checks everything but the speed. */
 int ur5e_impact_prepare(const ur5e_real q[6], const ur5e_real n[3],
     const ur5e_region *region, const ur5e_params *p, ur5e_impact *impact);
 
-/* Integrates one impact. */
-int ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_peak_force_t *out);
+/* Chooses the steps; `rough` ones are about twice as long. */
+void ur5e_impact_steps(ur5e_impact *impact, bool rough);
+
+/* Largest force of an impact. */
+typedef struct {
+    ur5e_real force; /* N */
+    ur5e_real time; /* since first touch, s */
+    ur5e_real until; /* as long as forces of impacts at about this speed may be the largest, s */
+    int nodes; /* it took */
+} ur5e_impact_peak;
+
+/* Integrates one impact until robot and body part, or to a time after which the force is small. */
+int ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_real until,
+    ur5e_impact_peak *out);
 
 #endif

@@ -100,6 +100,24 @@ static bool eigenvalues(int count, ur5e_real *d, ur5e_real *e, ur5e_real *x, ur5
     return true;
 }
 
+/*
+ * A slow squared frequency after a step of Newton's on the dynamic stiffness z at the contact, built
+ * up from the last mass: QL's error is a share of the largest frequency, what remains is one of this.
+ */
+static ur5e_real sharpened(const ur5e_impact_chain_t *chain, int count, ur5e_real squared,
+    ur5e_real most)
+{
+    ur5e_real z = chain->stiffness[count - 1] - squared*chain->mass[count - 1];
+    ur5e_real slope = -chain->mass[count - 1];
+    for (int i = count - 2; i >= 0; --i) {
+        const ur5e_real share = chain->stiffness[i]/(z + chain->stiffness[i]);
+        z = z*share - squared*chain->mass[i];
+        slope = slope*share*share - chain->mass[i];
+    }
+    const ur5e_real change = z/slope;
+    return UR5E_FABS(change) <= UR5E_R(1e-05)*most ? squared - change : squared;
+}
+
 /* Modes of the chain: squared frequency, mobility and velocity at the contact point. */
 static int modes_of(ur5e_impact_chain_t *chain, bool held, ur5e_real *squared, ur5e_real *weight,
     ur5e_real *velocity)
@@ -130,9 +148,16 @@ static int modes_of(ur5e_impact_chain_t *chain, bool held, ur5e_real *squared, u
     if (!eigenvalues(count, squared, off, weight, velocity)) {
         return 0;
     }
+    ur5e_real most = UR5E_R(0.0);
     for (int i = 0; i < count; ++i) {
         velocity[i] *= weight[i];
         weight[i] *= weight[i];
+        most = UR5E_FMAX(most, squared[i]);
+    }
+    for (int i = 0; i < count; ++i) {
+        if (squared[i] < UR5E_R(0.01)*most) {
+            squared[i] = sharpened(chain, count, squared[i], most);
+        }
     }
     return count;
 }
@@ -169,14 +194,15 @@ static void let_stand(ur5e_impact *impact)
 }
 
 /* Steps of mode i at all levels. */
-static void prepare_mode(ur5e_impact *impact, int i)
+static void mode_steps(ur5e_impact *impact, int i)
 {
     const ur5e_real weight = impact->weight[i];
-    ur5e_real h2 = impact->step*impact->step;
+    const ur5e_real h = impact->level[0].h;
+    ur5e_real h2 = h*h;
     ur5e_real theta2 = impact->squared[i]*h2;
     const ur5e_real lean = polynomial(theta2, UR5E_R(0.16666666666666666),
         UR5E_R(-0.008333333333333333), UR5E_R(0.0001984126984126984), UR5E_R(0.0));
-    impact->start[i] = impact->velocity[i]*impact->step*(UR5E_R(1.0) - theta2*lean);
+    impact->start[i] = impact->velocity[i]*h*(UR5E_R(1.0) - theta2*lean);
     impact->start_edge[i] = weight*h2*lean;
     ur5e_real alpha = polynomial(theta2, UR5E_R(0.08333333333333333), UR5E_R(-0.002777777777777778),
         UR5E_R(4.96031746031746e-05), UR5E_R(-5.511463844797178e-07));
@@ -194,10 +220,13 @@ static void prepare_mode(ur5e_impact *impact, int i)
     }
 }
 
-/* Steps of all levels. */
-static void prepare_levels(ur5e_impact *impact)
+void ur5e_impact_steps(ur5e_impact *impact, bool rough)
 {
-    ur5e_real h = impact->step;
+    /* most radians of the contact point's vibration, and of any mode's, to the power of -2 */
+    const ur5e_real contact = rough ? UR5E_R(4.340277777777778) : UR5E_R(17.36111111111111);
+    const ur5e_real mode = rough ? UR5E_R(0.1275510204081633) : UR5E_R(0.39062499999999994);
+    const ur5e_real rate2 = UR5E_FMAX(impact->rate2*contact, impact->fastest*mode);
+    ur5e_real h = UR5E_R(0.125)/UR5E_SQRT(rate2);
     for (int k = 0; k <= UR5E_LEVELS; ++k) {
         ur5e_level *const level = &impact->level[k];
         level->h = h;
@@ -208,7 +237,7 @@ static void prepare_levels(ur5e_impact *impact)
         h += h;
     }
     for (int i = 0; i < impact->modes; ++i) {
-        prepare_mode(impact, i);
+        mode_steps(impact, i);
     }
 }
 
@@ -245,21 +274,21 @@ int ur5e_impact_prepare(const ur5e_real q[6], const ur5e_real n[3],
     for (int i = 0; i < impact->modes; ++i) {
         impact->mobility += impact->weight[i];
     }
-    ur5e_real rate2 = impact->stiffness*impact->mobility;
+    impact->rate2 = impact->stiffness*impact->mobility;
     for (int i = 0; i < impact->modes; ++i) {
-        rate2 += impact->velocity[i]*impact->velocity[i]*UR5E_FMAX(impact->squared[i], UR5E_R(0.0));
+        impact->rate2 += impact->velocity[i]*impact->velocity[i]*UR5E_FMAX(impact->squared[i], UR5E_R(0.0));
     }
     let_stand(impact);
-    ur5e_real fastest = UR5E_R(0.0);
+    if (impact->modes % 2 != 0) { /* one that stays is added */
+        impact->squared[impact->modes] = UR5E_R(0.0);
+        impact->weight[impact->modes] = UR5E_R(0.0);
+        impact->velocity[impact->modes] = UR5E_R(0.0);
+        ++impact->modes;
+    }
+    impact->fastest = UR5E_R(0.0);
     for (int i = 0; i < impact->modes; ++i) {
-        fastest = UR5E_FMAX(fastest, impact->squared[i]);
+        impact->fastest = UR5E_FMAX(impact->fastest, impact->squared[i]);
     }
-    /* at most 0.24 rad of the contact point's vibration and 2.5 rad of any mode's */
-    rate2 = UR5E_FMAX(rate2*UR5E_R(17.36111111111111), fastest*UR5E_R(0.16));
-    impact->step = UR5E_R(0.125)/UR5E_SQRT(rate2);
-    if (!(impact->step > UR5E_R(0.0))) {
-        return UR5E_SINGULAR;
-    }
-    prepare_levels(impact);
-    return UR5E_OK;
+    const ur5e_real rates[2] = {impact->rate2, impact->fastest};
+    return ur5e_all_finite(rates, 2) && rates[0] > UR5E_R(0.0) ? UR5E_OK : UR5E_SINGULAR;
 }

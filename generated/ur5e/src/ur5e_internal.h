@@ -35,26 +35,30 @@
 #define UR5E_COPYSIGN(x, y) UR5E_F(copysign)(x, y)
 #define UR5E_POW(x, y) UR5E_F(pow)(x, y)
 
-/* Sine s and cosine c of a finite x. */
+/* Sines s and cosines c of finite angles x. */
 #if defined(UR5E_USE_FLOAT)
-void ur5e_sine_cosine(float x, float *s, float *c);
+void ur5e_sines_cosines(const float *x, int count, float *s, float *c);
 #else
-static inline void ur5e_sine_cosine(double x, double *s, double *c)
+static inline void ur5e_sines_cosines(const double *x, int count, double *s, double *c)
 {
-    *s = sin(x);
-    *c = cos(x);
+    for (int i = 0; i < count; ++i) {
+        s[i] = sin(x[i]);
+        c[i] = cos(x[i]);
+    }
 }
 #endif
 
-/* Whether all numbers are finite; a comparison with a NaN is false. */
+/*
+ * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.
+ * A comparison with a NaN is false.
+ */
 static inline bool ur5e_all_finite(const ur5e_real *x, int count)
 {
+    ur5e_real sum = UR5E_R(0.0);
     for (int i = 0; i < count; ++i) {
-        if (!(UR5E_FABS(x[i]) <= UR5E_REAL_MAX)) {
-            return false;
-        }
+        sum += UR5E_R(0.0009765625)*x[i];
     }
-    return true;
+    return UR5E_FABS(sum) <= UR5E_REAL_MAX;
 }
 
 /* Status of inputs that must be greater than 0. */
@@ -110,10 +114,10 @@ static inline int ur5e_unit_vector(const ur5e_real n[3], ur5e_real u[3])
     const ur5e_real x = n[0]/largest;
     const ur5e_real y = n[1]/largest;
     const ur5e_real z = n[2]/largest;
-    const ur5e_real length = UR5E_SQRT(x*x + y*y + z*z);
-    u[0] = x/length;
-    u[1] = y/length;
-    u[2] = z/length;
+    const ur5e_real scale = UR5E_R(1.0)/UR5E_SQRT(x*x + y*y + z*z);
+    u[0] = x*scale;
+    u[1] = y*scale;
+    u[2] = z*scale;
     return UR5E_OK;
 }
 

@@ -12,21 +12,19 @@ int ur5e_jacobian(const ur5e_real q[6], ur5e_real J[3][6])
         return UR5E_NOT_FINITE;
     }
 
-    ur5e_real s1;
-    ur5e_real c1;
-    ur5e_sine_cosine(q[0], &s1, &c1);
-    ur5e_real s2;
-    ur5e_real c2;
-    ur5e_sine_cosine(q[1], &s2, &c2);
-    ur5e_real s3;
-    ur5e_real c3;
-    ur5e_sine_cosine(q[2], &s3, &c3);
-    ur5e_real s4;
-    ur5e_real c4;
-    ur5e_sine_cosine(q[3], &s4, &c4);
-    ur5e_real s5;
-    ur5e_real c5;
-    ur5e_sine_cosine(q[4], &s5, &c5);
+    ur5e_real sines[5];
+    ur5e_real cosines[5];
+    ur5e_sines_cosines(&q[0], 5, sines, cosines);
+    const ur5e_real s1 = sines[0];
+    const ur5e_real c1 = cosines[0];
+    const ur5e_real s2 = sines[1];
+    const ur5e_real c2 = cosines[1];
+    const ur5e_real s3 = sines[2];
+    const ur5e_real c3 = cosines[2];
+    const ur5e_real s4 = sines[3];
+    const ur5e_real c4 = cosines[3];
+    const ur5e_real s5 = sines[4];
+    const ur5e_real c5 = cosines[4];
     const ur5e_real t1 = c2*s1;
     const ur5e_real t2 = UR5E_R(0.425)*t1;
     const ur5e_real t3 = s2*s1;

@@ -54,6 +54,16 @@ int ur5e_peak_force(
         return UR5E_OUT_OF_RANGE;
     }
     ur5e_impact impact;
-    const int status = ur5e_impact_prepare(q, n, region, p, &impact);
-    return status == UR5E_OK ? ur5e_impact_run(&impact, speed, out) : status;
+    int status = ur5e_impact_prepare(q, n, region, p, &impact);
+    if (status != UR5E_OK) {
+        return status;
+    }
+    ur5e_impact_steps(&impact, false);
+    ur5e_impact_peak peak;
+    status = ur5e_impact_run(&impact, speed, UR5E_REAL_MAX, &peak);
+    if (status == UR5E_OK) {
+        out->force = peak.force;
+        out->time = peak.time;
+    }
+    return status;
 }

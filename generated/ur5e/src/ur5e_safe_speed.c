@@ -5,7 +5,7 @@
 
 /*
  * About the speed that leads to a force: all energy is in skin and body, and modes count the less
- * the faster they are than the contact. Close where robots are simple, and always of the right trend.
+ * the faster they are than the contact. Close where robots are simple.
  */
 static ur5e_real speed_of(const ur5e_impact *impact, ur5e_real force)
 {
@@ -21,6 +21,76 @@ static ur5e_real speed_of(const ur5e_impact *impact, ur5e_real force)
     }
     const ur5e_real energy = force*(force + UR5E_R(0.8)*k*skin); /* 2 k times it */
     return UR5E_SQRT(energy*mobility/k)/velocity;
+}
+
+/* Search for the speed that leads to a force. */
+typedef struct {
+    ur5e_real aim;       /* the force */
+    ur5e_real v;         /* the last trial, and its force */
+    ur5e_real force;
+    ur5e_real low;       /* safe, and its force */
+    ur5e_real low_force;
+    ur5e_real high;      /* not safe; 0 while unknown */
+} search;
+
+/* Integrates an impact at a speed, if that is one. */
+static int try_speed(const ur5e_impact *impact, ur5e_real v, ur5e_real until, ur5e_impact_peak *peak)
+{
+    if (!(v > UR5E_R(0.0) && v < UR5E_R(0.5)*UR5E_REAL_MAX)) {
+        return UR5E_SINGULAR;
+    }
+    return ur5e_impact_run(impact, v, until, peak);
+}
+
+/* Next speed to try: by the usual power law, unless that is known to be wrong. */
+static ur5e_real next_speed(const search *s)
+{
+    const ur5e_real v = s->v*UR5E_POW(s->aim/s->force, UR5E_R(0.9756097560975611));
+    const bool fits = v > s->low && (v < s->high || !(s->high > UR5E_R(0.0)));
+    return fits ? v : UR5E_R(0.5)*(s->low + s->high);
+}
+
+/*
+ * Exponent of the force over speed between a trial and the last; 0 if they are too near to tell, or
+ * if the peak jumps between them.
+ */
+static ur5e_real exponent(const search *s, ur5e_real v, ur5e_real force)
+{
+    const ur5e_real rise = (force - s->force)/(force + s->force);
+    const ur5e_real p = rise*(v + s->v)/(v - s->v);
+    const bool tells = UR5E_FABS(rise) > UR5E_R(0.025)
+        && p > UR5E_R(0.95) && p < UR5E_R(1.15);
+    return tells ? p : UR5E_R(0.0);
+}
+
+/* Learns from a trial. Whether the speed is found: near enough to extrapolate, or at a jump. */
+static bool settles(search *s, ur5e_real v, ur5e_real force, ur5e_safe_speed_t *out)
+{
+    const ur5e_real p = exponent(s, v, force);
+    const ur5e_real apart = p > UR5E_R(0.0) ? UR5E_FABS(force - s->force) : UR5E_R(0.0);
+    const ur5e_real spread = apart < s->aim ? apart : s->aim;
+    const ur5e_real near = UR5E_R(0.003)*s->aim + UR5E_R(0.03125)*spread;
+    const ur5e_real off = s->aim - force;
+    s->v = v;
+    s->force = force;
+    if (UR5E_FABS(off) <= near) {
+        out->speed = v + v*(off/(force*UR5E_FMAX(p, UR5E_R(1.0))));
+        out->force = s->aim;
+        return true;
+    }
+    if (off < UR5E_R(0.0)) {
+        s->high = v;
+    } else {
+        s->low = v;
+        s->low_force = force;
+    }
+    const bool jumps = s->low > UR5E_R(0.0) && s->high > UR5E_R(0.0)
+        && s->high - s->low <= UR5E_R(0.003)*s->low;
+    if (jumps) {
+        out->speed = s->low;
+        out->force = s->low_force;
+    }
+    return jumps;
 }
 
 int ur5e_safe_speed(
@@ -45,49 +115,31 @@ int ur5e_safe_speed(
     if (status != UR5E_OK) {
         return status;
     }
-    const ur5e_real aim = limit*UR5E_R(0.9993);
-    const ur5e_real most = limit*UR5E_R(0.99959);
-    const ur5e_real least = limit*UR5E_R(0.99901);
-    const ur5e_real about = speed_of(&impact, aim);
-    ur5e_real v = UR5E_R(1.05)*UR5E_FABS(about);
-    ur5e_real low = UR5E_R(0.0);  /* safe */
-    ur5e_real high = UR5E_R(0.0); /* not safe; 0 while unknown */
-    ur5e_real low_force = UR5E_R(0.0);
-    ur5e_real before = UR5E_R(0.0); /* force of the last trial, and what it says of speed_of */
-    ur5e_real before_off = UR5E_R(1.0);
-    for (int k = 0; k < 16; ++k) {
-        ur5e_peak_force_t peak;
-        if (!(ur5e_all_finite(&v, 1) && v > UR5E_R(0.0))) {
-            return UR5E_SINGULAR;
-        }
-        status = ur5e_impact_run(&impact, v, &peak);
+    const ur5e_real zero = UR5E_R(0.0);
+    const ur5e_real aim = limit*UR5E_R(0.99915);
+    const ur5e_real guess = UR5E_R(1.05)*UR5E_FABS(speed_of(&impact, aim));
+    search s = {aim, guess, zero, zero, zero, zero};
+    ur5e_impact_peak peak;
+    ur5e_impact_steps(&impact, true);
+    status = try_speed(&impact, s.v, UR5E_REAL_MAX, &peak);
+    if (status != UR5E_OK) {
+        return status;
+    }
+    s.force = peak.force;
+    if (peak.nodes > 52) { /* rough steps bound the work; the aim makes up for them */
+        s.aim *= UR5E_R(0.9978481709453035);
+    } else {
+        ur5e_impact_steps(&impact, false);
+    }
+    const ur5e_real until = s.force <= UR5E_R(2.0)*s.aim ? peak.until : UR5E_REAL_MAX;
+    for (int k = 1; k < 16; ++k) {
+        const ur5e_real v = next_speed(&s);
+        status = try_speed(&impact, v, until, &peak);
         if (status != UR5E_OK) {
             return status;
         }
-        if (peak.force <= most) {
-            low = v;
-            low_force = peak.force;
-        } else {
-            high = v;
-        }
-        const bool jumps = low > UR5E_R(0.0) && high > UR5E_R(0.0)
-            && high - low <= UR5E_R(0.00029)*low;
-        if ((peak.force >= least && peak.force <= most) || jumps) {
-            out->speed = low;
-            out->force = low_force;
+        if (settles(&s, v, peak.force, out)) {
             return UR5E_OK;
-        }
-        /* what speed_of is off by changes little with the force, and about linearly */
-        const ur5e_real off = v/speed_of(&impact, peak.force);
-        ur5e_real next = off;
-        if (k > 0) {
-            next += (off - before_off)*(aim - peak.force)/(peak.force - before);
-        }
-        before = peak.force;
-        before_off = off;
-        v = about*(next > UR5E_R(0.5)*off && next < UR5E_R(2.0)*off ? next : off);
-        if (!(v > low && (v < high || !(high > UR5E_R(0.0))))) {
-            v = UR5E_R(0.5)*(low + high);
         }
     }
     return UR5E_UNRESOLVED;
