@@ -51,10 +51,10 @@ HALLEY, CLOSE = 32, 0.03
 TRIALS = 16
 """Most impacts integrated for one safe speed; two do, the first of them in rough steps."""
 
-AIM = 0.99915
+AIM = 0.998
 """Share of the limit at which a safe speed aims, for the sake of what integration may be off by."""
 
-LONG, AIM_IF_LONG = 52, 0.997
+LONG, AIM_IF_LONG = 52, 0.996
 """Nodes in rough steps above which all impacts of a safe speed are integrated in these, and the
 share of the limit at which it then aims."""
 

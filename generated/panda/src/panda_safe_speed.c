@@ -116,7 +116,7 @@ int panda_safe_speed(
         return status;
     }
     const panda_real zero = PANDA_R(0.0);
-    const panda_real aim = limit*PANDA_R(0.99915);
+    const panda_real aim = limit*PANDA_R(0.998);
     const panda_real guess = PANDA_R(1.05)*PANDA_FABS(speed_of(&impact, aim));
     search s = {aim, guess, zero, zero, zero, zero};
     panda_impact_peak peak;
@@ -127,7 +127,7 @@ int panda_safe_speed(
     }
     s.force = peak.force;
     if (peak.nodes > 52) { /* rough steps bound the work; the aim makes up for them */
-        s.aim *= PANDA_R(0.9978481709453035);
+        s.aim *= PANDA_R(0.9979959919839679);
     } else {
         panda_impact_steps(&impact, false);
     }

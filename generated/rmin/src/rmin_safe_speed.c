@@ -116,7 +116,7 @@ int rmin_safe_speed(
         return status;
     }
     const rmin_real zero = RMIN_R(0.0);
-    const rmin_real aim = limit*RMIN_R(0.99915);
+    const rmin_real aim = limit*RMIN_R(0.998);
     const rmin_real guess = RMIN_R(1.05)*RMIN_FABS(speed_of(&impact, aim));
     search s = {aim, guess, zero, zero, zero, zero};
     rmin_impact_peak peak;
@@ -127,7 +127,7 @@ int rmin_safe_speed(
     }
     s.force = peak.force;
     if (peak.nodes > 52) { /* rough steps bound the work; the aim makes up for them */
-        s.aim *= RMIN_R(0.9978481709453035);
+        s.aim *= RMIN_R(0.9979959919839679);
     } else {
         rmin_impact_steps(&impact, false);
     }

@@ -231,7 +231,7 @@ typedef struct {
 
 /*
  * Largest speed along n at which the peak force of the first contact stays below a limit.
- * limit: N, > 0. The force at the speed found is 0.1 % below the limit, or 0.3 % where contact
+ * limit: N, > 0. The force at the speed found is 0.2 % below the limit, or 0.4 % where contact
  * lasts for many vibrations, unless the peak jumps there with speed; then the speed is just below.
  * Bounded: 16 impacts of 1024 steps; two do.
  */

@@ -116,7 +116,7 @@ int rr_safe_speed(
         return status;
     }
     const rr_real zero = RR_R(0.0);
-    const rr_real aim = limit*RR_R(0.99915);
+    const rr_real aim = limit*RR_R(0.998);
     const rr_real guess = RR_R(1.05)*RR_FABS(speed_of(&impact, aim));
     search s = {aim, guess, zero, zero, zero, zero};
     rr_impact_peak peak;
@@ -127,7 +127,7 @@ int rr_safe_speed(
     }
     s.force = peak.force;
     if (peak.nodes > 52) { /* rough steps bound the work; the aim makes up for them */
-        s.aim *= RR_R(0.9978481709453035);
+        s.aim *= RR_R(0.9979959919839679);
     } else {
         rr_impact_steps(&impact, false);
     }

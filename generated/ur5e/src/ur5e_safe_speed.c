@@ -116,7 +116,7 @@ int ur5e_safe_speed(
         return status;
     }
     const ur5e_real zero = UR5E_R(0.0);
-    const ur5e_real aim = limit*UR5E_R(0.99915);
+    const ur5e_real aim = limit*UR5E_R(0.998);
     const ur5e_real guess = UR5E_R(1.05)*UR5E_FABS(speed_of(&impact, aim));
     search s = {aim, guess, zero, zero, zero, zero};
     ur5e_impact_peak peak;
@@ -127,7 +127,7 @@ int ur5e_safe_speed(
     }
     s.force = peak.force;
     if (peak.nodes > 52) { /* rough steps bound the work; the aim makes up for them */
-        s.aim *= UR5E_R(0.9978481709453035);
+        s.aim *= UR5E_R(0.9979959919839679);
     } else {
         ur5e_impact_steps(&impact, false);
     }
