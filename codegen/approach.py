@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import ImpactModel, Matrix, Robot, least_velocity
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .closed_samples import closed_configurations
 

@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import Robot, closed_chain, loop_gaps, loop_jacobian
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 SPREAD = 0.5
 """How far independent joints are sampled from home [rad, m]."""

@@ -27,7 +27,7 @@ from softimpact.symbolic import (
     potential_energy,
 )
 from softimpact.symbolic.matrices import Factorisation
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .evaluate import evaluate_exactly, evaluate_rounded
 from .graph import Graph, graph_of

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from softimpact.symbolic import REGIONS, BodyRegion, Robot
-from softimpact.symbolic.contact import HERTZ_STIFFNESS
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
+from softimpact.symbolic.robot.rigid import Array
 
 from .accuracy import is_regular, rounded_unit, rounded_up
 from .description import CFunction

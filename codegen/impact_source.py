@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.symbolic import Robot
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from . import impact
 from .accuracy import rounded_up

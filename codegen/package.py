@@ -11,7 +11,7 @@ import numpy as np
 
 import softimpact
 from softimpact.symbolic import STANDARD_GRAVITY, Drives, InvalidValue, Robot
-from softimpact.symbolic.impact_model import WEIGHTLESS
+from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 
 from .accuracy import accuracy, golden_results, is_regular
 from .configuration import Configuration, has_configuration

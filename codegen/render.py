@@ -11,7 +11,7 @@ import jinja2
 
 import softimpact
 from softimpact.symbolic import REGIONS, JointKind, Robot, closed_chain
-from softimpact.symbolic.contact import HERTZ_STIFFNESS
+from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 
 from . import impact, sine, tridiagonal
 from .configuration_source import ConfigurationSource

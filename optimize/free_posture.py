@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .front import WORTH
 from .levels import NO_BOUND

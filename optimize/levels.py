@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from softimpact.symbolic import InvalidValue
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .study import Study
 

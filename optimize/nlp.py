@@ -23,7 +23,7 @@ from softimpact.symbolic import (
     least_velocity,
 )
 from softimpact.symbolic.matrices import Factorisation
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .study import Study

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.symbolic import InvalidValue
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .failure import SolverFailure
 from .free_posture import first_forces, free_outcomes, softest_design

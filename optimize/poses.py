@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import ImpactModel, InvalidValue, Joint, JointKind, frame_pose
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .nlp import tip_pose_error
 from .repair import POSE, posture_at_pose

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .compiled import c_compiler, compiled_nlp
 from .nlp import DesignNlp, build_nlp, parameters

@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import ImpactModel
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .nlp import deflections, tip_pose_error
 from .solve import quiet

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 Mode = Literal["table", "free"]
 """``table``: the posture is given and k_s is sought; ``free``: both are sought."""

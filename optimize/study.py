@@ -27,8 +27,8 @@ from softimpact.symbolic import (
     load_robot,
     unit_direction,
 )
-from softimpact.symbolic.drives import PerJoint, per_joint
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.impact.drives import PerJoint, per_joint
+from softimpact.symbolic.robot.rigid import Array
 
 from .study_file import (
     ParetoSection,

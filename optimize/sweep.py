@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .solve import Bounds, Outcome, Program, Start, better, preference, solve
 from .stiffest import Stiffest

@@ -16,7 +16,7 @@ from softimpact.symbolic import (
     require_closed_at,
     unit_direction,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 REACHED = 1e-6
 """Error of the contact point's velocity along n that a given link velocity may have."""

@@ -22,7 +22,7 @@ from softimpact.symbolic import (
     chain,
     generalised_velocity,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .approach import Arrival
 from .controller import Controller

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue
-from softimpact.symbolic.chain import ChainEnd
+from softimpact.symbolic.impact.chain import ChainEnd
 
 from .approach import Approach
 from .controller import Controller

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from softimpact.symbolic import InvalidValue
-from softimpact.symbolic.contact import HERTZ_EXPONENT
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.body.contact import HERTZ_EXPONENT
+from softimpact.symbolic.robot.rigid import Array
 
 from .simulator import NODES, Run, Scene
 

@@ -24,9 +24,9 @@ from softimpact.symbolic import (
     loop_tangent,
     mass_matrix,
 )
-from softimpact.symbolic.impact_model import WEIGHTLESS
+from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 from softimpact.symbolic.matrices import Factorisation, Matrix
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .approach import Arrival
 from .controller import Controller

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from softimpact.symbolic import UnknownName
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 Fidelity = Literal["one_mass", "two_mass", "chain", "linearised", "full"]
 """Models of the robot, from the simplest to the most faithful."""

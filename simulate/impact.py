@@ -8,7 +8,7 @@ from functools import partial
 from typing import get_args
 
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue, UnknownName
-from softimpact.symbolic.chain import ChainEnd
+from softimpact.symbolic.impact.chain import ChainEnd
 
 from .approach import Approach, Arrival, arrival_of, check_contact
 from .controlled import controlled, controlled_scene

@@ -17,8 +17,8 @@ from softimpact.symbolic import (
     InvalidValue,
     generalised_velocity,
 )
-from softimpact.symbolic.chain import ChainEnd
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.impact.chain import ChainEnd
+from softimpact.symbolic.robot.rigid import Array
 
 from .mechanism import BodyKind, Mechanism
 from .simulator import Scene, Simulator, build_simulator

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from softimpact.symbolic.contact import Contact, hertz_force
+from softimpact.symbolic.body.contact import Contact, hertz_force
 from softimpact.symbolic.matrices import Matrix
 
 

@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic.matrices import Matrix
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .approach import Arrival
 from .controller import Controller

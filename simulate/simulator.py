@@ -15,7 +15,7 @@ import numpy as np
 
 from softimpact.symbolic import Contact, SoftImpactError
 from softimpact.symbolic.matrices import Matrix
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .mechanism import Body, BodyKind, Mechanism, Press, body_parameters, press
 

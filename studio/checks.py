@@ -15,7 +15,7 @@ from softimpact.simulate import (
     largest_safe_speed,
     simulate_impact,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 
 @dataclass(frozen=True, eq=False)

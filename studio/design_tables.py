@@ -7,7 +7,7 @@ from rich.console import Console
 
 from softimpact.optimize import Outcome
 from softimpact.optimize.poses import leaves_a_choice
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .design_report import DesignReport, RankedPose, gains_in_words, limit_kind
 from .output import Cell, print_table

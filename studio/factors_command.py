@@ -83,7 +83,7 @@ def factors(
 
 def flat(found: Any) -> dict[str, Any]:
     """Return the factors on one level; those that do not apply are None."""
-    from softimpact.symbolic.impact_factors import Mitigation, SpatialFactors
+    from softimpact.symbolic.factors.impact_factors import Mitigation, SpatialFactors
 
     result = dict(vars(found))
     for name, kind in (("spatial", SpatialFactors), ("mitigation", Mitigation)):

@@ -20,7 +20,7 @@ from softimpact.simulate import (
 )
 from softimpact.simulate.controller import Reference
 from softimpact.symbolic import Contact, InvalidValue, body_region
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from . import values
 from .output import print_table

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from softimpact.optimize import Candidate, Study, candidates
 from softimpact.simulate import Approach, Fidelity, simulate_impact
 from softimpact.symbolic import InvalidValue, analyse
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .output import print_table
 

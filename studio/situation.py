@@ -23,9 +23,9 @@ from softimpact.symbolic import (
     lock_joints,
     unit_direction,
 )
-from softimpact.symbolic.drives import PerJoint
-from softimpact.symbolic.impact_model import WEIGHTLESS
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.impact.drives import PerJoint
+from softimpact.symbolic.impact.impact_model import WEIGHTLESS
+from softimpact.symbolic.robot.rigid import Array
 
 from . import values
 

@@ -9,7 +9,7 @@ import re
 from typing import Any, get_args
 
 from softimpact.symbolic import InvalidValue, Robot, UnknownName
-from softimpact.symbolic.drives import PerJoint
+from softimpact.symbolic.impact.drives import PerJoint
 
 
 def vector(field: str, text: str, length: int | None = None) -> list[float]:

@@ -1,18 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The physics as CasADi expressions: robot, dynamics, compliance, reduction, impact factors."""
 
-from .analysis import Analysis, ChainNumbers, analyse
-from .approach import approach_velocity, generalised_velocity, least_velocity, unit_direction
-from .chain import Chain, chain, free_end
-from .closure import (
-    close_loops,
-    closed_near,
-    configuration_at_rest,
-    require_closed_at,
-)
-from .contact import Contact
-from .drives import Drives, drives
-from .dynamics import (
+from .body.contact import Contact
+from .body.regions import REGIONS, BodyRegion, body_region
+from .dynamics.equations_of_motion import (
     STANDARD_GRAVITY,
     bias_torques,
     gravity_torques,
@@ -20,19 +11,14 @@ from .dynamics import (
     potential_energy,
     stiffness_of_potential,
 )
-from .eigen import Eigen, symmetric_eigen
-from .elastic import LinearModel
-from .ellipsoids import (
-    Ellipsoid,
-    dynamic_impact_ellipsoid,
-    dynamic_impact_measure,
-    force_measure,
-    generalised_inertia_ellipsoid,
-    longest_manipulability,
-    manipulability,
-    manipulability_ellipsoid,
+from .dynamics.equilibrium import link_angles_at_rest, motor_angles_at_rest
+from .dynamics.kinematics import (
+    contact_point_jacobian,
+    direction_jacobian,
+    frame_jacobian,
+    frame_pose,
 )
-from .equilibrium import link_angles_at_rest, motor_angles_at_rest
+from .eigen import Eigen, symmetric_eigen
 from .errors import (
     FrameNotFound,
     InvalidInertia,
@@ -50,17 +36,44 @@ from .errors import (
     UnsupportedModel,
     WrongLength,
 )
-from .extreme_directions import Extremes, extreme_directional_giaf, extreme_mass_ratio
-from .factors import ContactMobility, contact_mobility, directional_giaf, giaf, giif
-from .floating import FloatingRobot, floating_model, floating_robot
-from .impact_factors import ImpactFactors, impact_factors
-from .impact_mitigation import ImpactMitigation, impact_mitigation
-from .impact_model import ImpactModel, impact_model
-from .joint_impulse import JointImpulse, joint_impulse
-from .kinematics import contact_point_jacobian, direction_jacobian, frame_jacobian, frame_pose
-from .loading import load_robot
-from .loop_equations import ClosedChain
-from .loops import (
+from .factors.contact_mobility import (
+    ContactMobility,
+    contact_mobility,
+    directional_giaf,
+    giaf,
+    giif,
+)
+from .factors.ellipsoids import (
+    Ellipsoid,
+    dynamic_impact_ellipsoid,
+    dynamic_impact_measure,
+    force_measure,
+    generalised_inertia_ellipsoid,
+    longest_manipulability,
+    manipulability,
+    manipulability_ellipsoid,
+)
+from .factors.extreme_directions import Extremes, extreme_directional_giaf, extreme_mass_ratio
+from .factors.impact_factors import ImpactFactors, impact_factors
+from .factors.impact_mitigation import ImpactMitigation, impact_mitigation
+from .factors.joint_impulse import JointImpulse, joint_impulse
+from .factors.rotor_influence import giaf_by_gear, giaf_by_rotor, single_joint_giaf
+from .impact.analysis import Analysis, ChainNumbers, analyse
+from .impact.approach import approach_velocity, generalised_velocity, least_velocity, unit_direction
+from .impact.chain import Chain, chain, free_end
+from .impact.drives import Drives, drives
+from .impact.elastic import LinearModel
+from .impact.floating import FloatingRobot, floating_model, floating_robot
+from .impact.impact_model import ImpactModel, impact_model
+from .impact.reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
+from .loops.closure import (
+    close_loops,
+    closed_near,
+    configuration_at_rest,
+    require_closed_at,
+)
+from .loops.loop_equations import ClosedChain
+from .loops.loops import (
     closed_chain,
     constrained_stiffness,
     loop_acceleration,
@@ -69,11 +82,9 @@ from .loops import (
     loop_tangent,
 )
 from .matrices import Matrix, count_flops
-from .reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
-from .regions import REGIONS, BodyRegion, body_region
-from .robot import Frame, Joint, JointKind, Loop, Robot
-from .rotor_influence import giaf_by_gear, giaf_by_rotor, single_joint_giaf
-from .welding import chain_to, lock_joints
+from .robot.loading import load_robot
+from .robot.robot import Frame, Joint, JointKind, Loop, Robot
+from .robot.welding import chain_to, lock_joints
 
 __all__ = [
     "REGIONS",

@@ -9,7 +9,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from softimpact.studio.cli import main
+from softimpact.cli import main
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from softimpact.codegen.impact_error import Impact
 from softimpact.codegen.manifest import ImpactRecord
 from softimpact.codegen.samples import Sample
 from softimpact.symbolic import REGIONS
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 OK, NULL_POINTER, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR = range(6)
 UNRESOLVED = 8

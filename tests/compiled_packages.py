@@ -22,7 +22,7 @@ from softimpact.codegen.manifest import Manifest
 from softimpact.codegen.samples import Sample
 from softimpact.studio.pose_table import pose_table
 from softimpact.symbolic import Robot
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 STUDIES = Path(__file__).parents[1] / "robots/studies"
 

@@ -9,8 +9,8 @@ import scipy.linalg
 from hypothesis import strategies as st
 
 from softimpact.symbolic import LinearModel
-from softimpact.symbolic.elastic import DenseMass
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.impact.elastic import DenseMass
+from softimpact.symbolic.robot.rigid import Array
 
 
 def random_linear_model(seed: int, size: int) -> LinearModel:

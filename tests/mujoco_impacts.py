@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from softimpact.symbolic import Contact
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 STEP = 1e-5
 """Longer of the two time steps [s]."""

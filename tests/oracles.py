@@ -12,8 +12,8 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from softimpact.symbolic import Matrix, Robot
-from softimpact.symbolic.rigid import Array
-from softimpact.symbolic.robot import BASE, JointKind
+from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.robot import BASE, JointKind
 
 URDFS = Path(pin.__file__).parents[4] / "share/example-robot-data/robots"
 """Folder of the example robots' URDF files."""

@@ -33,8 +33,8 @@ from softimpact.symbolic import (
     manipulability,
     single_joint_giaf,
 )
-from softimpact.symbolic.ellipsoids import impact_matrix
-from softimpact.symbolic.rigid import Array, Inertia
+from softimpact.symbolic.factors.ellipsoids import impact_matrix
+from softimpact.symbolic.robot.rigid import Array, Inertia
 
 OK, SINGULAR = 0, 5
 

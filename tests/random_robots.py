@@ -7,8 +7,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from softimpact.symbolic import Frame, Joint, JointKind, Robot
-from softimpact.symbolic.rigid import Inertia, Placement, rotation_about_z, rotation_from_axis
-from softimpact.symbolic.robot import BASE
+from softimpact.symbolic.robot.rigid import Inertia, Placement, rotation_about_z, rotation_from_axis
+from softimpact.symbolic.robot.robot import BASE
 
 TILTS = (0.0, np.pi, np.pi / 2, -np.pi / 2, 1e-15, 1e-9, 1e-5, 1e-3, 0.019, 0.021, 0.05, 0.3, 3.14)
 """Angles between a joint's axis and its parent's: parallel, perpendicular and nearly so [rad]."""

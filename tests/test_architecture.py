@@ -18,6 +18,7 @@ MAY_IMPORT = {
     "simulate": {"symbolic"},
     "optimize": {"symbolic"},
     "studio": {"robots", "symbolic", "codegen", "simulate", "optimize"},
+    "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from samples import Array, text
 
 from softimpact.symbolic import Robot
-from softimpact.symbolic.rigid import Inertia
+from softimpact.symbolic.robot.rigid import Inertia
 
 
 def numbers(robot: Robot) -> str:

@@ -7,7 +7,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import ImpactModel, Matrix, Robot, loop_gaps
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from ..approach import share_outside, some_configurations
 from ..description import Guard

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from softimpact.symbolic import giaf_by_rotor, single_joint_giaf
-from softimpact.symbolic.joint_impulse import impulse_along
+from softimpact.symbolic.factors.joint_impulse import impulse_along
 
 from ..description import CFunction, Guard, Output
 from .guards import movable, movable_in_space

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import casadi as ca
 
-from softimpact.symbolic import Matrix, ellipsoids
+from softimpact.symbolic import Matrix
+from softimpact.symbolic.factors import ellipsoids
 from softimpact.symbolic.matrices import symmetric
 
 from ..description import CFunction, Guard, Output

@@ -12,7 +12,7 @@ from softimpact.symbolic import (
     giaf,
 )
 from softimpact.symbolic import impact_mitigation as mitigation
-from softimpact.symbolic.floating import BASE_COORDINATES
+from softimpact.symbolic.impact.floating import BASE_COORDINATES
 
 from ..description import CFunction, Output
 from .guards import movable_in_space

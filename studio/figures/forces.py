@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from softimpact.simulate import ImpactHistory
 from softimpact.studio.design_report import DesignReport
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 from .style import (
     BEFORE,

@@ -15,8 +15,8 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from softimpact.studio.design_report import DesignReport
 from softimpact.symbolic import Robot
-from softimpact.symbolic.kinematics import motions, poses
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.dynamics.kinematics import motions, poses
+from softimpact.symbolic.robot.rigid import Array
 
 from .style import (
     BEFORE,

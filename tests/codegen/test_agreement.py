@@ -15,7 +15,7 @@ from package_oracle import OK, SINGULAR, assert_agrees
 from softimpact.codegen import generate_package
 from softimpact.codegen.inputs import SCALARS, parameters_of
 from softimpact.codegen.samples import Sample, draw_samples
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 ROBOTS = ["panda", "rr", "ur5e", "ur5", "baxter", "gantry", "rmin"]
 ON_THREE_AXES = (

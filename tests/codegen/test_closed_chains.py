@@ -26,7 +26,7 @@ from softimpact.symbolic import (
     load_robot,
     loop_gaps,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 OK, NOT_FINITE, LOOP_OPEN, NO_EQUILIBRIUM = 0, 2, 6, 7
 GRAVITY = (0.0, 0.0, -9.81)

@@ -41,8 +41,8 @@ from softimpact.symbolic import (
     configuration_at_rest,
     impact_model,
 )
-from softimpact.symbolic.chain import ChainEnd
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.impact.chain import ChainEnd
+from softimpact.symbolic.robot.rigid import Array
 
 GRAVITY = (0.0, 0.0, -9.81)
 

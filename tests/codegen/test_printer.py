@@ -17,7 +17,7 @@ from softimpact.codegen import UnsupportedOperation
 from softimpact.codegen.evaluate import evaluate_exactly, evaluate_rounded
 from softimpact.codegen.graph import graph_of
 from softimpact.codegen.printer import LINE, print_graph
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 HEAD = """
 #include <math.h>

@@ -17,7 +17,7 @@ from softimpact.codegen import generate_package
 from softimpact.optimize import load_study
 from softimpact.studio.selection import PoseFigures, ranking
 from softimpact.symbolic import InvalidValue, load_robot
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 STUDY = Path(__file__).parents[2] / "robots/studies/panda_24_poses.toml"
 

@@ -28,8 +28,8 @@ from softimpact.symbolic import (
     reduce_to_two_masses,
     static_stiffness,
 )
-from softimpact.symbolic.reduction import contact_mode
-from softimpact.symbolic.rigid import Array, Inertia, Placement, rotation_about_z
+from softimpact.symbolic.impact.reduction import contact_mode
+from softimpact.symbolic.robot.rigid import Array, Inertia, Placement, rotation_about_z
 
 LAWS = settings(max_examples=40)
 

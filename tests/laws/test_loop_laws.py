@@ -33,7 +33,7 @@ from softimpact.symbolic import (
     potential_energy,
     static_stiffness,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 GRAVITY = (0.0, 0.0, -9.81)
 MOTORS = np.radians([-120.0, -55.0])

@@ -26,8 +26,8 @@ from softimpact.symbolic import (
     potential_energy,
     stiffness_of_potential,
 )
-from softimpact.symbolic.rigid import Array, Placement
-from softimpact.symbolic.robot import BASE
+from softimpact.symbolic.robot.rigid import Array, Placement
+from softimpact.symbolic.robot.robot import BASE
 
 GRAVITY = (0.7, -1.1, -9.81)
 STEP = 1e-5

@@ -34,7 +34,7 @@ from softimpact.symbolic import (
     mass_matrix,
     potential_energy,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 Case = Callable[[], tuple[ImpactModel, Approach]]
 

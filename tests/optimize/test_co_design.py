@@ -22,7 +22,7 @@ from softimpact.optimize.poses import tip_pose
 from softimpact.optimize.problem import peak_force
 from softimpact.optimize.repair import accurate_springs, largest_deflection
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 POSES = ("q3", "q9", "q18")
 

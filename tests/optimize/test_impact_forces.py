@@ -22,7 +22,7 @@ from softimpact.optimize.nlp import DesignNlp, build_nlp, parameters
 from softimpact.optimize.timing import MOST_STEPS, Timing, impact_timing
 from softimpact.simulate import Approach, ImpactHistory, simulate_impact
 from softimpact.symbolic import Contact, InvalidValue, body_region
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 POSES = ("q1", "q9", "q18")
 

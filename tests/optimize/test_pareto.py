@@ -33,7 +33,7 @@ from softimpact.optimize.self_motion import self_motion
 from softimpact.optimize.stiffest import stiffest
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import InvalidValue
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 POSES = ("q9", "q18")
 

@@ -16,7 +16,7 @@ from softimpact.optimize.nlp import deflections, tip_pose_error
 from softimpact.optimize.poses import tip_pose
 from softimpact.optimize.repair import accurate_springs, largest_deflection, posture_at_pose
 from softimpact.symbolic import InvalidValue
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 
 @pytest.fixture(scope="module")

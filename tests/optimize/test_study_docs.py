@@ -20,7 +20,7 @@ from softimpact.optimize.study_file import (
     StudyFile,
     TaskSection,
 )
-from softimpact.symbolic.regions import REGIONS
+from softimpact.symbolic.body.regions import REGIONS
 
 PAGE = Path(__file__).parents[2] / "docs/study-files.md"
 TEXT = PAGE.read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ import pytest
 
 from softimpact.robots import FOLDER
 from softimpact.symbolic import Robot, frame_pose, giaf, impact_model, load_robot
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 STUDY = tomllib.loads((FOLDER / "studies" / "panda_24_poses.toml").read_text())
 POSES = {pose["name"]: np.array(pose["q"]) for pose in STUDY["poses"]}

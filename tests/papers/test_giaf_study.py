@@ -16,13 +16,13 @@ from studies import PANDA_24
 
 from softimpact.optimize import Study, candidates, load_study
 from softimpact.optimize.poses import tip_pose
+from softimpact.papers.factor_study.agreement import spearman
+from softimpact.papers.factor_study.functions import factor_functions
+from softimpact.papers.factor_study.heavy_base import MASSES, on_heavy_base
+from softimpact.papers.factor_study.poses import ANGLES, PoseFactors, pose_factors
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.studio.factor_study.agreement import spearman
-from softimpact.studio.factor_study.functions import factor_functions
-from softimpact.studio.factor_study.heavy_base import MASSES, on_heavy_base
-from softimpact.studio.factor_study.poses import ANGLES, PoseFactors, pose_factors
 from softimpact.symbolic import Contact, body_region, impact_model
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 SETS = ("drake_fr3", "menagerie_fr3", "menagerie_panda")
 

@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from softimpact.papers.msm import printed
+from softimpact.papers.msm.ladder import impact_at
+from softimpact.papers.msm.scenarios import SCENARIOS
 from softimpact.simulate import simulate_impact
-from softimpact.studio.reproduce_msm import printed
-from softimpact.studio.reproduce_msm.ladder import impact_at
-from softimpact.studio.reproduce_msm.scenarios import SCENARIOS
 from softimpact.symbolic import Contact, body_region
 
 RECOMPUTED = {

@@ -23,7 +23,7 @@ from softimpact.symbolic import (
     impact_model,
     load_robot,
 )
-from softimpact.symbolic.rigid import Array, Placement
+from softimpact.symbolic.robot.rigid import Array, Placement
 
 GRAVITY = (0.0, 0.0, -9.81)
 MOTORS = np.radians([-130.6, -50.0])

@@ -24,7 +24,7 @@ from softimpact.symbolic import (
     load_robot,
     reduce_to_two_masses,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 COMPUTED_TORQUE_GAIN = 6050.0
 STIFFNESS = 1e4

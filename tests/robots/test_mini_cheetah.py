@@ -17,7 +17,7 @@ from softimpact.symbolic import (
     impact_mitigation,
     load_robot,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 STANDING = np.array(4 * [0.0, -0.8, 1.6])
 GEARS = {"abad": 6.0, "hip": 6.0, "knee": 9.33}

@@ -11,7 +11,7 @@ import pytest
 from oracles import assert_near, configurations
 
 from softimpact.symbolic import Robot, frame_pose, load_robot, mass_matrix
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 D = (0.1625, 0, 0, 0.1333, 0.0997, 0.0996)
 A = (0, -0.425, -0.3922, 0, 0, 0)

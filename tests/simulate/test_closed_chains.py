@@ -19,7 +19,7 @@ from softimpact.symbolic import (
     gravity_torques,
     loop_tangent,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 
 def peak_by_mujoco(

@@ -34,7 +34,7 @@ from softimpact.symbolic import (
     impact_model,
     load_robot,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 RR = Controller(6050.0, 121.0, 1.25e5)
 R_MIN = Controller(1076.0, 51.0, 9.26e3)

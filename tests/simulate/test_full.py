@@ -25,7 +25,7 @@ from softimpact.symbolic import (
     load_robot,
     unit_direction,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 
 def with_elastic_joints(path: Path, stiffness: float) -> mujoco.MjModel:

@@ -20,7 +20,7 @@ from softimpact.symbolic import (
     impact_model,
     unit_direction,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 
 def by_scipy(

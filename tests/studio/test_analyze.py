@@ -14,7 +14,7 @@ import scipy.linalg
 from command_line import run, run_json
 from oracles import example_urdf
 
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 CONTRACT = {
     *("m_c", "k_r", "m_a", "chain", "giaf", "giif", "directional_giaf", "osim", "osim_free"),

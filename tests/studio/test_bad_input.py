@@ -13,7 +13,7 @@ import pytest
 from command_line import refusal, run
 from oracles import example_urdf
 
-from softimpact.studio import cli
+from softimpact import cli
 from softimpact.symbolic import load_robot
 
 Q = "[0, 0.3, 0, -1.8, 0.1, 2, 0.5]"

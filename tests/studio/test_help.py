@@ -7,7 +7,7 @@ import pytest
 import typer
 from command_line import run
 
-from softimpact.studio.cli import app
+from softimpact.cli import app
 
 
 def test_help_is_printed_whole(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -47,7 +47,7 @@ def test_version_and_help(tmp_path: Path) -> None:
 def test_help_does_not_load_the_physics() -> None:
     """So that it answers at once."""
     script = (
-        "import sys; from softimpact.studio.cli import main; main(['--help']);"
+        "import sys; from softimpact.cli import main; main(['--help']);"
         "print(sorted({'casadi', 'mujoco', 'numpy', 'matplotlib'} & set(sys.modules)))"
     )
     done = subprocess.run(

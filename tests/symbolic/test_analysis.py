@@ -22,7 +22,7 @@ from softimpact.symbolic import (
     drives,
     impact_model,
 )
-from softimpact.symbolic.rigid import Inertia, Placement, rotation_from_axis
+from softimpact.symbolic.robot.rigid import Inertia, Placement, rotation_from_axis
 
 
 def crank(kind: JointKind = JointKind.HINGE, arm: float = 0.5, height: float = 0.0) -> Robot:

@@ -36,8 +36,8 @@ from softimpact.symbolic import (
     load_robot,
     reduce_to_two_masses,
 )
-from softimpact.symbolic.elastic import DenseMass
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.impact.elastic import DenseMass
+from softimpact.symbolic.robot.rigid import Array
 
 POSE = np.array([0.1, 0.3, -0.2, -2.0, 0.4, 1.8, 0.6])
 ALONG_Y = np.array([0.0, 1.0, 0.0])

@@ -37,7 +37,7 @@ from softimpact.symbolic import (
     potential_energy,
     require_closed_at,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 GRAVITY = (0.0, 0.0, -9.81)
 MSM = np.radians([-130.6, -50.0])

@@ -24,7 +24,7 @@ from softimpact.symbolic import (
     potential_energy,
     stiffness_of_potential,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 GRAVITY = (1.3, -2.1, -9.0)
 EXAMPLES = (

@@ -12,7 +12,7 @@ from random_robots import seeds
 from symbol_kinds import KINDS
 
 from softimpact.symbolic import Matrix, symmetric_eigen
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 spreads = st.sampled_from([(1, 1, 1), (1, 1, 2), (2, 1, 1), (1e-9, 1, 1e6), (0, 0, 1), (-3, 0, 2)])
 

@@ -19,14 +19,14 @@ from softimpact.symbolic import (
     mass_matrix,
     stiffness_of_potential,
 )
-from softimpact.symbolic.elastic import (
+from softimpact.symbolic.impact.elastic import (
     DenseMass,
     ElasticMass,
     elastic_jacobian,
     elastic_mass,
     elastic_stiffness,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 POSE = np.array([0.1, 0.3, -0.2, -2.0, 0.4, 1.8, 0.6])
 ALONG_Y = np.array([0.0, 1.0, 0.0])

@@ -20,7 +20,7 @@ from softimpact.symbolic import (
     manipulability,
     manipulability_ellipsoid,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 Arm = tuple[Array, Array, ImpactModel, Array]
 """J, H, the model and q."""

@@ -21,7 +21,7 @@ from softimpact.symbolic import (
     motor_angles_at_rest,
     potential_energy,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 POSE = np.array([0.1, 0.3, -0.2, -2.0, 0.4, 1.8, 0.6])
 

@@ -23,7 +23,7 @@ from softimpact.symbolic import (
     impact_model,
     load_robot,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 
 def mobilities(model: ImpactModel, q: Array) -> tuple[ContactMobility, ContactMobility]:

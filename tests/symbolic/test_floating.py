@@ -26,8 +26,8 @@ from softimpact.symbolic import (
     lock_joints,
     mass_matrix,
 )
-from softimpact.symbolic.floating import rotation_of
-from softimpact.symbolic.rigid import Array, Inertia
+from softimpact.symbolic.impact.floating import rotation_of
+from softimpact.symbolic.robot.rigid import Array, Inertia
 
 LEGGED = {
     "go2.urdf": "FL_foot",

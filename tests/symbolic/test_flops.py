@@ -18,7 +18,7 @@ from softimpact.symbolic import (
     load_robot,
     mass_matrix,
 )
-from softimpact.symbolic.dynamics import _mass_matrix
+from softimpact.symbolic.dynamics.equations_of_motion import _mass_matrix
 
 AXES_OF = 3
 """GIAF comes out shortest in the axes of the fourth joint."""

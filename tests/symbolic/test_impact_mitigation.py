@@ -27,7 +27,7 @@ from softimpact.symbolic import (
     impact_model,
     load_robot,
 )
-from softimpact.symbolic.rigid import Array, Inertia, Placement
+from softimpact.symbolic.robot.rigid import Array, Inertia, Placement
 
 STUDY = tomllib.loads((FOLDER / "studies" / "panda_24_poses.toml").read_text())
 POSES = [pose["q"] for pose in STUDY["poses"]]

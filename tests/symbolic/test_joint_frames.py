@@ -20,11 +20,15 @@ from softimpact.symbolic import (
     load_robot,
     mass_matrix,
 )
-from softimpact.symbolic.dynamics import _bias_torques, _mass_matrix, _potential_gradient
-from softimpact.symbolic.joint_frames import NEARLY_PARALLEL, customised
-from softimpact.symbolic.kinematics import _frame_pose
+from softimpact.symbolic.dynamics.equations_of_motion import (
+    _bias_torques,
+    _mass_matrix,
+    _potential_gradient,
+)
+from softimpact.symbolic.dynamics.kinematics import _frame_pose
 from softimpact.symbolic.matrices import on_scalars
-from softimpact.symbolic.rigid import Array, Inertia, Placement, rotation_from_axis
+from softimpact.symbolic.robot.joint_frames import NEARLY_PARALLEL, customised
+from softimpact.symbolic.robot.rigid import Array, Inertia, Placement, rotation_from_axis
 
 GRAVITY = (1.0, -2.0, -9.0)
 

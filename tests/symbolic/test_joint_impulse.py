@@ -18,7 +18,7 @@ from softimpact.symbolic import (
     joint_impulse,
     load_robot,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 restitutions = st.sampled_from([0.0, 0.3, 1.0])
 masses = st.sampled_from([0.2, 4.4, 40.0, np.inf])

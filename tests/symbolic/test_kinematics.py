@@ -24,8 +24,8 @@ from softimpact.symbolic import (
     frame_pose,
     load_robot,
 )
-from softimpact.symbolic.rigid import Array
-from softimpact.symbolic.robot import BASE
+from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.robot import BASE
 
 EXAMPLES = ("panda.urdf", "ur5_robot.urdf", "kinova.urdf", "baxter.urdf", "simple_humanoid.urdf")
 

@@ -17,7 +17,7 @@ from softimpact.symbolic import (
     load_robot,
     mass_matrix,
 )
-from softimpact.symbolic.robot import JointKind
+from softimpact.symbolic.robot.robot import JointKind
 
 AWKWARD = """
 <mujoco model="awkward">

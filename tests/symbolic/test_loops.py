@@ -49,7 +49,7 @@ from softimpact.symbolic import (
     mass_matrix,
     potential_energy,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 GRAVITY = (0.4, -9.0, -2.0)
 FOUR_BAR_TEXT = FOUR_BAR.format(

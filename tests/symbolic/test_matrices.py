@@ -8,7 +8,7 @@ from oracles import assert_near
 from symbol_kinds import KINDS
 
 from softimpact.symbolic import Matrix, count_flops, load_robot
-from softimpact.symbolic.dynamics import _mass_matrix
+from softimpact.symbolic.dynamics.equations_of_motion import _mass_matrix
 from softimpact.symbolic.matrices import (
     Factorisation,
     OrthogonalRows,

@@ -13,8 +13,8 @@ from oracles import Pinocchio, assert_near
 from random_robots import robots, seeds
 
 from softimpact.symbolic import FrameNotFound, InvalidValue, bias_torques, load_robot, mass_matrix
-from softimpact.symbolic.rigid import Array
-from softimpact.symbolic.robot import Robot
+from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.robot import Robot
 
 GRAVITY = (0.3, -0.2, -9.81)
 

@@ -20,8 +20,8 @@ from softimpact.symbolic import (
     reflected_mass,
     static_stiffness,
 )
-from softimpact.symbolic.elastic import DenseMass
-from softimpact.symbolic.reduction import contact_mode
+from softimpact.symbolic.impact.elastic import DenseMass
+from softimpact.symbolic.impact.reduction import contact_mode
 
 
 @settings(max_examples=60)

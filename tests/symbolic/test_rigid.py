@@ -10,7 +10,7 @@ from hypothesis import given
 from oracles import assert_near
 from random_robots import inertias, placements
 
-from softimpact.symbolic.rigid import (
+from softimpact.symbolic.robot.rigid import (
     ROTATION_NOISE,
     Inertia,
     Placement,

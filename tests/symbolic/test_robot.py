@@ -28,7 +28,7 @@ from softimpact.symbolic import (
     lock_joints,
     mass_matrix,
 )
-from softimpact.symbolic.rigid import Array, Inertia
+from softimpact.symbolic.robot.rigid import Array, Inertia
 
 
 @pytest.fixture(scope="module")

@@ -23,7 +23,7 @@ from softimpact.symbolic import (
     impact_model,
     single_joint_giaf,
 )
-from softimpact.symbolic.rigid import Array
+from softimpact.symbolic.robot.rigid import Array
 
 
 def parts(robot: Robot, q: Array) -> tuple[ImpactModel, Matrix, Matrix, Matrix]:

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command ``softimpact``: what it can do, and how it ends.
+
+Commands import what they need when they run, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import Annotated
+
+import typer
+
+from .studio.analyze_command import analyze
+from .studio.design_command import design
+from .studio.factors_command import factors
+from .papers.factors_study_command import factors_study
+from .studio.generate_command import generate
+from .studio.pareto_command import pareto
+from .papers.reproduce_command import reproduce
+from .studio.robots_command import robots
+from .studio.select_command import select
+from .studio.simulate_command import simulate
+
+USER_ERROR, INTERRUPTED = 2, 130
+"""Exit codes; a failed solver's is 3 and comes with its exception."""
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+app.command()(robots)
+app.command()(analyze)
+app.command()(factors)
+app.command()(factors_study)
+app.command()(simulate)
+app.command()(select)
+app.command()(design)
+app.command()(pareto)
+app.command()(generate)
+app.command()(reproduce)
+
+
+@app.callback(invoke_without_command=True)
+def softimpact(
+    context: typer.Context,
+    show_version: Annotated[
+        bool, typer.Option("--version", help="Print the version and leave.")
+    ] = False,
+) -> None:
+    """Design compliant robots whose impacts do not hurt."""
+    if show_version:
+        typer.echo(version("softimpact"))
+    elif context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; return the exit code.
+
+    Args:
+        arguments: default the process's own.
+    """
+    try:
+        code = app(args=arguments, prog_name="softimpact", standalone_mode=False)
+    except (KeyboardInterrupt, typer.Abort):
+        return INTERRUPTED
+    except Exception as error:
+        declared = _exit_code(error)
+        if declared is None:
+            raise
+        print(f"error: {_one_line(error)}", file=sys.stderr)
+        return declared
+    return code if isinstance(code, int) else 0
+
+
+def _exit_code(error: Exception) -> int | None:
+    """Exit code of an error that its user can mend; None for one of ours."""
+    from softimpact.symbolic import SoftImpactError
+
+    declared = getattr(error, "exit_code", None)  # usage errors, failed solvers
+    if isinstance(declared, int):
+        return declared
+    return USER_ERROR if isinstance(error, (SoftImpactError, OSError)) else None
+
+
+def _one_line(error: Exception) -> str:
+    text = str(error)
+    if isinstance(error, OSError) and error.filename is not None:
+        text = f"{error.filename}: {error.strerror}"
+    elif hasattr(error, "format_message"):  # usage errors
+        text = error.format_message()
+    return " ".join(text.split())

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Mass matrix, bias torques and potential energy of a robot, derived recursively.
+
+The recursions run on scalars over the customised robot (``joint_frames``), so that constants
+fold and whatever no output needs is never computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import casadi as ca
+
+from ..matrices import Matrix, on_scalars
+from ..robot.joint_frames import customised
+from ..robot.rigid import Array
+from ..robot.robot import BASE, Joint, JointKind, Robot
+from .composites import Composite, bodies_of
+from .kinematics import Motion, cross, motions, require_length
+
+Gravity = Sequence[float] | Array
+"""Acceleration along the base's axes [m/s²], length 3."""
+
+STANDARD_GRAVITY = (0.0, 0.0, -9.81)
+"""Acceleration of gravity along the base's axes [m/s²]."""
+
+
+def _composites(robot: Robot, moves: list[Motion]) -> list[Composite]:
+    composites = bodies_of(robot)
+    for i in reversed(range(robot.n)):
+        parent = robot.joints[i].parent
+        if parent != BASE:
+            composites[parent] = composites[parent] + composites[i].in_parent(moves[i])
+    return composites
+
+
+def _wrench_of_unit_acceleration(kind: JointKind, body: Composite) -> tuple[Matrix, Matrix]:
+    """Force and moment that accelerate a composite body by one along its joint."""
+    _, _, zz, _, xz, yz = body.tensor
+    h = body.first_moment
+    if kind is JointKind.HINGE:
+        return ca.vertcat(-h[1], h[0], 0), ca.vertcat(xz, yz, zz)
+    return ca.vertcat(0, 0, body.mass), ca.vertcat(h[1], -h[0], 0)
+
+
+def _felt_by(joint: Joint, force: Matrix, moment: Matrix) -> Matrix:
+    return moment[2] if joint.kind is JointKind.HINGE else force[2]
+
+
+def mass_matrix(robot: Robot, q: Matrix) -> Matrix:
+    """Return the links' mass matrix M(q), n×n, without rotors.
+
+    Composite rigid bodies (Featherstone, Rigid Body Dynamics Algorithms, ch. 6) over base
+    parameters.
+
+    Args:
+        robot: any robot.
+        q: configuration, length n, of any matrix kind.
+    """
+    return on_scalars(_mass_matrix, (customised(robot),), q)
+
+
+def _mass_matrix(robot: Robot, q: Matrix) -> Matrix:
+    moves = motions(robot, q)
+    bodies = _composites(robot, moves)
+    M = ca.SX(robot.n, robot.n)
+    for i, joint in enumerate(robot.joints):
+        force, moment = _wrench_of_unit_acceleration(joint.kind, bodies[i])
+        below = i
+        while True:
+            M[i, below] = M[below, i] = _felt_by(robot.joints[below], force, moment)
+            move, below = moves[below], robot.joints[below].parent
+            if below == BASE:
+                break
+            force = move.to_parent(force)
+            moment = move.to_parent(moment) + cross(move.translation, force)
+    return ca.densify(M)
+
+
+def potential_energy(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
+    """Return the potential energy [J] of gravity and of the springs given in the robot's file.
+
+    Args:
+        robot: any robot.
+        q: configuration, length n, of any matrix kind.
+        gravity: acceleration along the base's axes [m/s²].
+    """
+    return on_scalars(_potential_energy, (customised(robot), tuple(gravity)), q)
+
+
+def _potential_energy(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> Matrix:
+    moves = motions(robot, q)
+    bodies = bodies_of(robot)
+    masses = [body.mass for body in bodies]
+    moments = [body.first_moment for body in bodies]
+    energy = ca.SX(0.0)
+    for i in reversed(range(robot.n)):
+        joint = robot.joints[i]
+        in_parent = moves[i].to_parent(moments[i]) + masses[i] * moves[i].translation
+        if joint.parent == BASE:
+            energy -= ca.dot(ca.SX(ca.sparsify(ca.DM(list(gravity)))), in_parent)
+        else:
+            masses[joint.parent] += masses[i]
+            moments[joint.parent] += in_parent
+        if joint.stiffness:
+            energy += 0.5 * joint.stiffness * (q[i] - joint.spring_reference) ** 2
+    return energy
+
+
+def stiffness_of_potential(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
+    """Return the Hessian ∂²V/∂q² of the potential energy, n×n (MSM Eq. 45)."""
+    return on_scalars(_potential_hessian, (customised(robot), tuple(gravity)), q)
+
+
+def _potential_hessian(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> Matrix:
+    require_length(robot, "q", q)
+    symbol = ca.SX.sym("q", robot.n)
+    hessian, _ = ca.hessian(_potential_energy(robot, gravity, symbol), symbol)
+    return ca.substitute(ca.densify(hessian), symbol, q)
+
+
+def gravity_torques(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
+    """Return the gradient ∂V/∂q of the potential energy, length n [N·m, N]."""
+    return on_scalars(_potential_gradient, (customised(robot), tuple(gravity)), q)
+
+
+def _potential_gradient(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> Matrix:
+    require_length(robot, "q", q)
+    symbol = ca.SX.sym("q", robot.n)
+    gradient = ca.gradient(_potential_energy(robot, gravity, symbol), symbol)
+    return ca.substitute(ca.densify(gradient), symbol, q)
+
+
+def bias_torques(
+    robot: Robot, q: Matrix, velocity: Matrix, gravity: Gravity = STANDARD_GRAVITY
+) -> Matrix:
+    """Return the torques h(q, q̇) of gravity, Coriolis and centrifugal forces, length n.
+
+    Recursive Newton-Euler with zero acceleration. Springs of the file are not included.
+
+    Args:
+        robot: any robot.
+        q: configuration, length n, of any matrix kind.
+        velocity: joint velocities, length n.
+        gravity: acceleration along the base's axes [m/s²].
+    """
+    return on_scalars(_bias_torques, (customised(robot), tuple(gravity)), q, velocity)
+
+
+def _bias_torques(robot: Robot, gravity: tuple[float, ...], q: Matrix, velocity: Matrix) -> Matrix:
+    require_length(robot, "velocity", velocity)
+    moves = motions(robot, q)
+    spin = {BASE: ca.SX.zeros(3)}
+    spin_rate = {BASE: ca.SX.zeros(3)}
+    acceleration = {BASE: -ca.SX(ca.sparsify(ca.DM(list(gravity))))}
+    bodies = bodies_of(robot)
+    forces, moments = [], []
+    for i, joint in enumerate(robot.joints):
+        p, move, along = joint.parent, moves[i], ca.vertcat(0, 0, velocity[i])
+        w = move.to_child(spin[p])
+        a = acceleration[p] + cross(spin_rate[p], move.translation)
+        a = move.to_child(a + cross(spin[p], cross(spin[p], move.translation)))
+        if joint.kind is JointKind.HINGE:
+            spin_rate[i] = move.to_child(spin_rate[p]) + cross(w, along)
+            spin[i] = w + along
+        else:
+            spin_rate[i], spin[i] = move.to_child(spin_rate[p]), w
+            a = a + 2 * cross(w, along)
+        acceleration[i] = a
+        force, moment = _newton_euler(bodies[i], spin[i], spin_rate[i], a)
+        forces.append(force)
+        moments.append(moment)
+    torques = [ca.SX(0.0)] * robot.n
+    for i in reversed(range(robot.n)):
+        joint = robot.joints[i]
+        torques[i] = _felt_by(joint, forces[i], moments[i])
+        if joint.parent != BASE:
+            force = moves[i].to_parent(forces[i])
+            moment = moves[i].to_parent(moments[i]) + cross(moves[i].translation, force)
+            forces[joint.parent] += force
+            moments[joint.parent] += moment
+    return ca.vertcat(*torques)
+
+
+def _newton_euler(body: Composite, w: Matrix, dw: Matrix, a: Matrix) -> tuple[Matrix, Matrix]:
+    """Force and moment about the origin that give a body its motion."""
+    h = ca.densify(body.first_moment)
+    force = body.mass * a + cross(dw, h) + cross(w, cross(w, h))
+    moment = ca.mtimes(body.matrix, dw) + cross(w, ca.mtimes(body.matrix, w))
+    return force, moment + cross(h, a)

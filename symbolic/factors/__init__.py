@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Impact factors: GIAF and its family, ellipsoids, impulses, mitigation."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The robot about to hit: drives, springs, the linear model and its reductions."""

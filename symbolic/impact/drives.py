@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What sits between a robot's motors and its links: rotors, springs and controller gains."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InvalidValue
+from ..matrices import Matrix
+from ..robot.rigid import Array
+from ..robot.robot import Robot
+
+PerJoint = float | Sequence[float] | Array
+"""One number for all joints, or one for each."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drives:
+    """Rotors, springs and gains of all joints; numbers or symbols.
+
+    Attributes:
+        rotors: reflected rotor inertias B, length n [kg m²].
+        springs: joint stiffnesses k_s, length n [N·m/rad]; not read at rigid joints.
+        elastic: whether each joint is elastic.
+        gains: K_p on the diagonal, length n [N·m/rad].
+        computed_torque_gain: k_p [rad/s²]; adds k_p M_θθ to K_p.
+    """
+
+    rotors: Matrix
+    springs: Matrix
+    elastic: tuple[bool, ...]
+    gains: Matrix
+    computed_torque_gain: Matrix | None = None
+
+
+def drives(
+    robot: Robot,
+    joint_stiffness: PerJoint | None = None,
+    rotor_inertia: PerJoint | None = None,
+    position_gain: PerJoint | None = None,
+    computed_torque_gain: float | None = None,
+    gear_ratio: PerJoint | None = None,
+) -> Drives:
+    """Return checked drives of a robot.
+
+    Args:
+        robot: whose joints they are.
+        joint_stiffness: k_s [N·m/rad], infinite for a rigid joint; None makes all joints rigid.
+        rotor_inertia: reflected inertias [kg m²]; None takes the file's armature.
+        position_gain: diagonal of K_p [N·m/rad]; None is zero.
+        computed_torque_gain: k_p [rad/s²], K_p = k_p M_θθ (MSM §3.1.3) instead.
+        gear_ratio: N; the rotor inertia is then the motor's own and counts N² times.
+
+    Raises:
+        InvalidValue: a number that is not finite or has the wrong sign, an elastic joint without
+            rotor inertia, or both kinds of gain.
+        WrongLength: a vector that does not fit the robot.
+    """
+    springs = np.full(robot.n, np.inf)
+    if joint_stiffness is not None:
+        springs = per_joint(robot, "joint_stiffness", joint_stiffness)
+        _require(springs > 0, "joint_stiffness", "must be greater than 0 N·m/rad", springs)
+    rotors = _rotors(robot, rotor_inertia, gear_ratio)
+    if position_gain is not None and computed_torque_gain is not None:
+        raise InvalidValue("computed_torque_gain", "excludes position_gain; give one of them")
+    gains = per_joint(robot, "position_gain", 0.0 if position_gain is None else position_gain)
+    _require(np.isfinite(gains) & (gains >= 0), "position_gain", "must be finite and ≥ 0", gains)
+    if computed_torque_gain is not None and not 0 <= computed_torque_gain < np.inf:
+        raise InvalidValue("computed_torque_gain", "must be finite and ≥ 0")
+    elastic = np.isfinite(springs)
+    _require_rotors(robot, elastic, rotors)
+    return Drives(
+        ca.DM(rotors),
+        ca.DM(np.where(elastic, springs, 0.0)),
+        tuple(bool(e) for e in elastic),
+        ca.DM(np.where(robot.actuated, gains, 0.0)),
+        computed_torque_gain,
+    )
+
+
+def _rotors(robot: Robot, rotor_inertia: PerJoint | None, gear_ratio: PerJoint | None) -> Array:
+    given = robot.armature if rotor_inertia is None else rotor_inertia
+    rotors = per_joint(robot, "rotor_inertia", given)
+    _require(np.isfinite(rotors) & (rotors >= 0), "rotor_inertia", "must be finite and ≥ 0", rotors)
+    if gear_ratio is None:
+        return rotors
+    if rotor_inertia is None:
+        raise InvalidValue("gear_ratio", "needs rotor_inertia, the motors' own inertias")
+    ratio = per_joint(robot, "gear_ratio", gear_ratio)
+    _require(np.isfinite(ratio) & (ratio != 0), "gear_ratio", "must be finite and not 0", ratio)
+    return np.asarray(rotors * ratio**2)
+
+
+def _require_rotors(robot: Robot, elastic: Array, rotors: Array) -> None:
+    for name, is_elastic, rotor in zip(robot.joint_names, elastic, rotors, strict=True):
+        if is_elastic and rotor == 0:
+            raise InvalidValue(
+                "rotor_inertia",
+                f"joint '{name}' is elastic, so its rotor needs an inertia greater than 0",
+            )
+
+
+def per_joint(robot: Robot, field: str, values: PerJoint | ArrayLike) -> Array:
+    """Return one number a joint from one number or a vector; raises WrongLength, InvalidValue."""
+    array = np.asarray(values, dtype=float)
+    if np.isnan(array).any():
+        raise InvalidValue(field, "must not be NaN")
+    return np.full(robot.n, float(array)) if array.ndim == 0 else robot.vector(field, array)
+
+
+def _require(holds: NDArray[np.bool_], field: str, reason: str, values: Array) -> None:
+    if not np.all(holds):
+        index = int(np.argmin(holds))
+        raise InvalidValue(field, f"{reason}, but entry {index + 1} is {values[index]:g}")

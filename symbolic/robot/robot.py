@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A robot as frozen data: a tree of hinges and slides, the bodies they move, and named frames."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import FrameNotFound, InvalidValue, UnknownName, WrongLength
+from ..matrices import Matrix
+from .rigid import Array, Inertia, Placement, rotation_about_z, three_numbers
+
+BASE = -1
+"""Index of the base where a joint's index is expected."""
+
+
+class JointKind(Enum):
+    """What a joint lets its body do about or along its z axis."""
+
+    HINGE = "hinge"
+    SLIDE = "slide"
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint, and all that moves rigidly with it.
+
+    Attributes:
+        name: as in the file.
+        kind: hinge (coordinate in rad) or slide (m).
+        parent: index of the joint that carries this one, or ``BASE``.
+        placement: the joint's frame in the parent joint's frame at coordinate zero; its axis is z.
+        offset: constant added to the coordinate.
+        inertia: of the moved bodies, in the joint's frame.
+        lower: lower limit of the coordinate (-inf without one).
+        upper: upper limit of the coordinate (inf without one).
+        armature: reflected rotor inertia [kg m², kg].
+        stiffness: of a spring in parallel with the joint [N·m/rad, N/m].
+        spring_reference: coordinate at which that spring is unloaded.
+        actuated: whether a motor drives the joint; passive joints have none.
+    """
+
+    name: str
+    kind: JointKind
+    parent: int
+    placement: Placement
+    inertia: Inertia
+    offset: float = 0.0
+    lower: float = -np.inf
+    upper: float = np.inf
+    armature: float = 0.0
+    stiffness: float = 0.0
+    spring_reference: float = 0.0
+    actuated: bool = True
+
+    def pose(self, coordinate: float) -> Placement:
+        """Return the joint's moved frame in the parent joint's frame."""
+        value = coordinate + self.offset
+        if self.kind is JointKind.HINGE:
+            return self.placement @ Placement(rotation_about_z(value), np.zeros(3))
+        return self.placement @ Placement(np.eye(3), np.array([0.0, 0.0, value]))
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A named frame fixed to a joint's body (or to the base)."""
+
+    name: str
+    joint: int
+    placement: Placement
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Two frames of a closed chain whose origins coincide, by name."""
+
+    name: str
+    first: str
+    second: str
+
+
+@dataclass(frozen=True, eq=False)
+class PointMass:
+    """A mass in a point, held at a frame.
+
+    Attributes:
+        frame: name of the frame.
+        mass: in kg, a number or a symbol.
+        com: its place along that frame's axes from its origin [m], length 3, numbers or symbols.
+    """
+
+    frame: str
+    mass: Matrix
+    com: Matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A fixed-base tree of hinge and slide joints, parents before children, and the loops in it.
+
+    Attributes:
+        name: of the model.
+        joints: in the file's order; a configuration q has one coordinate for each.
+        frames: by name.
+        tip: frame taken as the contact point where none is named.
+        rotor_inertia_sets: reflected rotor inertias by the name of their source, each with one
+            entry a joint.
+        loops: that close the tree.
+        home: a configuration at which the loops are closed or nearly so, in the wanted one of
+            several ways to assemble them; None is zero.
+        independent: names of the joints whose coordinates describe a closed chain; empty leaves
+            the choice to ``closed_chain``.
+        base_inertia: of what is fixed to the base, in its frame; felt by floating robots only.
+        payload: that it holds; with symbols in it, expressions need a q of symbols too.
+    """
+
+    name: str
+    joints: tuple[Joint, ...]
+    frames: Mapping[str, Frame]
+    tip: str | None = None
+    rotor_inertia_sets: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    loops: tuple[Loop, ...] = ()
+    home: tuple[float, ...] | None = None
+    independent: tuple[str, ...] = ()
+    base_inertia: Inertia = field(default_factory=Inertia.zero)
+    payload: PointMass | None = None
+
+    @property
+    def n(self) -> int:
+        """Number of joints."""
+        return len(self.joints)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, in the order of q."""
+        return tuple(joint.name for joint in self.joints)
+
+    @property
+    def armature(self) -> Array:
+        """Reflected rotor inertias, shape (n,)."""
+        return np.array([joint.armature for joint in self.joints])
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """Lower and upper joint limits, shape (n,) each."""
+        lower = np.array([joint.lower for joint in self.joints])
+        return lower, np.array([joint.upper for joint in self.joints])
+
+    @property
+    def actuated(self) -> tuple[bool, ...]:
+        """Whether each joint has a motor."""
+        return tuple(joint.actuated for joint in self.joints)
+
+    def frame(self, name: str) -> Frame:
+        """Return a frame by name, or ``FRAME@x,y,z``: moved by [m] along a named frame's axes.
+
+        Raises:
+            FrameNotFound: there is no such frame; lists those that there are.
+            InvalidValue: the point is not three finite numbers.
+        """
+        if name in self.frames:
+            return self.frames[name]
+        carrier, at, point = name.partition("@")
+        if carrier not in self.frames:
+            raise FrameNotFound(carrier if at else name, self.frames)
+        known = self.frames[carrier]
+        moved = Placement(np.eye(3), _point(name, point))
+        return Frame(name, known.joint, known.placement @ moved)
+
+    def with_frame(self, name: str, body: str, point: ArrayLike) -> Robot:
+        """Return the robot with one more frame.
+
+        Args:
+            name: of the new frame.
+            body: name of the body, or of any other frame, that carries it; raises FrameNotFound.
+            point: its origin along that frame's axes [m], length 3; raises InvalidValue.
+        """
+        known = self.frame(body)
+        placement = known.placement @ Placement(np.eye(3), three_numbers("point", point))
+        return replace(self, frames={**self.frames, name: Frame(name, known.joint, placement)})
+
+    def ancestors(self, joint: int) -> list[int]:
+        """Indices from ``joint`` down to the base, itself first."""
+        path = []
+        while joint != BASE:
+            path.append(joint)
+            joint = self.joints[joint].parent
+        return path
+
+    def moved_by(self, loop: Loop) -> set[int]:
+        """Indices of the joints that move a loop's two frames against each other."""
+        first, second = self.frame(loop.first).joint, self.frame(loop.second).joint
+        return set(self.ancestors(first)) ^ set(self.ancestors(second))
+
+    def rotor_inertia_set(self, name: str) -> Array:
+        """Return a named set of reflected rotor inertias; raises UnknownName."""
+        if name not in self.rotor_inertia_sets:
+            raise UnknownName("rotor inertia set", name, self.rotor_inertia_sets)
+        return np.array(self.rotor_inertia_sets[name])
+
+    def vector(self, name: str, values: ArrayLike) -> Array:
+        """Check that ``values`` has one entry a joint; raises WrongLength, InvalidValue."""
+        return vector_of(self.joint_names, name, values)
+
+    def with_armature(self, armature: ArrayLike) -> Robot:
+        """Return the robot with other reflected rotor inertias."""
+        values = self.vector("rotor_inertia", armature)
+        joints = tuple(
+            replace(joint, armature=float(value))
+            for joint, value in zip(self.joints, values, strict=True)
+        )
+        return replace(self, joints=joints)
+
+    def with_payload(self, frame: str, mass: Matrix, com: Matrix = (0.0, 0.0, 0.0)) -> Robot:
+        """Return the robot with a point mass in its hand, instead of the one it may hold.
+
+        Args:
+            frame: name of the frame that holds it; raises FrameNotFound.
+            mass: in kg, a number or an SX.
+            com: its place along that frame's axes from its origin [m], length 3.
+
+        Raises:
+            InvalidValue: a mass that is negative, or a number that is not finite.
+        """
+        if isinstance(mass, int | float) and not 0 <= mass < np.inf:
+            raise InvalidValue("payload_mass", f"must be finite and ≥ 0 kg, not {mass:g}")
+        if isinstance(com, Sequence | np.ndarray):
+            three_numbers("payload_com", com)
+        return replace(self, payload=PointMass(self.frame(frame).name, mass, com))
+
+    def digest(self) -> str:
+        """Return a hash of every number and name that the robot's expressions depend on."""
+        text = hashlib.sha256()
+        for joint in self.joints:
+            numbers = [
+                *joint.placement.rotation.flat,
+                *joint.placement.translation,
+                joint.inertia.mass,
+                *joint.inertia.first_moment,
+                *joint.inertia.about_origin.flat,
+                joint.offset,
+                joint.armature,
+                joint.stiffness,
+                joint.spring_reference,
+                joint.lower,
+                joint.upper,
+            ]
+            head = f"{joint.name} {joint.kind.value} {joint.parent} {joint.actuated}"
+            text.update(f"{head} {_in_words(numbers)}\n".encode())
+        for frame in self.frames.values():
+            numbers = [*frame.placement.rotation.flat, *frame.placement.translation]
+            text.update(f"{frame.name} {frame.joint} {_in_words(numbers)}\n".encode())
+        for loop in self.loops:
+            text.update(f"{loop.name} {loop.first} {loop.second}\n".encode())
+        if self.loops:
+            home = _in_words(self.home or ())
+            text.update(f"{home} {' '.join(self.independent)}\n".encode())
+        if self.payload:
+            text.update(f"{self.payload.frame} {self.payload.mass} {self.payload.com}\n".encode())
+        return text.hexdigest()
+
+
+def vector_of(names: Sequence[str], field: str, values: ArrayLike) -> Array:
+    """Return a vector with one number for each of some joints.
+
+    Raises:
+        WrongLength: it has another length.
+        InvalidValue: it is not a flat list.
+    """
+    array = np.asarray(values, dtype=float)
+    if array.ndim != 1:
+        raise InvalidValue(field, "must be a flat list of numbers")
+    if len(array) != len(names):
+        raise WrongLength(field, len(array), len(names), names)
+    return array
+
+
+def _point(name: str, text: str) -> Array:
+    try:
+        point = np.array([float(x) for x in text.split(",")])
+    except ValueError:
+        point = np.zeros(0)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise InvalidValue(f"frame '{name}'", "needs a point as three finite numbers: FRAME@x,y,z")
+    return point
+
+
+def _in_words(numbers: Sequence[float]) -> str:
+    return " ".join(f"{float(x) + 0.0:.12e}" for x in numbers)
