@@ -100,7 +100,9 @@ class ImpactModel:
     def generalised_stiffness(self, q: Matrix) -> Matrix:
         """Return K0 over motors and deflections (MSM Eq. 45)."""
         springs = self.drives.springs[list(self.independent)]
-        return elastic_stiffness(springs, self.position_gains(q), self._potential(q), self.elastic)
+        return elastic_stiffness(
+            springs, self.position_gains(q), self.potential_stiffness(q), self.elastic
+        )
 
     def contact_jacobian(self, q: Matrix, direction: Matrix) -> Matrix:
         """Return J_c over motors and deflections, 1×N (MSM Eq. 4)."""
@@ -163,7 +165,8 @@ class ImpactModel:
         block = ca.mtimes([motors, self.rotor_mass_matrix(q), motors])
         return gains + self.drives.computed_torque_gain * block
 
-    def _potential(self, q: Matrix) -> Matrix:
+    def potential_stiffness(self, q: Matrix) -> Matrix:
+        """Return the curvature of gravity and of the model's own springs over the links, n×n."""
         has_springs = any(joint.stiffness for joint in self.robot.joints)
         if not has_springs and not any(self.gravity):
             return ca.DM(len(self.independent), len(self.independent))
