@@ -65,6 +65,7 @@ from .impact.drives import Drives, drives
 from .impact.elastic import LinearModel
 from .impact.floating import FloatingRobot, floating_model, floating_robot
 from .impact.impact_model import ImpactModel, impact_model
+from .impact.motors import MotorKind, Motors
 from .impact.reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
 from .loops.closure import (
     close_loops,
@@ -118,6 +119,8 @@ __all__ = [
     "MasslessBase",
     "Matrix",
     "ModelFileError",
+    "MotorKind",
+    "Motors",
     "NoEquilibrium",
     "ReducedModel",
     "RedundantLoop",
