@@ -133,7 +133,7 @@ class ImpactModel:
                 place of rotors and gains: M ẍ + k_s x = −Jᵀ f_c.
         """
         if law == "free":
-            return replace(self, drives=self.drives.without_gains()).linear(q, direction)
+            return self.with_drives(self.drives.without_gains()).linear(q, direction)
         F = self.moving(law)
         stiffness, damping = self.generalised_stiffness(q), self.generalised_damping(q)
         jacobian = self.contact_jacobian(q, direction)
@@ -190,6 +190,10 @@ class ImpactModel:
     def with_springs(self, springs: Matrix) -> ImpactModel:
         """Return the model with other joint stiffnesses k_s, length n, numbers or symbols."""
         return replace(self, drives=replace(self.drives, springs=springs))
+
+    def with_drives(self, drives: Drives) -> ImpactModel:
+        """Return the model with other drives of the same robot."""
+        return replace(self, drives=drives)
 
     def position_gains(self, q: Matrix) -> Matrix:
         """Return K_p = diag(gains) + k_p M_θθ over the motors, n×n, sparse where it is zero."""
