@@ -11,11 +11,11 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from softimpact.symbolic import InvalidValue
-from softimpact.symbolic.body.contact import HERTZ_EXPONENT
+from softimpact.symbolic import InvalidValue, Law
 from softimpact.symbolic.robot.rigid import Array
 
 from .simulator import NODES, Run, Scene
@@ -72,7 +72,7 @@ def first_contact(scene: Scene, duration: float | None = None) -> FirstContact:
     if not peaks:
         over = f"{duration or LONGEST:g} s end before the force has reached its first peak"
         raise InvalidValue("duration", over)
-    top = max(peaks, key=lambda i: _vertex(run, i).force)
+    top = max(peaks, key=lambda i: _vertex(run, i, scene.contact.law).force)
     first_peak = _refined_peak(scene, run, peaks[0])
     highest = first_peak if top == peaks[0] else _refined_peak(scene, run, top)
     if not ends.size and run.force[-1] > highest.force:  # cut short while it rises again
@@ -122,7 +122,7 @@ def _downward(values: Array) -> NDArray[np.intp]:
 
 def _refined_peak(scene: Scene, run: Run, index: int) -> Event:
     near = _bracket(scene, run, index)
-    event = _vertex(near, _first(_downward(near.closing)))
+    event = _vertex(near, _first(_downward(near.closing)), scene.contact.law)
     return Event(float(run.time[index]) + event.time, event.force)
 
 
@@ -143,11 +143,9 @@ def _first(found: NDArray[np.intp]) -> int:
     return int(found[0]) if found.size else NODES - 1
 
 
-def _vertex(run: Run, index: int) -> Event:
+def _vertex(run: Run, index: int, law: Law) -> Event:
     """Peak after a node: where δ̇, taken as linear between nodes, is zero."""
     before, after = run.closing[index], run.closing[index + 1]
     step = before / (before - after) * (run.time[index + 1] - run.time[index])
     depth = run.depth[index] + before * step / 2
-    known = int(np.argmax(run.depth))
-    force = run.force[known] * (depth / run.depth[known]) ** HERTZ_EXPONENT
-    return Event(float(run.time[index] + step), float(force))
+    return Event(float(run.time[index] + step), float(law.force(ca.DM(depth))))

@@ -10,7 +10,7 @@ from typing import get_args
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue, UnknownName
 from softimpact.symbolic.impact.chain import ChainEnd
 
-from .approach import Approach, Arrival, arrival_of, check_contact
+from .approach import Approach, Arrival, arrival_of
 from .controlled import controlled, controlled_scene
 from .controller import Controller, check_controller
 from .events import first_contact
@@ -64,7 +64,7 @@ def simulate_impact(
         raise UnknownName("fidelity", fidelity, get_args(Fidelity))
     if not 1e-14 <= tolerance <= 1e-2:
         raise InvalidValue("tolerance", f"must be from 1e-14 to 1e-2, not {tolerance:g}")
-    check_contact(contact)
+    contact.check()
     if controller is not None:
         check_controller(controller)
         if fidelity in ("one_mass", "two_mass") or end == "free":

@@ -17,7 +17,15 @@ from softimpact.symbolic import Contact, SoftImpactError
 from softimpact.symbolic.matrices import Matrix
 from softimpact.symbolic.robot.rigid import Array
 
-from .mechanism import Body, BodyKind, Mechanism, Press, body_parameters, press
+from .mechanism import (
+    Body,
+    BodyKind,
+    Mechanism,
+    Press,
+    body_parameters,
+    body_units,
+    press,
+)
 
 NODES = 400
 """Intervals of a run's time grid."""
@@ -44,8 +52,8 @@ class Run:
     Attributes:
         time: since first touch [s], length K.
         state: scaled, one column a node: the robot's positions and velocities, its controller's
-            memory, the body's position and velocity (unless it is clamped) and last the node x_0
-            between skin and spring.
+            memory, the body's position and velocity (unless it is clamped), its plate's velocity
+            (if it has one) and last the node x_0 between skin and spring.
         depth: δ = x_c − x_0 [m], negative when apart.
         closing: dδ/dt [m/s].
         force: f_c [N].
@@ -106,7 +114,8 @@ class Scene:
     @property
     def touch(self) -> Array:
         """State at first touch."""
-        rest = np.zeros(self.simulator.memory + (1 if self.contact.clamped else 3))
+        body = len(body_units(self.simulator.kind, UNIT_TIME))
+        rest = np.zeros(self.simulator.memory + body)
         return np.concatenate([np.zeros_like(self.velocity), self.velocity, rest])
 
     def run(self, state: Array, span: float, start: float = 0.0) -> Run:
@@ -147,17 +156,16 @@ def build_simulator(robot: Mechanism, kind: BodyKind, tolerance: float) -> Simul
     body = Body.symbols(kind)
     speed, span = ca.SX.sym("v"), ca.SX.sym("T")
     pressed = press(robot, body, kind)
-    state = ca.vertcat(robot.position, robot.velocity, robot.memory, body.moved, body.node)
+    state = ca.vertcat(robot.position, robot.velocity, robot.memory, body.state)
     k, memory = robot.size, int(robot.memory.numel())
     lengths = [UNIT_TIME] * k + [1.0] * k + [UNIT_TIME] * memory
-    lengths += [] if kind.clamped else [UNIT_TIME, 1.0]
-    scale = speed * ca.DM([*lengths, UNIT_TIME])
+    scale = speed * ca.DM([*lengths, *body_units(kind, UNIT_TIME)])
     x = ca.SX.sym("x", state.numel())
 
     def scaled(expression: Matrix) -> Matrix:
         return ca.cse(ca.substitute(expression, state, scale * x))
 
-    rate = scaled(span * _rate(robot, body, pressed) / scale)
+    rate = scaled(span * _rate(robot, pressed) / scale)
     p = ca.vertcat(robot.parameters, body.parameters, speed, span)
     if kind.damped:
         solver, dae = "cvodes", {"x": x, "p": p, "ode": rate}
@@ -170,9 +178,6 @@ def build_simulator(robot: Mechanism, kind: BodyKind, tolerance: float) -> Simul
     return Simulator(integrate, ca.Function("observe", [x, p], seen), kind, memory)
 
 
-def _rate(robot: Mechanism, body: Body, pressed: Press) -> Matrix:
+def _rate(robot: Mechanism, pressed: Press) -> Matrix:
     acceleration = ca.substitute(robot.acceleration, robot.force, pressed.force)
-    rates = [robot.velocity, acceleration, robot.memory_rate]
-    if body.moved.numel():  # spring and damper hand on f_c, since x_0 has no mass
-        rates += [body.velocity, pressed.force / body.mass]
-    return ca.vertcat(*rates, robot.speed - pressed.closing)
+    return ca.vertcat(robot.velocity, acceleration, robot.memory_rate, pressed.rate)

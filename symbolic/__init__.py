@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The physics as CasADi expressions: robot, dynamics, compliance, reduction, impact factors."""
 
+from .body.bodies import body_region
 from .body.contact import Contact
-from .body.regions import REGIONS, BodyRegion, body_region
+from .body.laws import Curve, Law, PowerLaw, in_series
+from .body.regions import AREAS, REGIONS, BodyRegion
 from .dynamics.equations_of_motion import (
     STANDARD_GRAVITY,
     bias_torques,
@@ -87,6 +89,7 @@ from .robot.robot import Frame, Joint, JointKind, Loop, Robot
 from .robot.welding import chain_to, lock_joints
 
 __all__ = [
+    "AREAS",
     "REGIONS",
     "STANDARD_GRAVITY",
     "Analysis",
@@ -96,6 +99,7 @@ __all__ = [
     "ClosedChain",
     "Contact",
     "ContactMobility",
+    "Curve",
     "Drives",
     "Eigen",
     "Ellipsoid",
@@ -111,6 +115,7 @@ __all__ = [
     "Joint",
     "JointImpulse",
     "JointKind",
+    "Law",
     "LinearModel",
     "Loop",
     "LoopCannotClose",
@@ -119,6 +124,7 @@ __all__ = [
     "Matrix",
     "ModelFileError",
     "NoEquilibrium",
+    "PowerLaw",
     "ReducedModel",
     "RedundantLoop",
     "Robot",
@@ -165,6 +171,7 @@ __all__ = [
     "impact_factors",
     "impact_mitigation",
     "impact_model",
+    "in_series",
     "joint_impulse",
     "least_velocity",
     "link_angles_at_rest",
