@@ -5,6 +5,8 @@ from .body.bodies import body_region
 from .body.contact import Contact
 from .body.laws import Curve, Law, PowerLaw, in_series
 from .body.regions import AREAS, REGIONS, BodyRegion
+from .body.shapes import Edge, Flat, Sphere
+from .body.verdict import Limits, Verdict, judge, limits_of
 from .dynamics.equations_of_motion import (
     STANDARD_GRAVITY,
     bias_torques,
@@ -68,6 +70,7 @@ from .impact.elastic import LinearModel
 from .impact.floating import FloatingRobot, floating_model, floating_robot
 from .impact.impact_model import ImpactModel, impact_model
 from .impact.reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
+from .impact.two_body import TwoBody, moving_mass, two_body
 from .loops.closure import (
     close_loops,
     closed_near,
@@ -101,9 +104,11 @@ __all__ = [
     "ContactMobility",
     "Curve",
     "Drives",
+    "Edge",
     "Eigen",
     "Ellipsoid",
     "Extremes",
+    "Flat",
     "FloatingRobot",
     "Frame",
     "FrameNotFound",
@@ -116,6 +121,7 @@ __all__ = [
     "JointImpulse",
     "JointKind",
     "Law",
+    "Limits",
     "LinearModel",
     "Loop",
     "LoopCannotClose",
@@ -131,8 +137,11 @@ __all__ = [
     "SingularDirection",
     "SingularLoop",
     "SoftImpactError",
+    "Sphere",
+    "TwoBody",
     "UnknownName",
     "UnsupportedModel",
+    "Verdict",
     "WrongLength",
     "analyse",
     "approach_velocity",
@@ -173,7 +182,9 @@ __all__ = [
     "impact_model",
     "in_series",
     "joint_impulse",
+    "judge",
     "least_velocity",
+    "limits_of",
     "link_angles_at_rest",
     "load_robot",
     "lock_joints",
@@ -186,6 +197,7 @@ __all__ = [
     "manipulability_ellipsoid",
     "mass_matrix",
     "motor_angles_at_rest",
+    "moving_mass",
     "potential_energy",
     "reduce_to_two_masses",
     "reflected_mass",
@@ -194,5 +206,6 @@ __all__ = [
     "static_stiffness",
     "stiffness_of_potential",
     "symmetric_eigen",
+    "two_body",
     "unit_direction",
 ]
