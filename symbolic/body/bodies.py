@@ -6,14 +6,15 @@ from __future__ import annotations
 from difflib import get_close_matches
 
 from ..errors import UnknownName
+from .devices import DEVICES
 from .regions import AREAS, REGIONS, BodyRegion
 
-BODIES = {**REGIONS, **AREAS}
-"""Regions and areas of the body by name."""
+BODIES = {**REGIONS, **AREAS, **DEVICES}
+"""Regions and areas of the body, and measuring devices, by name."""
 
 
 def body_region(name: str) -> BodyRegion:
-    """Return a region or area by name; raises UnknownName the nearest names first."""
+    """Return a region, area or device by name; raises UnknownName, the nearest names first."""
     if name not in BODIES:
         nearest_first = dict.fromkeys([*get_close_matches(name, BODIES), *REGIONS])
         raise UnknownName("body region", name, nearest_first)

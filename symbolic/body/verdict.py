@@ -22,7 +22,7 @@ QUASI_STATIC_FROM = 0.5
 Quantity = Literal["force", "pressure", "energy"]
 """What a limit is of."""
 
-Ruling = Literal["kept", "exceeded", "not permitted"]
+Ruling = Literal["kept", "exceeded", "not permitted", "no limit"]
 """What becomes of an impact."""
 
 
@@ -60,7 +60,7 @@ class Verdict:
     """Whether an impact keeps a body's limits.
 
     Attributes:
-        ruling: kept, exceeded or not permitted.
+        ruling: kept, exceeded, not permitted, or no limit where the body has none.
         binding: phase and quantity nearest to, or furthest beyond, its limit; ``transient force``,
             for example.
         share: how much of that limit is used; above 1 it is exceeded.
@@ -110,8 +110,15 @@ def judge(limits: Limits, peak: float, pressing: float | None = None) -> Verdict
         name = f"quasi-static {limits.quasi_static.quantity}"
         used[name] = pressing / limits.quasi_static.force
     binding = max(used, key=lambda name: used[name])
-    kept: Ruling = "kept" if used[binding] <= 1 else "exceeded"
-    return Verdict(kept if limits.permitted else "not permitted", binding, used[binding])
+    return Verdict(_ruling(limits, used[binding]), binding, used[binding])
+
+
+def _ruling(limits: Limits, share: float) -> Ruling:
+    if not limits.permitted:
+        return "not permitted"
+    if limits.transient.force == math.inf:
+        return "no limit"
+    return "kept" if share <= 1 else "exceeded"
 
 
 def _reaching(shape: Shape | None, pressure: float | None, region: BodyRegion) -> float:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import ClassVar
 
 import casadi as ca
 import numpy as np
@@ -36,6 +37,8 @@ class Curve(Law):
 
     depths: tuple[float, ...]
     forces: tuple[float, ...]
+
+    kind: ClassVar[str] = "curve"
 
     def __init__(self, depths: Sequence[float], forces: Sequence[float]) -> None:
         for field, values in (("depths", depths), ("forces", forces)):

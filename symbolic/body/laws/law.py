@@ -19,8 +19,10 @@ class Law(Protocol):
     Attributes:
         parameters: names of the fields that may vary from one impact to the next without another
             integrator being built; the expression must accept symbols for them.
+        kind: what files call the law; empty where they cannot.
     """
 
+    kind: ClassVar[str] = ""
     parameters: ClassVar[tuple[str, ...]] = ()
 
     @property

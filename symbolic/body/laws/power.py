@@ -29,6 +29,7 @@ class PowerLaw(Law):
     stiffness: float
     exponent: float = HERTZ_EXPONENT
 
+    kind: ClassVar[str] = "power"
     parameters: ClassVar[tuple[str, ...]] = ("stiffness",)
 
     def force(self, depth: Matrix) -> Matrix:
