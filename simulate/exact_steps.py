@@ -80,9 +80,7 @@ class DenseStep:
     def moved(self, x: Array, first: Array, last: Array) -> Array:
         """Return x after the step, (S, m), under forces at its ends, (S, k)."""
         return (
-            _applied(self.transition, x)
-            + _applied(self.before, first)
-            + _applied(self.after, last)
+            _applied(self.transition, x) + _applied(self.before, first) + _applied(self.after, last)
         )
 
 

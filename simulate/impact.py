@@ -12,7 +12,7 @@ from softimpact.symbolic.impact.chain import ChainEnd
 from softimpact.symbolic.impact.motors import check_motors
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Approach, Arrival, arrival_of, check_contact
+from .approach import Approach, Arrival, arrival_of
 from .controlled import controlled, controlled_scene
 from .controller import Controller, check_controller
 from .events import Course, course_of, peaks_of
@@ -65,7 +65,7 @@ def simulate_impact(
         raise InvalidValue("tolerance", f"must be from 1e-14 to 1e-2, not {tolerance:g}")
     if horizon is not None and not 0 < horizon < np.inf:
         raise InvalidValue("horizon", f"must be finite and greater than 0 s, not {horizon:g}")
-    check_contact(contact)
+    contact.check()
     arrival = arrival_of(model, approach)
     what = Motors("servo" if model.drives.has_gains else "free") if motors is None else motors
     scene = _scene(model, arrival, contact, fidelity, what, order, end, tolerance)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -41,7 +40,9 @@ class LawSolver:
         """
         p = np.maximum(pushed, 0.0)
         low, high = np.zeros_like(p), p
-        depth = np.where((guess > 0) & (guess < p), guess, 0.5 * p) if guess is not None else 0.5 * p
+        depth = (
+            np.where((guess > 0) & (guess < p), guess, 0.5 * p) if guess is not None else 0.5 * p
+        )
         force = np.zeros_like(p)
         for _ in range(NEWTON):
             force, slope = self.law(depth)
@@ -71,7 +72,6 @@ def _power(law: PowerLaw) -> LawAndSlope:
     return evaluated
 
 
-@lru_cache(maxsize=32)
 def _any(law: Law) -> LawAndSlope:
     depth = ca.SX.sym("depth")
     force = law.force(depth)

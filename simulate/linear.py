@@ -90,7 +90,7 @@ def linear_system(
             reorthogonalise=True,
         )
         m, k = np.diag([float(x) for x in masses.mass]), chain_stiffness(masses)
-        S = np.linalg.solve(M, _array(masses.displacement) @ m)
+        S = _array(np.linalg.solve(M, _array(masses.displacement) @ m))
     return LinearSystem(
         shapes=S,
         mass=m,

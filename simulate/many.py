@@ -102,7 +102,9 @@ class _Found:
         if time <= self.horizon * (1 + 1e-9):
             self.peak = np.maximum(self.peak, top)
         self.touched |= force > 0
-        self.first_contact = np.where(self.parted, self.first_contact, np.maximum(self.first_contact, top))
+        self.first_contact = np.where(
+            self.parted, self.first_contact, np.maximum(self.first_contact, top)
+        )
         self.parted |= self.touched & ~(force > 0)
         if time >= HORIZON * (1 - 1e-9):
             self.pressing = np.maximum(self.pressing, force)
@@ -162,9 +164,7 @@ class _Stage:
         self.solver: LawSolver = law_solver(contact.law, softness + self.robot.softness)
         self.standing = standing_compliance(region)
 
-    def run(
-        self, body: Array, force: Array, found: _Found
-    ) -> tuple[Motion, Array, Array]:
+    def run(self, body: Array, force: Array, found: _Found) -> tuple[Motion, Array, Array]:
         """Step through the stage; return motion, body and force at its end."""
         y, rate = self.start
         nothing = np.zeros((len(force), 1))

@@ -15,7 +15,7 @@ import numpy as np
 from softimpact.symbolic import SoftImpactError
 from softimpact.symbolic.matrices import Matrix
 
-from .mechanism import Body, BodyKind, Mechanism, Press, press
+from .mechanism import Body, BodyKind, Mechanism, Press, body_units, press
 
 NODES = 400
 """Intervals of a run's time grid."""
@@ -66,17 +66,16 @@ def build_simulator(robot: Mechanism, kind: BodyKind, tolerance: float) -> Simul
     body = Body.symbols(kind)
     speed, span = ca.SX.sym("v"), ca.SX.sym("T")
     pressed = press(robot, body, kind)
-    state = ca.vertcat(robot.position, robot.velocity, robot.memory, body.moved, body.node)
+    state = ca.vertcat(robot.position, robot.velocity, robot.memory, body.state)
     k, memory = robot.size, int(robot.memory.numel())
     lengths = [UNIT_TIME] * k + [1.0] * k + [UNIT_TIME] * memory
-    lengths += [] if kind.clamped else [UNIT_TIME, 1.0]
-    scale = speed * ca.DM([*lengths, UNIT_TIME])
+    scale = speed * ca.DM([*lengths, *body_units(kind, UNIT_TIME)])
     x = ca.SX.sym("x", state.numel())
 
     def scaled(expression: Matrix) -> Matrix:
         return ca.cse(ca.substitute(expression, state, scale * x))
 
-    rate = scaled(span * _rate(robot, body, pressed) / scale)
+    rate = scaled(span * _rate(robot, pressed) / scale)
     p = ca.vertcat(robot.parameters, body.parameters, speed, span)
     if kind.damped:
         solver, dae = "cvodes", {"x": x, "p": p, "ode": rate}
@@ -86,14 +85,11 @@ def build_simulator(robot: Mechanism, kind: BodyKind, tolerance: float) -> Simul
     options = {"reltol": tolerance, "abstol": tolerance, "max_num_steps": 100_000}
     integrate = ca.integrator("impact", solver, dae, 0, np.linspace(0, 1, NODES + 1), options)
     seen = [scaled(e) for e in (pressed.depth, pressed.closing, pressed.force)]
-    size, bodies = int(state.numel()), int(body.moved.numel()) + 1
+    size, bodies = int(state.numel()), int(body.state.numel())
     observe = ca.Function("observe", [x, p], seen)
     return Simulator(integrate, observe, bodies, size if kind.damped else size - 1)
 
 
-def _rate(robot: Mechanism, body: Body, pressed: Press) -> Matrix:
+def _rate(robot: Mechanism, pressed: Press) -> Matrix:
     acceleration = ca.substitute(robot.acceleration, robot.force, pressed.force)
-    rates = [robot.velocity, acceleration, robot.memory_rate]
-    if body.moved.numel():  # spring and damper hand on f_c, since x_0 has no mass
-        rates += [body.velocity, pressed.force / body.mass]
-    return ca.vertcat(*rates, robot.speed - pressed.closing)
+    return ca.vertcat(robot.velocity, acceleration, robot.memory_rate, pressed.rate)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-
+from typing import get_args
 
 from softimpact.simulate import Decoupling
 from softimpact.studio.output import shown

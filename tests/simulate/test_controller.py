@@ -153,9 +153,7 @@ def test_a_controlled_chain_of_full_order_is_the_linear_robot(
     controller = replace(RR, reference=reference)
     model, approach = elastic_panda(panda)
     whole = simulate_impact(model, approach, CHEST, "linearised", motors=controller)
-    chain = simulate_impact(
-        model, approach, CHEST, "chain", order=model.size, motors=controller
-    )
+    chain = simulate_impact(model, approach, CHEST, "chain", order=model.size, motors=controller)
     assert chain.first_contact == pytest.approx(whole.first_contact, rel=1e-6)
 
 
