@@ -33,9 +33,11 @@ def load_robot(model: str | Path, tip: str | None = None, *, floating: bool = Fa
     joints, nor couplings between them (URDF ``mimic``, MJCF ``equality/joint``, tendons): weld
     such joints with ``chain_to`` or ``lock_joints``. Of MJCF's ``custom`` elements the text ``tip``
     names the contact frame and the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor
-    inertias. MJCF ``equality/connect`` closes a loop: ``home`` is then the first keyframe (or the
-    model's reference configuration), and the custom text ``independent`` may name the joints whose
-    coordinates describe the closed chain, separated by spaces.
+    inertias; the text ``rotors`` with the value ``stated`` says that joints without armature have
+    no rotor, or that rotors are bodies of their own. MJCF ``equality/connect`` closes a loop:
+    ``home`` is then the first keyframe (or the model's reference configuration), and the custom
+    text ``independent`` may name the joints whose coordinates describe the closed chain, separated
+    by spaces.
 
     Args:
         model: name of a built-in robot, or path of a file.
@@ -142,6 +144,7 @@ class _RobotBuilder:
             sets,
             loops,
             base_inertia=self.base_inertia,
+            rotors_stated=_custom_texts(self.model).get("rotors") == "stated",
         )
 
     def _loops(self, carriers: Mapping[int, tuple[int, Placement]]) -> Iterator[Loop]:

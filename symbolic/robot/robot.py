@@ -128,6 +128,8 @@ class Robot:
         independent: names of the joints whose coordinates describe a closed chain; empty leaves
             the choice to ``closed_chain``.
         base_inertia: of what is fixed to the base, in its frame; felt by floating robots only.
+        rotors_stated: whether the file says all there is of rotors; else a motor's joint without
+            armature has a rotor of which nothing is known.
         payload: that it holds; with symbols in it, expressions need a q of symbols too.
     """
 
@@ -141,6 +143,7 @@ class Robot:
     independent: tuple[str, ...] = ()
     base_inertia: Inertia = field(default_factory=Inertia.zero)
     payload: PointMass | None = None
+    rotors_stated: bool = False
 
     @property
     def n(self) -> int:
