@@ -43,6 +43,12 @@ class Joint:
         stiffness: of a spring in parallel with the joint [N·m/rad, N/m].
         spring_reference: coordinate at which that spring is unloaded.
         actuated: whether a motor drives the joint; passive joints have none.
+        damping: of a damper in parallel with the joint [N·m·s/rad, N·s/m].
+        friction: dry friction of the joint [N·m, N].
+        position_gain: K_p of the file's servo on the joint [N·m/rad, N/m]; 0 where it has none.
+        velocity_gain: K_d of that servo [N·m·s/rad, N·s/m].
+        torque_limit: largest torque of the motor on the joint [N·m, N]; inf where unknown.
+        speed_limit: largest speed of the joint [rad/s, m/s]; inf where unknown.
     """
 
     name: str
@@ -57,6 +63,12 @@ class Joint:
     stiffness: float = 0.0
     spring_reference: float = 0.0
     actuated: bool = True
+    damping: float = 0.0
+    friction: float = 0.0
+    position_gain: float = 0.0
+    velocity_gain: float = 0.0
+    torque_limit: float = np.inf
+    speed_limit: float = np.inf
 
     def pose(self, coordinate: float) -> Placement:
         """Return the joint's moved frame in the parent joint's frame."""
@@ -117,6 +129,7 @@ class Robot:
             the choice to ``closed_chain``.
         base_inertia: of what is fixed to the base, in its frame; felt by floating robots only.
         payload: that it holds; with symbols in it, expressions need a q of symbols too.
+        warnings: what of its file was ignored or approximated, or looks implausible; one line each.
     """
 
     name: str
@@ -129,6 +142,7 @@ class Robot:
     independent: tuple[str, ...] = ()
     base_inertia: Inertia = field(default_factory=Inertia.zero)
     payload: PointMass | None = None
+    warnings: tuple[str, ...] = ()
 
     @property
     def n(self) -> int:
