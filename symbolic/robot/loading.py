@@ -208,6 +208,8 @@ class _RobotBuilder:
                 stiffness=float(model.jnt_stiffness[joint]),
                 spring_reference=float(model.qpos_spring[address]),
                 actuated=not self.actuated or joint in self.actuated,
+                damping=float(np.ravel(model.dof_damping[model.jnt_dofadr[joint]])[0]),
+                friction=float(model.dof_frictionloss[model.jnt_dofadr[joint]]),
             )
         )
         self.inertias.append(Inertia.zero())
