@@ -69,6 +69,7 @@ from .impact.drives import Drives, drives
 from .impact.elastic import LinearModel
 from .impact.floating import FloatingRobot, floating_model, floating_robot
 from .impact.impact_model import ImpactModel, impact_model
+from .impact.motors import MotorKind, Motors
 from .impact.reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
 from .impact.two_body import TwoBody, moving_mass, two_body
 from .loops.closure import (
@@ -87,6 +88,7 @@ from .loops.loops import (
     loop_tangent,
 )
 from .matrices import Matrix, count_flops
+from .robot.arm import Arm, arm_of, with_load
 from .robot.loading import load_robot
 from .robot.robot import Frame, Joint, JointKind, Loop, Robot
 from .robot.welding import chain_to, lock_joints
@@ -96,6 +98,7 @@ __all__ = [
     "REGIONS",
     "STANDARD_GRAVITY",
     "Analysis",
+    "Arm",
     "BodyRegion",
     "Chain",
     "ChainNumbers",
@@ -129,6 +132,8 @@ __all__ = [
     "MasslessBase",
     "Matrix",
     "ModelFileError",
+    "MotorKind",
+    "Motors",
     "NoEquilibrium",
     "PowerLaw",
     "ReducedModel",
@@ -145,6 +150,7 @@ __all__ = [
     "WrongLength",
     "analyse",
     "approach_velocity",
+    "arm_of",
     "bias_torques",
     "body_region",
     "chain",
@@ -208,4 +214,5 @@ __all__ = [
     "symmetric_eigen",
     "two_body",
     "unit_direction",
+    "with_load",
 ]
