@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from softimpact.simulate.events import first_contact
+from softimpact.simulate.events import Peaks, course_of, peaks_of
 from softimpact.simulate.mechanism import BodyKind, Mechanism
-from softimpact.simulate.simulator import Scene, build_simulator
+from softimpact.simulate.scene import Run, Scene, one_stage
+from softimpact.simulate.simulator import build_simulator
 from softimpact.symbolic import Contact, Curve, PowerLaw, body_region, in_series
 from softimpact.symbolic.body.devices import measuring_device
 from softimpact.symbolic.body.pads import PADS
@@ -37,11 +38,19 @@ BODIES = {
 }
 
 
-def scene(contact: Contact) -> Scene:
+def impact(contact: Contact) -> tuple[Run, Peaks]:
+    """Return the run of an impact until the first contact has ended, and its peaks."""
     x, v, f = (ca.SX.sym(name) for name in ("x", "v", "f"))
     robot = Mechanism(x, v, f, ca.SX(0, 1), -f / MASS, x)
     simulator = build_simulator(robot, BodyKind.of(contact), 1e-10)
-    return Scene(simulator, np.zeros(0), np.ones(1), SPEED, contact)
+    stages, still = one_stage(simulator, np.zeros(0), np.ones(1))
+    course = course_of(Scene(stages, still, SPEED, contact), None)
+    return course.run, peaks_of(course, None)
+
+
+def highest(contact: Contact) -> float:
+    """Return the largest force of the first contact [N]."""
+    return impact(contact)[1].first_contact.force
 
 
 def by_scipy(contact: Contact, times: Array) -> Array:
@@ -75,36 +84,32 @@ def by_scipy(contact: Contact, times: Array) -> Array:
 @pytest.mark.parametrize("name", BODIES)
 def test_agrees_with_scipy(name: str) -> None:
     contact = BODIES[name]
-    found = first_contact(scene(contact))
-    at = np.linspace(0, len(found.run.time) - 1, 60).astype(int)
-    expected = by_scipy(contact, found.run.time[at])
-    peak = found.highest.force
+    run, found = impact(contact)
+    at = np.linspace(0, len(run.time) - 1, 60).astype(int)
+    expected = by_scipy(contact, run.time[at])
+    peak = found.first_contact.force
     # a node without mass or damper follows a damper of 0.02 N·s/m in SciPy
     tolerance = 1e-3 if contact.region.damping == contact.region.plate_mass == 0 else 2e-5
-    np.testing.assert_allclose(found.run.force[at], expected, rtol=0, atol=tolerance * peak)
+    np.testing.assert_allclose(run.force[at], expected, rtol=0, atol=tolerance * peak)
     assert expected.max() <= peak * (1 + 1e-4)
 
 
 def test_a_light_plate_does_not_matter() -> None:
-    bare = first_contact(scene(Contact(replace(RIG, plate_mass=0.0)))).highest.force
-    light = first_contact(scene(Contact(replace(RIG, plate_mass=1e-5)))).highest.force
+    bare = highest(Contact(replace(RIG, plate_mass=0.0)))
+    light = highest(Contact(replace(RIG, plate_mass=1e-5)))
     assert light == pytest.approx(bare, rel=1e-3)
 
 
 def test_a_plate_makes_the_first_touch_harder() -> None:
     """The pad has to move it, before the spring below has anything to say."""
-    peaks = [
-        first_contact(scene(Contact(replace(RIG, plate_mass=m)))).first_peak.force
-        for m in (0.0, 5.0)
-    ]
-    assert peaks[1] > 1.05 * peaks[0]
+    peaks = [impact(Contact(replace(RIG, plate_mass=m)))[1].first_peak for m in (0.0, 5.0)]
+    assert peaks[0] is not None
+    assert peaks[1] is not None
+    assert peaks[1].force > 1.05 * peaks[0].force
 
 
 def test_covers_help_and_thicker_ones_more() -> None:
-    peaks = [
-        first_contact(scene(Contact(HAND, cover=cover))).highest.force
-        for cover in (None, FOAM, in_series(FOAM, FOAM))
-    ]
+    peaks = [highest(Contact(HAND, cover=cover)) for cover in (None, FOAM, in_series(FOAM, FOAM))]
     assert peaks[0] > 1.05 * peaks[1] > 1.05**2 * peaks[2]
 
 
