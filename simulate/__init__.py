@@ -4,12 +4,13 @@
 from .approach import Approach
 from .controller import Controller, Reference
 from .decoupling import Decoupling, decoupling_stiffness, is_isolated, scaled_springs
-from .history import Fidelity, ImpactHistory, PeakDefinition
+from .history import HORIZON, Fidelity, ImpactHistory, PeakDefinition
 from .impact import simulate_impact
 from .safe_speed import largest_safe_speed
 from .simulator import SimulationFailed
 
 __all__ = [
+    "HORIZON",
     "Approach",
     "Controller",
     "Decoupling",

@@ -36,7 +36,7 @@ class TypedImpact:
     fidelity: str = "linearised"
     clamped: bool = True
     joint_velocity: str | None = None
-    peak: str = "first_contact"
+    peak: str = "peak"
     safe_speed: bool = False
     order: int = 3
     pid: str | None = None
@@ -59,7 +59,7 @@ def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
     with _naming_options():
         controller = _controller(how)
         history = simulate_impact(
-            scene.model, approach, contact, fidelity, order=how.order, controller=controller
+            scene.model, approach, contact, fidelity, order=how.order, motors=controller
         )
         if how.safe_speed:
             safe_speed = largest_safe_speed(
@@ -70,9 +70,9 @@ def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
                 fidelity,
                 definition,
                 order=how.order,
-                controller=controller,
+                motors=controller,
             )
-    peak = history.peak(definition)
+    peak = history.force_of(definition)
     return {
         "robot": scene.model.robot.name,
         "tip": scene.model.tip,

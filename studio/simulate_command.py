@@ -52,7 +52,7 @@ def simulate(
     fidelity: o.Fidelity = "linearised",
     clamped: Clamped = True,
     joint_velocity: JointVelocity = None,
-    peak: Peak = "first_contact",
+    peak: Peak = "peak",
     pid: Pid = None,
     reference: Reference = "moving",
     safe_speed: SafeSpeed = False,

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The physics as CasADi expressions: robot, dynamics, compliance, reduction, impact factors."""
 
+from .body.bodies import body_region
 from .body.contact import Contact
-from .body.regions import REGIONS, BodyRegion, body_region
+from .body.laws import Curve, Law, PowerLaw, in_series
+from .body.regions import AREAS, REGIONS, BodyRegion
+from .body.shapes import Edge, Flat, Sphere
+from .body.verdict import Limits, Verdict, judge, limits_of
 from .dynamics.equations_of_motion import (
     STANDARD_GRAVITY,
     bias_torques,
@@ -65,7 +69,9 @@ from .impact.drives import Drives, drives
 from .impact.elastic import LinearModel
 from .impact.floating import FloatingRobot, floating_model, floating_robot
 from .impact.impact_model import ImpactModel, impact_model
+from .impact.motors import MotorKind, Motors
 from .impact.reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
+from .impact.two_body import TwoBody, moving_mass, two_body
 from .loops.closure import (
     close_loops,
     closed_near,
@@ -87,6 +93,7 @@ from .robot.robot import Frame, Joint, JointKind, Loop, Robot
 from .robot.welding import chain_to, lock_joints
 
 __all__ = [
+    "AREAS",
     "REGIONS",
     "STANDARD_GRAVITY",
     "Analysis",
@@ -96,10 +103,13 @@ __all__ = [
     "ClosedChain",
     "Contact",
     "ContactMobility",
+    "Curve",
     "Drives",
+    "Edge",
     "Eigen",
     "Ellipsoid",
     "Extremes",
+    "Flat",
     "FloatingRobot",
     "Frame",
     "FrameNotFound",
@@ -111,6 +121,8 @@ __all__ = [
     "Joint",
     "JointImpulse",
     "JointKind",
+    "Law",
+    "Limits",
     "LinearModel",
     "Loop",
     "LoopCannotClose",
@@ -118,15 +130,21 @@ __all__ = [
     "MasslessBase",
     "Matrix",
     "ModelFileError",
+    "MotorKind",
+    "Motors",
     "NoEquilibrium",
+    "PowerLaw",
     "ReducedModel",
     "RedundantLoop",
     "Robot",
     "SingularDirection",
     "SingularLoop",
     "SoftImpactError",
+    "Sphere",
+    "TwoBody",
     "UnknownName",
     "UnsupportedModel",
+    "Verdict",
     "WrongLength",
     "analyse",
     "approach_velocity",
@@ -165,8 +183,11 @@ __all__ = [
     "impact_factors",
     "impact_mitigation",
     "impact_model",
+    "in_series",
     "joint_impulse",
+    "judge",
     "least_velocity",
+    "limits_of",
     "link_angles_at_rest",
     "load_robot",
     "lock_joints",
@@ -179,6 +200,7 @@ __all__ = [
     "manipulability_ellipsoid",
     "mass_matrix",
     "motor_angles_at_rest",
+    "moving_mass",
     "potential_energy",
     "reduce_to_two_masses",
     "reflected_mass",
@@ -187,5 +209,6 @@ __all__ = [
     "static_stiffness",
     "stiffness_of_potential",
     "symmetric_eigen",
+    "two_body",
     "unit_direction",
 ]

@@ -43,6 +43,12 @@ class Joint:
         stiffness: of a spring in parallel with the joint [N·m/rad, N/m].
         spring_reference: coordinate at which that spring is unloaded.
         actuated: whether a motor drives the joint; passive joints have none.
+        damping: of the joint [N·m·s/rad, N·s/m].
+        friction: dry friction of the joint [N·m, N].
+        position_gain: K_p of a position servo that the file has on the joint [N·m/rad, N/m].
+        velocity_gain: K_d of a servo that the file has on the joint [N·m·s/rad, N·s/m].
+        torque_limit: largest torque or force of its motor [N·m, N] (inf where unknown).
+        speed_limit: largest speed of the joint [rad/s, m/s] (inf where unknown).
     """
 
     name: str
@@ -57,6 +63,12 @@ class Joint:
     stiffness: float = 0.0
     spring_reference: float = 0.0
     actuated: bool = True
+    damping: float = 0.0
+    friction: float = 0.0
+    position_gain: float = 0.0
+    velocity_gain: float = 0.0
+    torque_limit: float = np.inf
+    speed_limit: float = np.inf
 
     def pose(self, coordinate: float) -> Placement:
         """Return the joint's moved frame in the parent joint's frame."""
@@ -144,6 +156,21 @@ class Robot:
     def armature(self) -> Array:
         """Reflected rotor inertias, shape (n,)."""
         return np.array([joint.armature for joint in self.joints])
+
+    @property
+    def damping(self) -> Array:
+        """Damping of the joints, shape (n,)."""
+        return np.array([joint.damping for joint in self.joints])
+
+    @property
+    def torque_limits(self) -> Array:
+        """Largest torques of the motors, shape (n,); inf where unknown."""
+        return np.array([joint.torque_limit for joint in self.joints])
+
+    @property
+    def speed_limits(self) -> Array:
+        """Largest speeds of the joints, shape (n,); inf where unknown."""
+        return np.array([joint.speed_limit for joint in self.joints])
 
     @property
     def limits(self) -> tuple[Array, Array]:
@@ -249,6 +276,7 @@ class Robot:
                 joint.spring_reference,
                 joint.lower,
                 joint.upper,
+                joint.damping,
             ]
             head = f"{joint.name} {joint.kind.value} {joint.parent} {joint.actuated}"
             text.update(f"{head} {_in_words(numbers)}\n".encode())
