@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from softimpact.simulate.motion import Motion, motion
+from softimpact.simulate.trajectory import Trajectory, trajectory
 from softimpact.symbolic import Robot, SoftImpactError
 from softimpact.symbolic.robot.rigid import Array
 
@@ -28,7 +28,9 @@ class MotionFileError(SoftImpactError):
         self.path, self.reason = path, reason
 
 
-def read_motion(path: Path, robot: Robot, also: tuple[str, ...] = ()) -> tuple[Motion, list[str]]:
+def read_motion(
+    path: Path, robot: Robot, also: tuple[str, ...] = ()
+) -> tuple[Trajectory, list[str]]:
     """Read a motion.
 
     Args:
@@ -53,12 +55,10 @@ def read_motion(path: Path, robot: Robot, also: tuple[str, ...] = ()) -> tuple[M
     if not body.strip():
         raise MotionFileError(path, "holds no samples below its first line")
     table = _numbers(path, body, delimiter, len(columns))
-    found = motion(
-        table[:, columns.index("t")], table[:, [columns.index(j) for j in _names(robot)]]
-    )
-    warnings = [
-        f"column '{name}' is not of the arm and does not count" for name in columns if name in also
-    ]
+    order = [columns.index(name) for name in robot.joint_names]
+    found = trajectory(table[:, columns.index("t")], table[:, order])
+    idle = [name for name in columns if name in also]
+    warnings = [f"column '{name}' is of no joint of the arm and does not count" for name in idle]
     return found, warnings + _limits_left(path, found, robot)
 
 
@@ -102,7 +102,7 @@ def _numbers(path: Path, body: str, delimiter: str, columns: int) -> Array:
     return np.asarray(table)
 
 
-def _limits_left(path: Path, found: Motion, robot: Robot) -> list[str]:
+def _limits_left(path: Path, found: Trajectory, robot: Robot) -> list[str]:
     """Return warnings about angles past their limits; raise MotionFileError if they are degrees."""
     lower, upper = robot.limits
     low, high = found.q.min(axis=0), found.q.max(axis=0)

@@ -17,7 +17,7 @@ larger: there each side counts for itself, since their mean may be slow or point
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class Trajectory:
     """Joint angles over time.
 
     Attributes:
@@ -29,7 +29,7 @@ class Motion:
     q: Array
 
 
-def motion(time: ArrayLike, q: ArrayLike) -> Motion:
+def trajectory(time: ArrayLike, q: ArrayLike) -> Trajectory:
     """Return a checked motion.
 
     Raises:
@@ -50,7 +50,7 @@ def motion(time: ArrayLike, q: ArrayLike) -> Motion:
         raise InvalidValue(
             "t", f"must rise, but goes from {t[k]:g} to {t[k + 1]:g} s at sample {k + 2}"
         )
-    return Motion(t, angles)
+    return Trajectory(t, angles)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ class Passes:
     velocity: Array
 
 
-def passes(of: Motion) -> Passes:
+def passes(of: Trajectory) -> Passes:
     """Return the velocities with which a motion passes its samples, by central differences."""
     each = np.diff(of.q, axis=0) / np.diff(of.time)[:, None]
     before, after = np.vstack([each[:1], each]), np.vstack([each, each[-1:]])
