@@ -30,10 +30,16 @@ def plain(value: Any) -> Any:
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
+    if hasattr(value, "full"):  # a CasADi matrix of numbers
+        value = value.full().ravel() if 1 in value.shape else value.full()
     if isinstance(value, (np.ndarray, np.generic)):
         return plain(value.tolist())
     if isinstance(value, (list, tuple)):
         return [plain(item) for item in value]
+    return _scalar(value)
+
+
+def _scalar(value: Any) -> Any:
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return str(value) if isinstance(value, Path) else value
@@ -42,6 +48,12 @@ def plain(value: Any) -> Any:
 def print_json(result: Mapping[str, Any]) -> None:
     """Print one JSON object to stdout."""
     typer.echo(json.dumps(plain(result), allow_nan=False))
+
+
+def print_warnings(lines: Iterable[str]) -> None:
+    """Print what was ignored or assumed to stderr, one line each."""
+    for line in lines:
+        typer.echo(f"warning: {' '.join(line.split())}", err=True)
 
 
 @contextmanager

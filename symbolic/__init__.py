@@ -88,6 +88,7 @@ from .loops.loops import (
     loop_tangent,
 )
 from .matrices import Matrix, count_flops
+from .robot.arm import Arm, arm_of, with_load
 from .robot.loading import load_robot
 from .robot.robot import Frame, Joint, JointKind, Loop, Robot
 from .robot.welding import chain_to, lock_joints
@@ -97,6 +98,7 @@ __all__ = [
     "REGIONS",
     "STANDARD_GRAVITY",
     "Analysis",
+    "Arm",
     "BodyRegion",
     "Chain",
     "ChainNumbers",
@@ -148,6 +150,7 @@ __all__ = [
     "WrongLength",
     "analyse",
     "approach_velocity",
+    "arm_of",
     "bias_torques",
     "body_region",
     "chain",
@@ -211,4 +214,5 @@ __all__ = [
     "symmetric_eigen",
     "two_body",
     "unit_direction",
+    "with_load",
 ]
