@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
 
-import mujoco
 import numpy as np
 import pytest
 
 from softimpact.robots import built_in_robots
-from softimpact.symbolic.robot.rigid import Array
-
-SPEED = "speed_limit"
+from softimpact.symbolic import ModelFileError, Robot, load_robot
 
 
 class Limits(NamedTuple):
@@ -89,37 +87,44 @@ def name(request: pytest.FixtureRequest) -> str:
 
 
 @pytest.fixture(scope="module")
-def model(name: str) -> mujoco.MjModel:
-    return mujoco.MjModel.from_xml_path(str(built_in_robots()[name]))
+def robot(name: str) -> Robot:
+    return load_robot(name)
 
 
-def speed_limits(model: mujoco.MjModel) -> Array:
-    """Return the custom numeric."""
-    at = int(model.numeric(SPEED).id)
-    first, size = int(model.numeric_adr[at]), int(model.numeric_size[at])
-    return np.array(model.numeric_data[first : first + size])
-
-
-def test_ranges(name: str, model: mujoco.MjModel) -> None:
+def test_ranges(name: str, robot: Robot) -> None:
     limits = LIMITS[name]
-    for side, printed in enumerate((limits.lower, limits.upper)):
+    for found, printed in zip(robot.limits, (limits.lower, limits.upper), strict=True):
         expected = limits.unit * np.array(printed, dtype=float)
-        has_one = np.isfinite(expected)
-        np.testing.assert_array_equal(model.jnt_limited.astype(bool), has_one)
-        found = model.jnt_range[has_one, side]
-        np.testing.assert_allclose(found, expected[has_one], rtol=ROUNDED)
+        np.testing.assert_allclose(found, expected, rtol=ROUNDED)
 
 
-def test_speeds(name: str, model: mujoco.MjModel) -> None:
+def test_speeds(name: str, robot: Robot) -> None:
     limits = LIMITS[name]
     expected = limits.unit * np.array(limits.speed)
-    np.testing.assert_allclose(speed_limits(model), expected, rtol=ROUNDED)
+    np.testing.assert_allclose(robot.speed_limits, expected, rtol=ROUNDED)
 
 
-def test_torques(name: str, model: mujoco.MjModel) -> None:
-    assert model.jnt_actfrclimited.all()
-    torques = np.array(LIMITS[name].torque, dtype=float)
-    np.testing.assert_array_equal(model.jnt_actfrcrange, np.stack([-torques, torques], axis=1))
+def test_torques(name: str, robot: Robot) -> None:
+    np.testing.assert_array_equal(robot.torque_limits, np.array(LIMITS[name].torque, dtype=float))
+
+
+def test_a_robot_without_limits_has_none() -> None:
+    assert np.isinf(load_robot("rr").speed_limits).all()
+    assert np.isinf(load_robot("rr").torque_limits).all()
+
+
+@pytest.mark.parametrize(
+    ("data", "reason"), [("1", "1 values for 2 joints"), ("1 0", "must be greater than 0")]
+)
+def test_speed_limits_that_do_not_fit(tmp_path: Path, data: str, reason: str) -> None:
+    text = """<mujoco><custom><numeric name="speed_limit" data="DATA"/></custom><worldbody>
+      <body><joint/><inertial mass="1" pos="0.1 0 0" diaginertia="1 1 1"/>
+      <body><joint/><inertial mass="1" pos="0.1 0 0" diaginertia="1 1 1"/></body></body>
+      </worldbody></mujoco>"""
+    path = tmp_path / "two.xml"
+    path.write_text(text.replace("DATA", data))
+    with pytest.raises(ModelFileError, match=reason):
+        load_robot(path)
 
 
 def test_every_arm_with_a_data_sheet_is_here() -> None:
