@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -133,7 +133,7 @@ def assess_impact(
         joint_velocity=arrival.speed * arrival.link_velocity,
         joint_speed_limit_exceeded=_too_fast(model, arrival.speed * arrival.link_velocity),
         torque_limit_exceeded=_too_strong(model, found[worst]),
-        warnings=tuple(warnings),
+        warnings=(*warnings, *_of_the_file(model, lumped)),
     )
 
 
@@ -177,6 +177,21 @@ def bracket(
     if kind is None:
         return {k: replace(how, kind=k) for k in KINDS if k in ("free", "driven")}, []
     return {kind: replace(how, kind=kind)}, []
+
+
+def _of_the_file(model: ImpactModel, lumped: bool) -> Iterator[str]:
+    """Yield what of the file is used in a way to know of, or not used."""
+    robot = model.robot
+    if robot.damping.any() and not lumped:
+        yield (
+            "the joints' damping counts; motors are taken to go on with what it needed of them "
+            "before the impact, as the worse case"
+        )
+    rubbing = _names(model, np.array([robot.joints[i].friction > 0 for i in model.independent]))
+    if rubbing:
+        yield f"dry friction of joints {', '.join(rubbing)} is not used; it would lower the force"
+    if robot.position_gains.any() and not model.drives.has_gains:
+        yield "the file's servos are not used; 'servo' motors take their gains from it"
 
 
 def unknown_rotors(model: ImpactModel) -> list[str]:

@@ -134,6 +134,7 @@ def simulate(
         gear_ratio,
         damping_gain,
         torque_limit,
+        servo=motors == "servo",
     )
     arm = TypedArm(model, tip, end, lock, payload, tool)
     where = Typed(arm, q, direction, given, gravity, motor_angles)

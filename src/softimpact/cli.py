@@ -61,8 +61,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: default the process's own.
     """
+    words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        code = app(args=arguments, prog_name="softimpact", standalone_mode=False)
+        _refuse_repeated(words)
+        code = app(args=words, prog_name="softimpact", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
         return INTERRUPTED
     except Exception as error:
@@ -72,6 +74,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"error: {_one_line(error)}", file=sys.stderr)
         return declared
     return code if isinstance(code, int) else 0
+
+
+def _refuse_repeated(words: Sequence[str]) -> None:
+    """Raise a usage error if an option that takes one value is given twice: the first is lost."""
+    group = typer.main.get_command(app)
+    command = getattr(group, "commands", {}).get(words[0]) if words else None
+    if command is None:
+        return
+    once = {
+        name: parameter.opts[0]
+        for parameter in command.params
+        if not parameter.multiple and parameter.nargs == 1
+        for name in (*parameter.opts, *parameter.secondary_opts)
+    }
+    given = [once[word.partition("=")[0]] for word in words if word.partition("=")[0] in once]
+    twice = [name for name in given if given.count(name) > 1]
+    if twice:
+        raise typer.BadParameter("is given twice; only one of them could count", param_hint=twice[0])
 
 
 def _exit_code(error: Exception) -> int | None:

@@ -36,11 +36,11 @@ def load_robot(model: str | Path, tip: str | None = None, *, floating: bool = Fa
     joints, nor couplings between them (URDF ``mimic``, MJCF ``equality/joint``, tendons): weld
     such joints with ``chain_to`` or ``lock_joints``. Of MJCF's ``custom`` elements the text ``tip``
     names the contact frame, the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor
-    inertias, and the numeric ``speed_limit`` the joints' largest speeds; the text ``rotors`` with the value ``stated`` says that joints without armature have
-    no rotor, or that rotors are bodies of their own. MJCF ``equality/connect`` closes a loop:
-    ``home`` is then the first keyframe (or the model's reference configuration), and the custom
-    text ``independent`` may name the joints whose coordinates describe the closed chain, separated
-    by spaces.
+    inertias, and the numeric ``speed_limit`` the joints' largest speeds; the text ``rotors`` with
+    the value ``stated`` says that joints without armature have no rotor, or that rotors are bodies
+    of their own. MJCF ``equality/connect`` closes a loop: ``home`` is then the first keyframe (or
+    the model's reference configuration), and the custom text ``independent`` may name the joints
+    whose coordinates describe the closed chain, separated by spaces.
 
     Args:
         model: name of a built-in robot, or path of a file.

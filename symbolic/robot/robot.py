@@ -168,6 +168,16 @@ class Robot:
         return np.array([joint.damping for joint in self.joints])
 
     @property
+    def position_gains(self) -> Array:
+        """K_p of the file's servos, shape (n,)."""
+        return np.array([joint.position_gain for joint in self.joints])
+
+    @property
+    def velocity_gains(self) -> Array:
+        """K_d of the file's servos, shape (n,)."""
+        return np.array([joint.velocity_gain for joint in self.joints])
+
+    @property
     def torque_limits(self) -> Array:
         """Largest torques of the motors, shape (n,); inf where unknown."""
         return np.array([joint.torque_limit for joint in self.joints])
