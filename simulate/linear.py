@@ -174,8 +174,8 @@ class Modes:
 
 def modes(system: LinearSystem) -> Modes:
     """Return the modes of a linear system, or of many."""
-    root: Array = np.linalg.cholesky(system.mass)
-    half: Array = np.linalg.solve(root, system.stiffness)
+    root = np.asarray(np.linalg.cholesky(system.mass), dtype=float)
+    half = np.asarray(np.linalg.solve(root, system.stiffness), dtype=float)
     squared_frequency, vectors = np.linalg.eigh(np.linalg.solve(root, _turned(half)))
     own = np.linalg.solve(_turned(root), vectors)
     basis = system.shapes @ own
