@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors, generalised_velocity
+from softimpact.symbolic.body.verdict import Limits
 from softimpact.symbolic.impact.motors import MotorLaw
 from softimpact.symbolic.robot.rigid import Array, Inertia
 
@@ -44,6 +46,70 @@ class Band:
         tail = (1 - COVERED) / 2
         low, high = np.quantile(samples, [tail, 1 - tail])
         return Band(float(low), float(high))
+
+
+@dataclass(frozen=True)
+class ImpactBand:
+    """The bands of an impact, each impact at the worst that its motors may do.
+
+    Attributes:
+        peak: of the largest force over all contacts [N].
+        pressing: of what presses on a clamped body after 0.5 s [N]; None on one that gives way.
+        share: of the verdict: how much of the limit that binds is used.
+        samples: how many impacts it is taken from.
+    """
+
+    peak: Band
+    pressing: Band | None
+    share: Band
+    samples: int
+
+
+def impact_band(
+    model: ImpactModel,
+    approach: Approach,
+    contact: Contact,
+    ends: Iterable[Motors],
+    limits: Limits,
+    *,
+    tolerances: Tolerances | None = None,
+    horizon: float = HORIZON,
+    samples: int = SAMPLES,
+) -> ImpactBand:
+    """Return the bands of an impact of the linearised robot.
+
+    Args:
+        model: the robot.
+        approach: how it arrives.
+        contact: what it hits.
+        ends: what the motors may do; of each sample the worse end counts.
+        limits: of what is hit.
+        tolerances: default ``Tolerances()``.
+        horizon: up to which the largest force counts [s].
+        samples: how many impacts.
+
+    Raises:
+        InvalidValue: as ``varied_peaks`` does.
+    """
+    found = [
+        varied_peaks(
+            model,
+            approach,
+            contact,
+            motors=motors,
+            tolerances=tolerances,
+            horizon=horizon,
+            samples=samples,
+        )
+        for motors in ends
+    ]
+    peak = np.max([each.peak for each in found], axis=0)
+    pressing = np.max([each.pressing for each in found], axis=0)
+    share = peak / limits.transient.force
+    if limits.quasi_static is not None:
+        share = np.maximum(share, pressing / limits.quasi_static.force)
+    late = Band.of(pressing) if contact.clamped else None
+    return ImpactBand(Band.of(peak), late, Band.of(share), samples)
 
 
 def varied_peaks(
