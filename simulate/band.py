@@ -16,9 +16,8 @@ from softimpact.symbolic.robot.rigid import Array, Inertia
 from .approach import Approach, Arrival, arrival_of
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import LinearSystem, given_motion, linear_system, modes
-from .many import ManyPeaks, at_first_touch, faster
-from .scene import Motion
-from .stepping import Bodies, Largest, run_stage
+from .many import ManyPeaks
+from .stepping import Bodies, LargestForces, Stage, at_first_touch, faster, slower
 from .tolerances import Factors, Tolerances, factors
 
 SAMPLES = 1000
@@ -146,35 +145,23 @@ def varied_peaks(
     varied = factors(tolerances or Tolerances(), model.robot.n, samples)
     bodies = _bodies(contact, varied)
     until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
-    largest = Largest(samples, horizon)
+    largest = LargestForces(samples, horizon)
     state = at_first_touch(samples, model.size, bodies)
     v = np.full(samples, arrival.speed)
     links = _mass_of_each_link(model, arrival)
     later = motors.reaction_time * (varied.reaction_time - 1) if len(motors.laws) > 1 else 0.0
     begins = [np.full(samples, time) + (later if time else 0.0) for time, _ in motors.laws]
-    ends = [*begins[1:], np.full(samples, until)]
+    ends = [np.minimum(end, until) for end in [*begins[1:], np.full(samples, until)]]
     for (_, law), begin, end in zip(motors.laws, begins, ends, strict=True):
-        if not (np.minimum(end, until) > begin).any():
+        if not (end > begin).any():
             continue
         system = _varied(model, linear_system(model, arrival, law), law, links, varied, arrival)
         found = modes(system)
-        motion = Motion(
-            state.motion.position / arrival.speed, state.motion.velocity / arrival.speed
+        stage = Stage.of(system, found, bodies, np.minimum(begin, until), end)
+        given = given_motion(
+            system, found, law, slower(state.motion, v), before, begin, motors.stopping_time
         )
-        given, deviation = given_motion(
-            system, found, law, motion, before, begin, motors.stopping_time
-        )
-        state = run_stage(
-            system,
-            found,
-            faster(given, v),
-            arrival.speed * deviation,
-            bodies,
-            state,
-            np.minimum(begin, until),
-            np.minimum(end, until),
-            largest,
-        )
+        state = stage.run(*faster(*given, v), state, largest)
     return ManyPeaks(largest.peak, largest.first_contact, largest.pressing)
 
 

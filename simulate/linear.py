@@ -26,7 +26,8 @@ class LinearSystem:
     """M z̈ + D ż + K z = −Jᵀ f_c + forces that do not depend on the impact.
 
     z is the deviation from the motion before the impact, of the coordinates ``moving``, which are
-    some of the model's; those ``given`` move as the motors' law has it.
+    some of the model's; those ``given`` move as the motors' law has it. Arrays of many systems have
+    a leading axis.
 
     Attributes:
         shapes: how the coordinates that move do so with each of the system's own, N×r; a chain
@@ -239,19 +240,19 @@ def given_motion(
     position, rate = motion.position[..., P], motion.velocity[..., P]
     deviation = np.zeros((*position.shape, 3))
     if law in PRESCRIBED:
-        bend = -(arrival_rate[P] + rate) / stopping_time if law == "braking" else 0 * rate
+        bend = -(arrival_rate[..., P] + rate) / stopping_time if law == "braking" else 0 * rate
         if law == "stopped":
-            rate = 0 * rate - arrival_rate[P]
+            rate = 0 * rate - arrival_rate[..., P]
         deviation = np.stack([position, rate, bend / 2], axis=-1)
     M, K, D, J = system.whole
     bent = 2 * deviation[..., 2]
     rates = np.stack([deviation[..., 1], bent, 0 * bent], axis=-1)
     forces = -_block(K, F, P) @ deviation - _block(D, F, P) @ rates
     since = np.asarray(begin)
-    forces[..., 0] -= _on(_block(M, F, P), bent) + system.drift[F] * since[..., None]
-    forces[..., 1] -= system.drift[F]
+    forces[..., 0] -= _on(_block(M, F, P), bent) + system.drift[..., F] * since[..., None]
+    forces[..., 1] -= system.drift[..., F]
     ahead = np.stack([since, since**0, 0 * since], axis=-1)
-    displacement = ahead + (J[P][:, None] * deviation).sum(axis=-2)
+    displacement = ahead + (J[..., P, None] * deviation).sum(axis=-2)
     return Given(_turned(found.basis) @ forces, displacement), deviation
 
 

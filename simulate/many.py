@@ -13,9 +13,8 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .approach import Approach, arrival_of
 from .history import HORIZON, PRESSED_UNTIL
-from .linear import Given, given_motion, linear_system, modes
-from .scene import Motion
-from .stepping import Bodies, Largest, State, run_stage
+from .linear import given_motion, linear_system, modes
+from .stepping import Bodies, LargestForces, Stage, at_first_touch, faster, slower
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +50,8 @@ def many_peaks(
     v = np.atleast_1d(np.asarray(speeds, dtype=float))
     before = generalised_velocity(model, arrival.link_velocity)
     until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
-    largest = Largest(len(v), horizon)
-    bodies = Bodies.of([contact.region], contact.clamped, contact.law, np.ones(1))
+    largest = LargestForces(len(v), horizon)
+    bodies = Bodies.of([contact.region], contact.clamped, contact.law)
     state = at_first_touch(len(v), model.size, bodies)
     ends = [begin for begin, _ in what.laws[1:]] + [until]
     for (begin, law), end in zip(what.laws, ends, strict=True):
@@ -60,32 +59,9 @@ def many_peaks(
             continue
         system = linear_system(model, arrival, law)
         found = modes(system)
-        motion = Motion(state.motion.position / v[:, None], state.motion.velocity / v[:, None])
-        given, deviation = given_motion(
-            system, found, law, motion, before, begin, what.stopping_time
+        stage = Stage.of(system, found, bodies, np.array(begin), np.array(min(end, until)))
+        given = given_motion(
+            system, found, law, slower(state.motion, v), before, begin, what.stopping_time
         )
-        state = run_stage(
-            system,
-            found,
-            faster(given, v),
-            v[:, None, None] * deviation,
-            bodies,
-            state,
-            np.full(len(v), begin),
-            np.full(len(v), min(end, until)),
-            largest,
-        )
+        state = stage.run(*faster(*given, v), state, largest)
     return ManyPeaks(largest.peak, largest.first_contact, largest.pressing)
-
-
-def at_first_touch(count: int, size: int, bodies: Bodies) -> State:
-    """Return the state of many impacts at first touch, in deviations from the motion before."""
-    still = Motion(np.zeros((count, size)), np.zeros((count, size)))
-    return State(still, np.zeros((count, bodies.states)), np.zeros(count))
-
-
-def faster(given: Given, speeds: Array) -> Given:
-    """Return what is given for 1 m/s at each of some speeds [m/s]."""
-    force = np.broadcast_to(given.force, (len(speeds), *given.force.shape[-2:]))
-    ahead = np.broadcast_to(given.displacement, (len(speeds), 3))
-    return Given(speeds[:, None, None] * force, speeds[:, None] * ahead)

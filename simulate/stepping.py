@@ -4,11 +4,12 @@
 Robot and body are linear but for the law of contact between them, so that each is stepped exactly
 for a force that is linear from node to node; what is left in each step is one equation for the
 force, law(depth without it − softness · force) = force, solved for all impacts together. A leading
-axis counts impacts, where the impacts differ.
+axis S counts impacts; numbers that they share may do without it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,17 +18,11 @@ from softimpact.symbolic import BodyRegion
 from softimpact.symbolic.body.laws import Law
 from softimpact.symbolic.robot.rigid import Array
 
-from .exact_steps import (
-    DenseStep,
-    ModalStep,
-    body_system,
-    dense_step,
-    modal_step,
-    standing_compliance,
-)
+from .exact_steps import DenseStep, body_system, dense_step, standing_compliance
 from .history import HORIZON
 from .law_solver import LawSolver, law_solver
 from .linear import Given, LinearSystem, Modes
+from .robot_steps import DampedSteps, UndampedSteps, robot_steps
 from .scene import Motion
 
 PHASE = 0.08
@@ -37,10 +32,10 @@ FEWEST_STEPS = 40
 """Fewest steps of a stage of the motors."""
 
 SHORTEST = 1e-9
-"""Shortest stage [s]: one that does not happen in some of many impacts."""
+"""Shortest stage [s], for impacts in which it does not happen at all."""
 
 
-class Largest:
+class LargestForces:
     """The largest forces of each impact so far [N].
 
     Attributes:
@@ -80,15 +75,16 @@ class Bodies:
 
     Attributes:
         law: of contact.
-        scale: factor on its force, S or scalar.
-        system: A, b of ``body_system``; x_0 is ``out`` times its state.
-        out: length m.
+        scale: factor on its force.
+        system: A and b of ``body_system``.
+        out: x_0 is this times the body's state, length m.
         standing: compliance that follows the force at once [m/N].
-        fastest: ω of the contact [rad/s] for a robot's mobility [1/kg].
+        stiffness: k_h [N/m].
+        mobility: that the body adds to the robot's [1/kg].
     """
 
     law: Law
-    scale: Array
+    scale: float | Array
     system: tuple[Array, Array]
     out: Array
     standing: Array
@@ -96,7 +92,9 @@ class Bodies:
     mobility: Array
 
     @staticmethod
-    def of(regions: list[BodyRegion], clamped: bool, law: Law, scale: Array) -> Bodies:
+    def of(
+        regions: Sequence[BodyRegion], clamped: bool, law: Law, scale: float | Array = 1.0
+    ) -> Bodies:
         """Return bodies of some regions: one for all impacts, or one for each."""
         systems = [body_system(region, clamped) for region in regions]
         A, b = (np.array([system[i] for system in systems]) for i in (0, 1))
@@ -114,15 +112,14 @@ class Bodies:
             mobility=np.array(plate) + np.array(free),
         )
 
-    @property
-    def states(self) -> int:
-        """Number of a body's states."""
-        return len(self.out)
+    def frequency(self, robot_mobility: Array) -> Array:
+        """Return ω of a contact [rad/s] with a robot of some mobility at its point [1/kg]."""
+        return np.asarray(np.sqrt(self.stiffness * (robot_mobility + self.mobility)))
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where many impacts are when the motors begin to follow another law.
+    """Where many impacts are when their motors begin to follow another law.
 
     Attributes:
         motion: of the robots' coordinates, S×N.
@@ -135,139 +132,109 @@ class State:
     force: Array
 
 
-def run_stage(
-    system: LinearSystem,
-    found: Modes,
-    given: Given,
-    deviation: Array,
-    bodies: Bodies,
-    state: State,
-    begin: Array,
-    end: Array,
-    largest: Largest,
-) -> State:
-    """Step many impacts through a stage of their motors; return where they are then.
+def at_first_touch(count: int, size: int, bodies: Bodies) -> State:
+    """Return the state of many impacts at first touch, in deviations from the motion before."""
+    still = Motion(np.zeros((count, size)), np.zeros((count, size)))
+    return State(still, np.zeros((count, len(bodies.out))), np.zeros(count))
 
-    Args:
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """Many impacts while their motors follow one law, ready to be stepped.
+
+    Attributes:
         system: the robots.
-        found: their modes.
-        given: forces and displacements that do not depend on the impact, S×r×3 and S×3.
-        deviation: of the motors, whose motion is given, S×P×3.
+        modes: of these.
         bodies: that they hit.
-        state: at the beginning.
-        begin: of the stage in each impact [s since first touch], S.
-        end: of the stage in each, S.
-        largest: forces so far; those of the stage are added.
+        begin: of the stage [s since first touch], one number or one for each impact.
+        h: time step [s], likewise.
+        steps: how many.
     """
-    span = np.maximum(end - begin, SHORTEST)
-    stiffest = bodies.stiffness * ((found.shape**2).sum(axis=-1) + bodies.mobility)
-    steps = max(FEWEST_STEPS, int(np.ceil((span * np.sqrt(stiffest)).max() / PHASE)))
-    h = span / steps if np.ptp(span) else np.array(span[0] / steps)
-    robot, shape = _robot_step(found, h), found.shape
-    body_step = dense_step(*bodies.system, h)
-    push_body = body_step.after[..., 0]
-    softness = bodies.standing + push_body @ bodies.out + robot.softness
-    solver: LawSolver = law_solver(bodies.law, softness, bodies.scale)
-    F = system.moving
-    y = (found.into @ state.motion.position[:, F, None])[..., 0]
-    rate = (found.into @ state.motion.velocity[:, F, None])[..., 0]
-    body, force, nothing = state.body, state.force, np.zeros((len(state.force), 1))
-    has_given, depth = bool(np.any(given.force)), None
-    modal = given.force[..., 0]
-    for k in range(1, steps + 1):
-        t = k * h
-        later = _at(given.force, t) if has_given else modal
-        y, rate = robot.moved(y, rate, force, modal, later)
-        body = body_step.moved(body, force[:, None], nothing)
-        pushed = (y * shape).sum(axis=-1) + _at(given.displacement, t) - body @ bodies.out
-        force, depth = solver.solve(pushed, depth)
-        y, rate = robot.pushed(y, rate, force)
-        body = body + push_body * force[:, None]
-        modal = later
-        largest.see(begin + t, force)
-    return State(_motion(system, found, deviation, y, rate, steps * h), body, force)
+
+    system: LinearSystem
+    modes: Modes
+    bodies: Bodies
+    begin: Array
+    h: Array
+    steps: int
+    _robot: UndampedSteps | DampedSteps
+    _body: DenseStep
+    _solver: LawSolver
+
+    @staticmethod
+    def of(system: LinearSystem, found: Modes, bodies: Bodies, begin: Array, end: Array) -> Stage:
+        """Prepare the steps of a stage.
+
+        Args:
+            system: the robots.
+            found: their modes.
+            bodies: that they hit.
+            begin: of the stage, one number or one for each impact [s since first touch].
+            end: of the stage, likewise.
+        """
+        span = np.maximum(np.asarray(end - begin), SHORTEST)
+        rate = bodies.frequency((found.shape**2).sum(axis=-1))
+        steps = max(FEWEST_STEPS, int(np.ceil((span * rate).max() / PHASE)))
+        h = span / steps
+        robot = robot_steps(found.squared_frequency, found.shape, found.damping, h)
+        body = dense_step(*bodies.system, h)
+        softness = bodies.standing + body.after[..., 0] @ bodies.out + robot.softness
+        solver = law_solver(bodies.law, softness, bodies.scale)
+        return Stage(system, found, bodies, np.asarray(begin), h, steps, robot, body, solver)
+
+    def run(self, given: Given, deviation: Array, state: State, largest: LargestForces) -> State:
+        """Step through the stage; return where the impacts are then.
+
+        Args:
+            given: forces and displacements that do not depend on the impact, S×r×3 and S×3.
+            deviation: of the motors whose motion is given, S×P×3.
+            state: at the beginning.
+            largest: forces so far; those of the stage are added.
+        """
+        F, shape, out = self.system.moving, self.modes.shape, self.bodies.out
+        y = (self.modes.into @ state.motion.position[:, F, None])[..., 0]
+        rate = (self.modes.into @ state.motion.velocity[:, F, None])[..., 0]
+        body, force, nothing = state.body, state.force, np.zeros((len(state.force), 1))
+        push_body = self._body.after[..., 0]
+        has_given, depth, modal = bool(np.any(given.force)), None, given.force[..., 0]
+        for k in range(1, self.steps + 1):
+            t = k * self.h
+            later = _at(given.force, t) if has_given else modal
+            y, rate = self._robot.moved(y, rate, force, modal, later)
+            body = self._body.moved(body, force[:, None], nothing)
+            pushed = (y * shape).sum(axis=-1) + _at(given.displacement, t) - body @ out
+            force, depth = self._solver.solve(pushed, depth)
+            y, rate = self._robot.pushed(y, rate, force)
+            body = body + push_body * force[:, None]
+            modal = later
+            largest.see(self.begin + t, force)
+        return State(self._motion(deviation, y, rate), body, force)
+
+    def _motion(self, deviation: Array, y: Array, rate: Array) -> Motion:
+        F, P, T = self.system.moving, self.system.given, self.steps * self.h
+        position, velocity = (np.zeros((len(y), len(F) + len(P))) for _ in range(2))
+        position[:, F] = (self.modes.basis @ y[..., None])[..., 0]
+        velocity[:, F] = (self.modes.basis @ rate[..., None])[..., 0]
+        position[:, P] = _at(deviation, T)
+        slope = np.stack([deviation[..., 1], 2 * deviation[..., 2], 0 * deviation[..., 0]], axis=-1)
+        velocity[:, P] = _at(slope, T)
+        return Motion(position, velocity)
+
+
+def faster(given: Given, deviation: Array, speeds: Array) -> tuple[Given, Array]:
+    """Return what is given for 1 m/s at each of some speeds [m/s]."""
+    v, count = speeds[:, None], len(speeds)
+    force = np.broadcast_to(given.force, (count, *given.force.shape[-2:]))
+    ahead = np.broadcast_to(given.displacement, (count, 3))
+    return Given(v[..., None] * force, v * ahead), v[..., None] * deviation
+
+
+def slower(motion: Motion, speeds: Array) -> Motion:
+    """Return motions at some speeds [m/s] as they would be at 1 m/s."""
+    return Motion(motion.position / speeds[:, None], motion.velocity / speeds[:, None])
 
 
 def _at(polynomial: Array, t: Array) -> Array:
     """Return c_0 + c_1 t + c_2 t² for coefficients on the last axis and t of shape () or (S,)."""
     t = t.reshape(t.shape + (1,) * (polynomial.ndim - 1 - t.ndim)) if t.ndim else t
     return np.asarray(polynomial[..., 0] + t * (polynomial[..., 1] + t * polynomial[..., 2]))
-
-
-def _motion(
-    system: LinearSystem, found: Modes, deviation: Array, y: Array, rate: Array, t: Array
-) -> Motion:
-    size = len(system.moving) + len(system.given)
-    position, velocity = (np.zeros((len(y), size)) for _ in range(2))
-    F, P = system.moving, system.given
-    position[:, F] = (found.basis @ y[..., None])[..., 0]
-    velocity[:, F] = (found.basis @ rate[..., None])[..., 0]
-    position[:, P] = _at(deviation, t)
-    slope = np.stack([deviation[..., 1], 2 * deviation[..., 2], 0 * deviation[..., 0]], axis=-1)
-    velocity[:, P] = _at(slope, t)
-    return Motion(position, velocity)
-
-
-@dataclass(frozen=True, eq=False)
-class _UndampedRobot:
-    """Steps of modes that only meet in the contact force."""
-
-    step: ModalStep
-    shape: Array
-
-    @property
-    def softness(self) -> Array:
-        """What a unit force at the last node takes from the depth [m/N]."""
-        return np.asarray((self.shape * self.step.after * self.shape).sum(axis=-1))
-
-    def moved(
-        self, y: Array, rate: Array, force: Array, given: Array, later: Array
-    ) -> tuple[Array, Array]:
-        """Return modes after a step without the new force."""
-        return self.step.moved(y, rate, given - force[:, None] * self.shape, later)
-
-    def pushed(self, y: Array, rate: Array, force: Array) -> tuple[Array, Array]:
-        """Return modes with the new force, too."""
-        push = force[:, None] * self.shape
-        return y - self.step.after * push, rate - self.step.after_rate * push
-
-
-@dataclass(frozen=True, eq=False)
-class _DampedRobot:
-    """The same for modes that a damping couples."""
-
-    step: DenseStep
-    shape: Array
-
-    @property
-    def _push(self) -> Array:
-        return np.asarray((self.step.after @ self.shape[..., None])[..., 0])
-
-    @property
-    def softness(self) -> Array:
-        n = self.shape.shape[-1]
-        return np.asarray((self.shape * self._push[..., :n]).sum(axis=-1))
-
-    def moved(
-        self, y: Array, rate: Array, force: Array, given: Array, later: Array
-    ) -> tuple[Array, Array]:
-        n = self.shape.shape[-1]
-        x = np.hstack([y, rate])
-        x = self.step.moved(x, given - force[:, None] * self.shape, later)
-        return x[:, :n], x[:, n:]
-
-    def pushed(self, y: Array, rate: Array, force: Array) -> tuple[Array, Array]:
-        n = self.shape.shape[-1]
-        push = self._push * force[:, None]
-        return y - push[:, :n], rate - push[:, n:]
-
-
-def _robot_step(found: Modes, h: Array) -> _UndampedRobot | _DampedRobot:
-    if found.damping is None:
-        return _UndampedRobot(modal_step(found.squared_frequency, h[..., None]), found.shape)
-    n = found.shape.shape[-1]
-    top = np.hstack([np.zeros((n, n)), np.eye(n)])
-    squared = found.squared_frequency[..., None] * np.eye(n)
-    below = np.concatenate([-squared, -np.broadcast_to(found.damping, squared.shape)], axis=-1)
-    A = np.concatenate([np.broadcast_to(top, below.shape), below], axis=-2)
-    return _DampedRobot(dense_step(A, np.vstack([np.zeros((n, n)), np.eye(n)]), h), found.shape)
