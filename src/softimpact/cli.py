@@ -13,6 +13,7 @@ from typing import Annotated
 
 import typer
 
+from .console import accept_any_console
 from .interruption import INTERRUPTED, interruptible, report
 from .studio.analyze_command import analyze
 from .studio.design_command import design
@@ -62,6 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: default the process's own.
     """
+    accept_any_console()
     try:
         with interruptible():
             code = app(args=arguments, prog_name="softimpact", standalone_mode=False)
