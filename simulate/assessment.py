@@ -155,7 +155,7 @@ def bracket(
         InvalidValue: motors are free or a servo, and a rotor's inertia is unknown.
     """
     if lumped:
-        return {"free": None}, []
+        return {"free": motors}, []
     if isinstance(motors, Controller):
         return {"controller": motors}, []
     kind = motors.kind if motors else ("servo" if model.drives.has_gains else None)

@@ -31,7 +31,7 @@ class LawSolver:
     """
 
     law: LawAndSlope
-    softness: float
+    softness: float | Array
 
     def solve(self, pushed: Array, guess: Array | None = None) -> tuple[Array, Array]:
         """Return force [N] and depth [m] for depths p that there would be without the force.
@@ -57,7 +57,7 @@ class LawSolver:
         return self.law(depth)[0], depth
 
 
-def law_solver(law: Law, softness: float) -> LawSolver:
+def law_solver(law: Law, softness: float | Array) -> LawSolver:
     """Return the solver of a law between sides that give way by ``softness`` [m/N]."""
     return LawSolver(_power(law) if isinstance(law, PowerLaw) else _any(law), softness)
 

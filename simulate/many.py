@@ -18,17 +18,11 @@ from softimpact.symbolic.impact.motors import MotorLaw
 from softimpact.symbolic.robot.rigid import Array
 
 from .approach import Approach, Arrival, arrival_of
-from .exact_steps import (
-    DenseStep,
-    ModalStep,
-    body_system,
-    dense_step,
-    modal_step,
-    standing_compliance,
-)
+from .exact_steps import DenseStep, body_system, dense_step, standing_compliance
 from .history import HORIZON, PRESSED_UNTIL
 from .law_solver import LawSolver, law_solver
 from .linear import LinearSystem, Modes, given_motion, linear_system, modes
+from .robot_steps import robot_steps
 from .scene import Motion
 
 PHASE = 0.08
@@ -70,7 +64,7 @@ def many_peaks(
     what = motors or Motors("servo" if model.drives.has_gains else "free")
     v = np.atleast_1d(np.asarray(speeds, dtype=float))
     until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
-    found = _Found(len(v), horizon)
+    found = LargestForces(len(v), horizon)
     body = np.zeros((len(v), body_system(contact.region, contact.clamped)[0].shape[0]))
     force = np.zeros(len(v))
     motion = Motion(np.zeros((model.size, len(v))), np.zeros((model.size, len(v))))
@@ -83,7 +77,7 @@ def many_peaks(
     return ManyPeaks(found.peak, found.first_contact, found.pressing)
 
 
-class _Found:
+class LargestForces:
     """The largest forces of each impact so far."""
 
     def __init__(self, count: int, horizon: float) -> None:
@@ -159,12 +153,13 @@ class _Stage:
         self.h = (end - begin) / self.steps
         A, b, self.out = body_system(region, contact.clamped)
         self.body: DenseStep = dense_step(A, b, self.h)
-        self.robot = _robot_step(self.modes, self.h)
+        own = self.modes
+        self.robot = robot_steps(own.squared_frequency, own.shape, own.damping, self.h)
         softness = standing_compliance(region) + float(self.out @ self.body.after[:, 0])
         self.solver: LawSolver = law_solver(contact.law, softness + self.robot.softness)
         self.standing = standing_compliance(region)
 
-    def run(self, body: Array, force: Array, found: _Found) -> tuple[Motion, Array, Array]:
+    def run(self, body: Array, force: Array, found: LargestForces) -> tuple[Motion, Array, Array]:
         """Step through the stage; return motion, body and force at its end."""
         y, rate = self.start
         nothing = np.zeros((len(force), 1))
@@ -194,62 +189,3 @@ class _Stage:
             position[P] = (self.deviation @ [1.0, t, t * t]).T
             velocity[P] = (self.deviation @ [0.0, 1.0, 2 * t]).T
         return Motion(position, velocity)
-
-
-@dataclass(frozen=True, eq=False)
-class _UndampedRobot:
-    """Steps of modes that only meet in the contact force."""
-
-    step: ModalStep
-    shape: Array
-
-    @property
-    def softness(self) -> float:
-        """What a unit force at the last node takes from the depth [m/N]."""
-        return float(self.shape @ (self.step.after * self.shape))
-
-    def moved(
-        self, y: Array, rate: Array, force: Array, given: Array, later: Array
-    ) -> tuple[Array, Array]:
-        """Return modes after a step without the new force."""
-        return self.step.moved(y, rate, given - force[:, None] * self.shape, later)
-
-    def pushed(self, y: Array, rate: Array, force: Array) -> tuple[Array, Array]:
-        """Return modes with the new force, too."""
-        push = force[:, None] * self.shape
-        return y - self.step.after * push, rate - self.step.after_rate * push
-
-
-@dataclass(frozen=True, eq=False)
-class _DampedRobot:
-    """The same for modes that a damping couples."""
-
-    step: DenseStep
-    shape: Array
-
-    @property
-    def softness(self) -> float:
-        n = len(self.shape)
-        return float(self.shape @ self.step.after[:n] @ self.shape)
-
-    def moved(
-        self, y: Array, rate: Array, force: Array, given: Array, later: Array
-    ) -> tuple[Array, Array]:
-        n = len(self.shape)
-        x = np.hstack([y, rate])
-        x = self.step.moved(x, given - force[:, None] * self.shape, later)
-        return x[:, :n], x[:, n:]
-
-    def pushed(self, y: Array, rate: Array, force: Array) -> tuple[Array, Array]:
-        n = len(self.shape)
-        push = self.step.after @ self.shape
-        return y - force[:, None] * push[:n], rate - force[:, None] * push[n:]
-
-
-def _robot_step(found: Modes, h: float) -> _UndampedRobot | _DampedRobot:
-    if found.damping is None:
-        return _UndampedRobot(modal_step(found.squared_frequency, h), found.shape)
-    n = len(found.shape)
-    eye, zero = np.eye(n), np.zeros((n, n))
-    A = np.block([[zero, eye], [-np.diag(found.squared_frequency), -found.damping]])
-    return _DampedRobot(dense_step(A, np.vstack([zero, eye]), h), found.shape)

@@ -21,6 +21,9 @@ from .robot import BASE, Frame, Joint, Loop, Robot
 ROTOR_SET = "rotor_inertia:"
 """Prefix of the MJCF ``custom/numeric`` elements that hold named sets of rotor inertias."""
 
+SPEED_LIMIT = "speed_limit"
+"""Name of the one that holds the joints' largest speeds, for which MJCF has no place."""
+
 NAMELESS = "MuJoCo Model"
 """What MuJoCo calls a model without a name."""
 
@@ -32,10 +35,12 @@ def load_robot(model: str | Path, tip: str | None = None, *, floating: bool = Fa
     with a body is ``site:NAME``. The model's gravity is not kept, nor are damping and friction of
     joints, nor couplings between them (URDF ``mimic``, MJCF ``equality/joint``, tendons): weld
     such joints with ``chain_to`` or ``lock_joints``. Of MJCF's ``custom`` elements the text ``tip``
-    names the contact frame and the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor
-    inertias. MJCF ``equality/connect`` closes a loop: ``home`` is then the first keyframe (or the
-    model's reference configuration), and the custom text ``independent`` may name the joints whose
-    coordinates describe the closed chain, separated by spaces.
+    names the contact frame, the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor
+    inertias, and the numeric ``speed_limit`` the joints' largest speeds; the text ``rotors`` with the value ``stated`` says that joints without armature have
+    no rotor, or that rotors are bodies of their own. MJCF ``equality/connect`` closes a loop:
+    ``home`` is then the first keyframe (or the model's reference configuration), and the custom
+    text ``independent`` may name the joints whose coordinates describe the closed chain, separated
+    by spaces.
 
     Args:
         model: name of a built-in robot, or path of a file.
@@ -90,20 +95,22 @@ def _custom_texts(model: mujoco.MjModel) -> dict[str, str]:
     return texts
 
 
-def _rotor_inertia_sets(model: mujoco.MjModel, path: Path) -> dict[str, tuple[float, ...]]:
-    sets = {}
+def _values_of_joints(model: mujoco.MjModel, path: Path) -> dict[str, tuple[float, ...]]:
+    """MJCF ``custom/numeric`` elements with a value for each joint, by name."""
+    found = {}
     for i in range(model.nnumeric):
         name = model.numeric(i).name
-        if not name.startswith(ROTOR_SET):
+        if not name.startswith(ROTOR_SET) and name != SPEED_LIMIT:
             continue
         first, size = int(model.numeric_adr[i]), int(model.numeric_size[i])
         if size != model.njnt:
             raise ModelFileError(
                 str(path), f"numeric '{name}' has {size} values for {model.njnt} joints"
             )
-        values = model.numeric_data[first : first + size]
-        sets[name.removeprefix(ROTOR_SET)] = tuple(float(value) for value in values)
-    return sets
+        found[name] = tuple(float(value) for value in model.numeric_data[first : first + size])
+    if min(found.get(SPEED_LIMIT, (1.0,))) <= 0:
+        raise ModelFileError(str(path), f"numeric '{SPEED_LIMIT}' must be greater than 0")
+    return found
 
 
 class _RobotBuilder:
@@ -116,6 +123,7 @@ class _RobotBuilder:
         self.base_inertia = Inertia.zero()
         self.frames: dict[str, Frame] = {}
         self.actuated = _actuated_joints(model)
+        self.values = _values_of_joints(model, path)
 
     def robot(self, tip: str | None) -> Robot:
         """Walk the bodies, parents before children."""
@@ -132,7 +140,11 @@ class _RobotBuilder:
         ]
         name = self.model.names.split(b"\0")[0].decode()
         name = self.path.stem if name in ("", NAMELESS) else name
-        sets = _rotor_inertia_sets(self.model, self.path)
+        sets = {
+            key.removeprefix(ROTOR_SET): values
+            for key, values in self.values.items()
+            if key.startswith(ROTOR_SET)
+        }
         loops = tuple(self._loops(carriers))
         return Robot(
             name,
@@ -142,6 +154,7 @@ class _RobotBuilder:
             sets,
             loops,
             base_inertia=self.base_inertia,
+            rotors_stated=_custom_texts(self.model).get("rotors") == "stated",
         )
 
     def _loops(self, carriers: Mapping[int, tuple[int, Placement]]) -> Iterator[Loop]:
@@ -205,6 +218,10 @@ class _RobotBuilder:
                 stiffness=float(model.jnt_stiffness[joint]),
                 spring_reference=float(model.qpos_spring[address]),
                 actuated=not self.actuated or joint in self.actuated,
+                damping=float(np.ravel(model.dof_damping[model.jnt_dofadr[joint]])[0]),
+                friction=float(model.dof_frictionloss[model.jnt_dofadr[joint]]),
+                torque_limit=_torque_limit(model, joint),
+                speed_limit=self.values.get(SPEED_LIMIT, (math.inf,) * model.njnt)[joint],
             )
         )
         self.inertias.append(Inertia.zero())
@@ -218,6 +235,15 @@ class _RobotBuilder:
         name = str(self.model.site(site).name)
         is_taken = mujoco.mj_name2id(self.model, int(mujoco.mjtObj.mjOBJ_BODY), name) >= 0
         return f"site:{name}" if name and is_taken else name
+
+
+def _torque_limit(model: mujoco.MjModel, joint: int) -> float:
+    """Largest of what a joint's motors may exert together (``actuatorfrcrange``)."""
+    return (
+        float(abs(model.jnt_actfrcrange[joint]).max())
+        if model.jnt_actfrclimited[joint]
+        else math.inf
+    )
 
 
 def _actuated_joints(model: mujoco.MjModel) -> set[int]:
