@@ -82,8 +82,9 @@ from .loops.loops import (
     loop_tangent,
 )
 from .matrices import Matrix, count_flops
+from .robot.constraints import Coupling, Loop, Tendon
 from .robot.loading import load_robot
-from .robot.robot import Frame, Joint, JointKind, Loop, Robot
+from .robot.robot import Frame, Joint, JointKind, Robot
 from .robot.welding import chain_to, lock_joints
 
 __all__ = [
@@ -96,6 +97,7 @@ __all__ = [
     "ClosedChain",
     "Contact",
     "ContactMobility",
+    "Coupling",
     "Drives",
     "Eigen",
     "Ellipsoid",
@@ -125,6 +127,7 @@ __all__ = [
     "SingularDirection",
     "SingularLoop",
     "SoftImpactError",
+    "Tendon",
     "UnknownName",
     "UnsupportedModel",
     "WrongLength",
