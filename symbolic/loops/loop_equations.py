@@ -15,7 +15,7 @@ import casadi as ca
 from ..dynamics.equations_of_motion import potential_energy, stiffness_of_potential
 from ..dynamics.kinematics import motions, poses
 from ..matrices import Matrix, on_scalars
-from ..robot.constraints import Coupling
+from ..robot.constraints import Coupling, Loop
 from ..robot.joint_frames import customised
 from ..robot.rigid import Array
 from ..robot.robot import Robot
@@ -84,6 +84,7 @@ def _gaps(chain: ClosedChain, q: Matrix) -> Matrix:
         if isinstance(loop, Coupling):
             rows.append(ca.SX(loop.gap(lambda name: q[place[name]])))
             continue
+        assert isinstance(loop, Loop)  # others are refused before
         ends = []
         for name in (loop.first, loop.second):
             frame = robot.frame(name)

@@ -22,7 +22,7 @@ from ..matrices import Matrix
 from ..robot.constraints import Constraint, Loop
 from ..robot.rigid import Array
 from ..robot.robot import Robot
-from ..robot.welding import require_no_welds
+from ..robot.welding import require_modelled
 from .loop_equations import (
     ClosedChain,
     gap_acceleration,
@@ -55,12 +55,12 @@ def closed_chain(robot: Robot) -> ClosedChain:
     Raises:
         LoopCannotClose: no closed configuration was found near home.
         RedundantLoop: a loop's equations follow from the others'.
-        UnsupportedModel: a weld holds two of its bodies together.
+        UnsupportedModel: it has ball joints, or bodies that its file welds together.
         UnknownName: ``robot.independent`` names a joint that there is not.
         InvalidValue: it does not name one joint for each degree of freedom, or leaves out a motor.
         SingularLoop: the others do not follow from those it names.
     """
-    require_no_welds(robot)
+    require_modelled(robot)
     axes = tuple(_free_axes(robot, loop) for loop in robot.loops)
     chain = ClosedChain(robot, axes, np.zeros(robot.n), tuple(range(robot.n)), ())
     if not robot.loops:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from ..errors import ModelFileError, UnsupportedModel
-from .constraints import Constraint, Coupling, Loop, Weld
+from .constraints import Ball, Constraint, Coupling, Loop, Weld
 from .description import WORLD, Body, Description
 from .rigid import Inertia, Placement
 from .robot import BASE, Frame, Joint, Robot
@@ -53,7 +53,7 @@ class _Assembly:
         self._settle_free_bodies()
         for i, body in enumerate(self.bodies):
             self._add(i, body)
-        if not self.joints:
+        if not self.joints and not self._main_floats:
             raise ModelFileError(given.source, "has no joints")
         joints = tuple(
             replace(joint, inertia=inertia)
@@ -104,9 +104,8 @@ class _Assembly:
             elif self.base == "fixed":
                 raise UnsupportedModel(
                     self.description.source,
-                    f"joint '{body.free_joint}' is a free joint, so the robot floats; hold its "
-                    "base with --hold-base (hold_base=True) or free it with --floating "
-                    "(floating=True)",
+                    f"joint '{body.free_joint}' is a free joint; hold the robot's base "
+                    "by --hold-base or hold_base=True, or free it by --floating or floating=True",
                 )
         if beside:
             names = ", ".join(f"'{name}'" for name in beside)
@@ -160,7 +159,7 @@ class _Assembly:
         }
         names = {joint.name for joint in self.joints}
         for constraint in self.description.constraints:
-            if isinstance(constraint, Coupling):
+            if isinstance(constraint, Coupling | Ball):
                 if set(constraint.joints) <= names:
                     yield constraint
                 continue

@@ -31,6 +31,14 @@ class Weld:
 
 
 @dataclass(frozen=True)
+class Ball:
+    """Three hinges that stand for a ball joint; good for welding them, not for moving them."""
+
+    name: str
+    joints: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Coupling:
     """Joints tied by gears, belts or tendons: Σ aᵢ qᵢ = offset + p(Σ bⱼ qⱼ − reference).
 
@@ -94,8 +102,8 @@ class Coupling:
         )
 
 
-Constraint = Loop | Weld | Coupling
-"""An equation between a robot's joints."""
+Constraint = Loop | Coupling | Weld | Ball
+"""An equation between a robot's joints, or what no model of ours knows of them."""
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import importlib.util
 from dataclasses import replace
@@ -10,7 +11,13 @@ from pathlib import Path
 
 from softimpact.robots import built_in_robots
 
-from ..errors import InvalidValue, ModelFileError, UnknownName
+from ..errors import (
+    InvalidInertia,
+    InvalidValue,
+    ModelFileError,
+    UnknownName,
+    UnsupportedModel,
+)
 from .assembly import Base, assemble
 from .description import Description
 from .mjcf import read_mjcf
@@ -22,6 +29,9 @@ from .xml_file import parsed, root_tag, text_of
 
 SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".sdf")
 """What names of robot files end with; what is in them decides."""
+
+JOINTS_TRIED = 200
+"""Joints of a robot among which one is looked for whose chain has sound masses."""
 
 
 def load_robot(
@@ -39,7 +49,8 @@ def load_robot(
     coordinates describe the closed chain, separated by spaces.
 
     Inertias are judged where they count: over the joints on the way to the tip, each with all
-    that is welded to it (here if there is a tip, else by ``chain_to``).
+    that is welded to it (here if there is a tip, else by ``chain_to``; a robot no chain of which
+    can be is refused here).
 
     Args:
         model: name of a robot, or path of a file.
@@ -64,8 +75,24 @@ def load_robot(
     robot = replace(robot, tip=chosen, warnings=(*robot.warnings, *implausible(robot)))
     if robot.tip is not None:
         robot.frame(robot.tip)
-        require_sound_masses(chain_to(robot, robot.tip))
+        chain_to(robot, robot.tip)
+    elif not floating:
+        _require_a_sound_chain(robot)
     return robot
+
+
+def _require_a_sound_chain(robot: Robot) -> None:
+    """Raise InvalidInertia if no chain of a robot has masses that can be."""
+    try:
+        require_sound_masses(robot)
+    except InvalidInertia as found:
+        for i in range(min(robot.n, JOINTS_TRIED)):
+            name = next((f.name for f in robot.frames.values() if f.joint == i), None)
+            with contextlib.suppress(InvalidInertia, UnsupportedModel):
+                if name is not None:
+                    chain_to(robot, name)
+                    return
+        raise found from None
 
 
 def describe(path: Path) -> Description:

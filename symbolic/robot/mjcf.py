@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from ..errors import ModelFileError, UnknownName, UnsupportedModel
+from .constraints import Ball
 from .description import Body, Description
 from .mjcf_drives import Motors, motors_of
 from .mjcf_equalities import constraints_of
@@ -183,6 +184,7 @@ class _Reader:
         self.model, self.path, self.inertias, self.keys = model, path, inertias, keys
         self.motors: Motors = motors_of(model)
         self.ties = constraints_of(model, self.joint_name, self.site_name, self.body_name)
+        self.balls: list[Ball] = []
         self.warnings = [*warnings, *self.motors.warnings, *self.ties.warnings]
 
     def description(self) -> Description:
@@ -200,7 +202,7 @@ class _Reader:
             "" if name == NAMELESS else name,
             bodies,
             (*self._sites(), *self.ties.anchors),
-            self.ties.constraints,
+            (*self.ties.constraints, *self.balls),
             self.motors.tendons,
             texts.get("tip"),
             self._rotor_inertia_sets(),
@@ -248,10 +250,7 @@ class _Reader:
         if int(model.jnt_type[i]) != BALL:
             yield self._joint(i)
             return
-        self.warnings.append(
-            f"ball joint '{name}' counts as three hinges without motors, "
-            f"'{name}_x', '{name}_y' and '{name}_z'"
-        )
+        self.balls.append(Ball(name, tuple(f"{name}_{axis}" for axis, _ in EACH_AXIS)))
         dof = int(model.jnt_dofadr[i])
         if float(model.jnt_stiffness[i]):
             self.warnings.append(f"the spring of ball joint '{name}' does not count")

@@ -188,8 +188,8 @@ def _is_there(spec: mujoco.MjSpec, mesh: mujoco.MjsMesh) -> bool:
 
 
 def _words(body: mujoco.MjsBody, name: str, mesh: mujoco.MjsMesh | None) -> str:
-    file = f" (file '{mesh.file}' is not there)" if mesh is not None and mesh.file else ""
-    return f"body '{body.name}' takes its inertia from mesh '{name}'{file}"
+    file = f", file '{mesh.file}' is not there" if mesh is not None and mesh.file else ""
+    return f"body '{body.name}' takes its inertia from a mesh ('{name}'{file})"
 
 
 def _weighed(
@@ -204,8 +204,8 @@ def _weighed(
         why = " ".join(str(error).split())
     meshes = [(p, geom) for p, body in enumerate(bodies) for geom in body.geoms if geom.meshname]
     for place, geom in meshes:
-        words = f"body '{bodies[place].name}' takes its inertia from mesh '{geom.meshname}'"
-        missing[place].append(f"{words}, which MuJoCo does not read: {why}")
+        words = f"body '{bodies[place].name}' takes its inertia from a mesh ('{geom.meshname}'"
+        missing[place].append(f"{words}, which MuJoCo does not read: {why})")
         spec.delete(geom)
     for mesh in list(spec.meshes):
         spec.delete(mesh)

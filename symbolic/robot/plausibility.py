@@ -27,11 +27,11 @@ SAMPLES = 4
 NUMBERS_SAMPLED = 200
 """Joints times samples that are enough: a longer robot is looked at more seldom."""
 
-DENSITIES = (5.0, 30_000.0)
-"""Density [kg/m³] of the even ellipsoid with a body's inertia; osmium has 22,590, balsa 100."""
+DENSITIES = (1.0, 30_000.0)
+"""Density [kg/m³] of the even ellipsoid with a body's inertia; air has 1.2, osmium 22,590."""
 
-PLAIN_DEGREES = 40.0
-"""Limit of a hinge [rad] beyond which it must be in degrees."""
+PLAIN_DEGREES = (40.0, 3600.0)
+"""Limit of a hinge [rad] that must be in degrees; what is beyond is no limit at all."""
 
 
 def require_sound_masses(robot: Robot) -> None:
@@ -128,6 +128,14 @@ def implausible(robot: Robot) -> Iterator[str]:
         line = _doubt(joint.inertia)
         if line:
             yield f"body '{_body(robot, i)}' {line}"
+    odd = {_body(robot, i): _density(joint.inertia) for i, joint in enumerate(robot.joints)}
+    shown = [
+        f"'{body}' ({density:.2g} kg/m³)"
+        for body, density in odd.items()
+        if density is not None and not DENSITIES[0] <= density <= DENSITIES[1]
+    ]
+    if shown:
+        yield f"inertias of implausible density: {', '.join(shown)}"
     yield from _doubtful_limits(robot)
     empty = [_body(robot, i) for i, joint in enumerate(robot.joints) if not joint.inertia.mass]
     if empty:
@@ -143,7 +151,7 @@ def implausible(robot: Robot) -> Iterator[str]:
 def _doubtful_limits(robot: Robot) -> Iterator[str]:
     for joint in robot.joints:
         widest = max(abs(joint.lower), abs(joint.upper))
-        if joint.kind is JointKind.HINGE and PLAIN_DEGREES < widest < np.inf:
+        if joint.kind is JointKind.HINGE and PLAIN_DEGREES[0] < widest < PLAIN_DEGREES[1]:
             yield f"limits of joint '{joint.name}' look like degrees ({widest:g} rad)"
         if joint.lower == joint.upper:
             yield f"limits of joint '{joint.name}' leave it no room"
@@ -153,9 +161,7 @@ def _doubt(inertia: Inertia) -> str | None:
     """Say what no body can have, or no usual one."""
     if not inertia.mass > 0:
         return "has moments of inertia but no mass" if inertia.about_origin.any() else None
-    c = inertia.first_moment / inertia.mass
-    steiner = inertia.mass * (c @ c * np.eye(3) - np.outer(c, c))
-    moments = np.linalg.eigvalsh(inertia.about_origin - steiner)
+    moments = _moments(inertia)
     scale = max(moments[2], abs(inertia.about_origin).max() * 1e-3)
     if moments[0] < -ROUNDED * scale:
         return f"has a negative moment of inertia ({moments[0]:.3g} kg m²), as no body has"
@@ -163,13 +169,25 @@ def _doubt(inertia: Inertia) -> str | None:
     if excess > ROUNDED * scale:
         share = 100 * excess / moments[2]
         return f"has an inertia that violates the triangle inequality (by {share:.2g} %)"
+    return None
+
+
+def _moments(inertia: Inertia) -> Array:
+    """Principal moments about the centre of mass, ascending."""
+    c = inertia.first_moment / inertia.mass
+    steiner = inertia.mass * (c @ c * np.eye(3) - np.outer(c, c))
+    return np.asarray(np.linalg.eigvalsh(inertia.about_origin - steiner))
+
+
+def _density(inertia: Inertia) -> float | None:
+    """Density of the even ellipsoid with an inertia; None for a point, a rod, a plate or none."""
+    if not inertia.mass > 0:
+        return None
+    moments = _moments(inertia)
     squares = 2.5 * (moments.sum() - 2 * moments) / inertia.mass  # of the ellipsoid's half axes
     if squares.min() <= ROUNDED * squares.max():
-        return None  # a point, a rod or a plate
-    density = inertia.mass / (4 / 3 * np.pi * np.sqrt(squares.prod()))
-    if not DENSITIES[0] <= density <= DENSITIES[1]:
-        return f"has the inertia of a body of {density:.2g} kg/m³, which is implausible"
-    return None
+        return None
+    return float(inertia.mass / (4 / 3 * np.pi * np.sqrt(squares.prod())))
 
 
 def outside(joint: Joint, coordinate: float) -> bool:

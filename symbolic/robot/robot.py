@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import FrameNotFound, InvalidValue, UnknownName, WrongLength
 from ..matrices import Matrix
-from .constraints import Constraint, Coupling, Tendon
+from .constraints import Ball, Constraint, Coupling, Loop, Tendon
 from .rigid import Array, Inertia, Placement, rotation_about_z, three_numbers
 
 BASE = -1
@@ -215,7 +215,7 @@ class Robot:
 
     def moved_by(self, loop: Constraint) -> set[int]:
         """Indices of the joints that a coupling ties, or that part a loop's two frames."""
-        if isinstance(loop, Coupling):
+        if isinstance(loop, Coupling | Ball):
             return {self.joint_names.index(name) for name in loop.joints}
         first, second = self.frame(loop.first).joint, self.frame(loop.second).joint
         return set(self.ancestors(first)) ^ set(self.ancestors(second))
@@ -291,7 +291,7 @@ class Robot:
 
 
 def _described(loop: Constraint) -> str:
-    return str(loop) if isinstance(loop, Coupling) else f"{loop.name} {loop.first} {loop.second}"
+    return f"{loop.name} {loop.first} {loop.second}" if isinstance(loop, Loop) else str(loop)
 
 
 def vector_of(names: Sequence[str], field: str, values: ArrayLike) -> Array:

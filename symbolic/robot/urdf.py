@@ -36,8 +36,11 @@ READ = {
         "origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller",
         "calibration",
     },
-    "link": {"inertial", "visual", "collision"},
-    "robot": {"link", "joint", "material", "gazebo", "transmission"},
+    "link": {
+        "inertial", "visual", "collision", "contact", "collision_checking", "self_filter",
+        "self_collision_checking", "origin", "sensor", "surface", "kinematic", "gravity",
+    },
+    "robot": {"link", "joint", "material", "gazebo", "transmission", "sensor", "self_filter"},
     "dynamics": {"damping", "friction", "armature"},
 }  # fmt: skip
 """Elements (of dynamics: attributes) that are read, or that change no number of the robot."""
@@ -259,8 +262,10 @@ class _Reader:
                 continue
             leader = mimic.get("joint") or ""
             if leader not in joints or joints[leader].get("type") not in MOVING:
-                moving = [n for n, j in joints.items() if j.get("type") in MOVING]
-                raise UnknownName(f"joint that '{name}' mimics", leader, moving)
+                self.warnings.append(
+                    f"joint '{name}' mimics '{leader}', which does not move: it counts as its own"
+                )
+                continue
             leaders[name] = leader
             where = f"mimic of joint '{name}'"
             ratio = self._number(mimic, "multiplier", where, 1.0)
@@ -312,7 +317,7 @@ class _Reader:
             raise self._error(f"{where}: needs three numbers, not '{text}'")
         if not np.isfinite(numbers).all():
             kind = "NaN" if np.isnan(numbers).any() else "infinite"
-            raise self._error(f"{where}: a number is {kind}")
+            raise self._error(f"a number is {kind} ({where})")
         return numbers
 
     def _number(
@@ -329,7 +334,8 @@ class _Reader:
             return default
         value = self._float(text, f"{where}: {name}")
         if math.isnan(value) or (math.isinf(value) and not unbounded and name not in UNLIMITED):
-            raise self._error(f"{where}: {name} is {'NaN' if math.isnan(value) else 'infinite'}")
+            kind = "NaN" if math.isnan(value) else "infinite"
+            raise self._error(f"a number is {kind} ({where}: {name})")
         return value
 
     def _float(self, text: str, where: str) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InvalidValue, UnknownName, UnsupportedModel
-from .constraints import Constraint, Coupling, Tendon, Weld
+from .constraints import Ball, Constraint, Coupling, Tendon, Weld
 from .plausibility import outside, require_sound_masses
 from .rigid import Placement
 from .robot import BASE, Frame, Joint, Robot
@@ -93,7 +93,8 @@ def _left(loops: tuple[Constraint, ...], locked: Mapping[str, float]) -> Iterato
     """Yield what is left of constraints when some joints are welded."""
     for loop in loops:
         if not isinstance(loop, Coupling):
-            yield loop
+            if not (isinstance(loop, Ball) and set(loop.joints) <= set(locked)):
+                yield loop
             continue
         left = loop.with_locked(locked)
         if left.joints:
@@ -122,7 +123,7 @@ def chain_to(robot: Robot, frame: str, rest: ArrayLike | None = None) -> Robot:
 
     Raises:
         InvalidInertia: what the chain moves has no mass, an impossible one, or an unknown one.
-        UnsupportedModel: its file welds bodies of the chain together.
+        UnsupportedModel: a ball joint is part of the chain, or its file welds bodies of it.
     """
     path, loops = _with_loops(robot, set(robot.ancestors(robot.frame(frame).joint)))
     values = np.zeros(robot.n) if rest is None else robot.vector("rest", rest)
@@ -135,16 +136,19 @@ def chain_to(robot: Robot, frame: str, rest: ArrayLike | None = None) -> Robot:
         loops=tuple(loop for loop in welded.loops if loop.name in kept),
         warnings=(*robot.warnings, *_welded_outside(robot, locked)),
     )
-    require_no_welds(chain)
+    require_modelled(chain)
     require_sound_masses(chain)
     return chain
 
 
-def require_no_welds(robot: Robot) -> None:
-    """Raise UnsupportedModel if a file welds two bodies together that joints move."""
+def require_modelled(robot: Robot) -> None:
+    """Raise UnsupportedModel for a ball joint that moves, or bodies that move and are welded."""
     for loop in robot.loops:
         if isinstance(loop, Weld):
-            reason = f"equality weld '{loop.name}' holds what joints move; use connect"
+            reason = f"equality weld '{loop.name}' holds what joints move; close loops with connect"
+            raise UnsupportedModel(robot.source or robot.name, reason)
+        if isinstance(loop, Ball):
+            reason = f"joint '{loop.name}' is a ball joint; write it as three hinges"
             raise UnsupportedModel(robot.source or robot.name, reason)
 
 
