@@ -87,11 +87,18 @@ def generate(
 
     from .output import print_json
     from .pose_table import pose_table
-    from .situation import TypedDrives, drives_of, gravity_of, robot_to_tip, whole_robot
+    from .situation import (
+        TypedArm,
+        TypedDrives,
+        drives_of,
+        gravity_of,
+        loaded_arm,
+        whole_robot,
+    )
     from .values import one_of
 
     number: Real = one_of("number type", real, Real)
-    robot = whole_robot(model, tip) if floating else robot_to_tip(model, tip)
+    robot = whole_robot(model, tip) if floating else loaded_arm(TypedArm(model, tip)).robot
     given = TypedDrives(joint_stiffness, rotor_inertia, position_gain, None, gear_ratio)
     manifest = generate_package(
         robot,

@@ -77,7 +77,7 @@ def _figures(study: Study, candidate: Candidate, fidelity: Fidelity) -> PoseFigu
         m_a=figures.m_a,
         giaf=figures.giaf,
         directional_giaf=figures.directional_giaf,
-        peak_force=history.peak("first_contact"),
+        peak_force=history.first_contact,
     )
 
 

@@ -88,4 +88,4 @@ def along_self_motion(
 def peak_force(study: Study, model: ImpactModel, q: Array) -> float:
     """Return the peak of the first contact with the linearised robot [N]."""
     approach = Approach(q, study.direction, study.speed)
-    return simulate_impact(model, approach, study.contact, "linearised").first_contact
+    return simulate_impact(model, approach, study.contact, "linearised", horizon=None).first_contact

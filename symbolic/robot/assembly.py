@@ -77,6 +77,7 @@ class _Assembly:
             self.base_inertia,
             tendons=given.tendons,
             source=given.source,
+            rotors_stated=given.rotors_stated,
             warnings=tuple(dict.fromkeys(self.warnings)),
         )
 

@@ -56,6 +56,7 @@ class Description:
         rotor_inertia_sets: reflected rotor inertias by source, one entry a joint.
         home: coordinate of each joint, by name, at which the loops are closed or nearly so.
         independent: joints that describe a closed chain.
+        rotors_stated: whether the file says all there is of rotors.
         warnings: what was ignored or approximated, a line each.
     """
 
@@ -69,4 +70,5 @@ class Description:
     rotor_inertia_sets: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     home: Mapping[str, float] | None = None
     independent: tuple[str, ...] = ()
+    rotors_stated: bool = False
     warnings: tuple[str, ...] = ()

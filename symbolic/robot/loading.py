@@ -35,15 +35,22 @@ JOINTS_TRIED = 200
 
 
 def load_robot(
-    model: str | Path, tip: str | None = None, *, floating: bool = False, hold_base: bool = False
+    model: str | Path,
+    tip: str | None = None,
+    *,
+    floating: bool = False,
+    hold_base: bool = False,
+    toward: str | None = None,
 ) -> Robot:
     """Read a built-in robot, one of ``robot_descriptions``, or one from a URDF or MJCF file.
 
     What a file holds is told by its content. Every body and every site becomes a frame; a site
     that shares its name with a body is ``site:NAME``, and a body without a name goes by its
     number. The model's gravity is not kept. What changes the robot and is not read stands in the
-    robot's ``warnings``. Of MJCF's ``custom`` elements the text ``tip`` names the contact frame
-    and the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor inertias. MJCF
+    robot's ``warnings``. Of MJCF's ``custom`` elements the text ``tip`` names the contact frame,
+    the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor inertias, and the numeric
+    ``speed_limit`` the joints' largest speeds; the text ``rotors`` with the value ``stated`` says
+    that joints without armature have no rotor, or that rotors are bodies of their own. MJCF
     ``equality/connect`` closes a loop: ``home`` is then the first keyframe (or the model's
     reference configuration), and the custom text ``independent`` may name the joints whose
     coordinates describe the closed chain, separated by spaces.
@@ -58,6 +65,8 @@ def load_robot(
         floating: drop a free joint at the root; the root's frame is the base then.
             ``floating_robot`` frees the base of any robot, however its file attaches it.
         hold_base: hold a root that is free where the file has it.
+        toward: a frame of the tree that is the robot, where a file has several and the tip does
+            not tell; default the one with the most joints.
 
     Raises:
         ModelFileError: the file is missing, not readable, or holds no joint.
@@ -71,7 +80,7 @@ def load_robot(
     base: Base = "free" if floating else "held" if hold_base else "fixed"
     description = describe(model_path(model))
     chosen = tip or description.tip
-    robot = assemble(description, chosen, base)
+    robot = assemble(description, toward or chosen, base)
     robot = replace(robot, tip=chosen, warnings=(*robot.warnings, *implausible(robot)))
     if robot.tip is not None:
         robot.frame(robot.tip)

@@ -24,6 +24,9 @@ from .robot import BASE, Frame, Joint, JointKind
 ROTOR_SET = "rotor_inertia:"
 """Prefix of the ``custom/numeric`` elements that hold named sets of rotor inertias."""
 
+SPEED_LIMIT = "speed_limit"
+"""Name of the one that holds the joints' largest speeds, for which MJCF has no place."""
+
 NAMELESS = "MuJoCo Model"
 """What MuJoCo calls a model without a name."""
 
@@ -185,6 +188,10 @@ class _Reader:
         self.motors: Motors = motors_of(model)
         self.ties = constraints_of(model, self.joint_name, self.site_name, self.body_name)
         self.balls: list[Ball] = []
+        self.values = self._values_of_joints()
+        movable = [j for j in range(model.njnt) if int(model.jnt_type[j]) != FREE]
+        speeds = self.values.get(SPEED_LIMIT, (math.inf,) * len(movable))
+        self.speed_limits = dict(zip(movable, speeds, strict=True))
         self.warnings = [*warnings, *self.motors.warnings, *self.ties.warnings]
 
     def description(self) -> Description:
@@ -205,9 +212,14 @@ class _Reader:
             (*self.ties.constraints, *self.balls),
             self.motors.tendons,
             texts.get("tip"),
-            self._rotor_inertia_sets(),
+            {
+                key.removeprefix(ROTOR_SET): values
+                for key, values in self.values.items()
+                if key.startswith(ROTOR_SET)
+            },
             self._home(),
             self._independent(texts.get("independent", ""), names),
+            texts.get("rotors") == "stated",
             tuple(self.warnings),
         )
 
@@ -307,6 +319,7 @@ class _Reader:
             position_gain=drive.position_gain,
             velocity_gain=drive.velocity_gain,
             torque_limit=drive.torque_limit,
+            speed_limit=self.speed_limits[i],
         )
 
     def _sites(self) -> Iterator[Frame]:
@@ -332,20 +345,23 @@ class _Reader:
                 raise UnknownName("joint (custom text 'independent')", name, joints)
         return names
 
-    def _rotor_inertia_sets(self) -> dict[str, tuple[float, ...]]:
-        model, sets = self.model, {}
+    def _values_of_joints(self) -> dict[str, tuple[float, ...]]:
+        """``custom/numeric`` elements with a value for each joint, by name."""
+        model, found = self.model, {}
+        joints = int((model.jnt_type != FREE).sum())
         for i in range(model.nnumeric):
             name = model.numeric(i).name
-            if not name.startswith(ROTOR_SET):
+            if not name.startswith(ROTOR_SET) and name != SPEED_LIMIT:
                 continue
             first, size = int(model.numeric_adr[i]), int(model.numeric_size[i])
-            if size != model.njnt:
+            if size != joints:
                 raise ModelFileError(
-                    str(self.path), f"numeric '{name}' has {size} values for {model.njnt} joints"
+                    str(self.path), f"numeric '{name}' has {size} values for {joints} joints"
                 )
-            values = model.numeric_data[first : first + size]
-            sets[name.removeprefix(ROTOR_SET)] = tuple(float(value) for value in values)
-        return sets
+            found[name] = tuple(float(x) for x in model.numeric_data[first : first + size])
+        if min(found.get(SPEED_LIMIT, (1.0,))) <= 0:
+            raise ModelFileError(str(self.path), f"numeric '{SPEED_LIMIT}' must be greater than 0")
+        return found
 
 
 UNUSED_OF_JOINTS = {

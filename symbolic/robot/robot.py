@@ -120,6 +120,8 @@ class Robot:
         independent: names of the joints whose coordinates describe a closed chain; empty leaves
             the choice to ``closed_chain``.
         base_inertia: of what is fixed to the base, in its frame; felt by floating robots only.
+        rotors_stated: whether the file says all there is of rotors; else a motor's joint without
+            armature has a rotor of which nothing is known.
         payload: that it holds; with symbols in it, expressions need a q of symbols too.
         tendons: that tie inertias or springs to several joints at once.
         source: the file it was read from, for messages; empty where there is none.
@@ -138,6 +140,7 @@ class Robot:
     payload: PointMass | None = None
     tendons: tuple[Tendon, ...] = ()
     source: str = ""
+    rotors_stated: bool = False
     warnings: tuple[str, ...] = ()
 
     @property
@@ -154,6 +157,31 @@ class Robot:
     def armature(self) -> Array:
         """Reflected rotor inertias, shape (n,)."""
         return np.array([joint.armature for joint in self.joints])
+
+    @property
+    def damping(self) -> Array:
+        """Damping of the joints, shape (n,)."""
+        return np.array([joint.damping for joint in self.joints])
+
+    @property
+    def position_gains(self) -> Array:
+        """K_p of the file's servos, shape (n,)."""
+        return np.array([joint.position_gain for joint in self.joints])
+
+    @property
+    def velocity_gains(self) -> Array:
+        """K_d of the file's servos, shape (n,)."""
+        return np.array([joint.velocity_gain for joint in self.joints])
+
+    @property
+    def torque_limits(self) -> Array:
+        """Largest torques of the motors, shape (n,); inf where unknown."""
+        return np.array([joint.torque_limit for joint in self.joints])
+
+    @property
+    def speed_limits(self) -> Array:
+        """Largest speeds of the joints, shape (n,); inf where unknown."""
+        return np.array([joint.speed_limit for joint in self.joints])
 
     @property
     def limits(self) -> tuple[Array, Array]:
@@ -272,6 +300,7 @@ class Robot:
                 joint.spring_reference,
                 joint.lower,
                 joint.upper,
+                joint.damping,
             ]
             head = f"{joint.name} {joint.kind.value} {joint.parent} {joint.actuated}"
             text.update(f"{head} {_in_words(numbers)}\n".encode())

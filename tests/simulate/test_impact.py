@@ -52,13 +52,13 @@ def two_peaks() -> ImpactHistory:
 
 
 def test_the_two_definitions_of_the_peak_part(two_peaks: ImpactHistory) -> None:
-    first, highest = two_peaks.peak("first_peak"), two_peaks.peak("first_contact")
+    first, highest = two_peaks.force_of("first_peak"), two_peaks.force_of("first_contact")
     assert first < 0.8 * highest
     assert two_peaks.time_of_first_peak < two_peaks.time_of_first_contact_peak
     assert two_peaks.separation is not None
     assert two_peaks.time_of_first_contact_peak < two_peaks.separation < two_peaks.time[-1]
     with pytest.raises(UnknownName, match="first_contact, first_peak"):
-        two_peaks.peak("mean")  # type: ignore[arg-type]
+        two_peaks.force_of("mean")  # type: ignore[arg-type]
 
 
 def test_peaks_lie_on_the_curve(two_peaks: ImpactHistory) -> None:
@@ -85,7 +85,7 @@ def test_peaks_do_not_depend_on_the_time_grid(arm: ImpactModel) -> None:
     ended = simulate_impact(arm, AHEAD, HEAD)
     assert ended.separation is not None
     for duration in (0.0331, 0.071):
-        other = simulate_impact(arm, AHEAD, HEAD, duration=duration)
+        other = simulate_impact(arm, AHEAD, HEAD, horizon=duration)
         assert other.time[-1] == pytest.approx(duration, rel=1e-12)
         assert other.first_contact == pytest.approx(ended.first_contact, rel=1e-8)
         assert other.time_of_first_peak == pytest.approx(ended.time_of_first_peak, rel=1e-6)
@@ -94,11 +94,11 @@ def test_peaks_do_not_depend_on_the_time_grid(arm: ImpactModel) -> None:
 
 def test_a_short_simulation_says_what_it_has_seen(arm: ImpactModel) -> None:
     whole = simulate_impact(arm, AHEAD, HEAD)
-    short = simulate_impact(arm, AHEAD, HEAD, duration=1.1 * whole.time_of_first_contact_peak)
+    short = simulate_impact(arm, AHEAD, HEAD, horizon=1.1 * whole.time_of_first_contact_peak)
     assert short.separation is None
     assert short.first_contact == pytest.approx(whole.first_contact, rel=1e-8)
     with pytest.raises(InvalidValue, match="before the force has reached its first peak"):
-        simulate_impact(arm, AHEAD, HEAD, duration=0.5 * whole.time_of_first_peak)
+        simulate_impact(arm, AHEAD, HEAD, horizon=0.5 * whole.time_of_first_peak)
 
 
 def test_a_second_rise_cut_short_counts_as_far_as_it_went(two_peaks: ImpactHistory) -> None:
@@ -106,7 +106,7 @@ def test_a_second_rise_cut_short_counts_as_far_as_it_went(two_peaks: ImpactHisto
     model = impact_model(robot, "P", drives_=drives(robot, computed_torque_gain=6050.0))
     approach = Approach(np.zeros(4), np.array([0.0, 1.0, 0.0]), 1.0, np.array([1.0, 0, 0, 0]))
     until = 0.97 * two_peaks.time_of_first_contact_peak
-    cut = simulate_impact(model, approach, HEAD, duration=until)
+    cut = simulate_impact(model, approach, HEAD, horizon=until)
     assert cut.first_peak == pytest.approx(two_peaks.first_peak, rel=1e-8)
     assert cut.first_contact == cut.force[-1]
     assert cut.first_peak < cut.first_contact < two_peaks.first_contact
