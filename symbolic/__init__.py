@@ -78,6 +78,7 @@ from .loops.closure import (
     configuration_at_rest,
     require_closed_at,
 )
+from .loops.couplings import own_joints, whole_configuration
 from .loops.loop_equations import ClosedChain
 from .loops.loops import (
     closed_chain,
@@ -207,6 +208,7 @@ __all__ = [
     "mass_matrix",
     "motor_angles_at_rest",
     "moving_mass",
+    "own_joints",
     "potential_energy",
     "reduce_to_two_masses",
     "reflected_mass",
@@ -217,5 +219,6 @@ __all__ = [
     "symmetric_eigen",
     "two_body",
     "unit_direction",
+    "whole_configuration",
     "with_load",
 ]
