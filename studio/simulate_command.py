@@ -104,6 +104,7 @@ def simulate(
     tip: o.Tip = None,
     end: o.End = None,
     lock: o.Lock = None,
+    hold_base: o.HoldBase = False,
     payload: o.Payload = None,
     tool: o.Tool = None,
     fidelity: o.Fidelity = "linearised",
@@ -150,7 +151,7 @@ def simulate(
         torque_limit,
         servo=motors == "servo",
     )
-    arm = TypedArm(model, tip, end, lock, payload, tool)
+    arm = TypedArm(model, tip, end, lock, payload, tool, hold_base)
     where = Typed(arm, q, direction, given, gravity, motor_angles)
     how = TypedImpact(
         body=TypedBody(region, body, cover, clamped),
