@@ -105,8 +105,8 @@ def _scene(
 ) -> Scene:
     if _is_lumped(fidelity):
         if motors != Motors("free") and not (isinstance(motors, Motors) and model.drives.has_gains):
-            reason = "needs motors: a chain, or the linearised or full model"
-            raise InvalidValue("motors", reason)
+            field = "controller" if isinstance(motors, Controller) else "motors"
+            raise InvalidValue(field, "needs motors: a chain, or the linearised or full model")
         build = one_mass_scene if fidelity == "one_mass" else two_mass_scene
         return build(model, arrival, contact, tolerance)
     if isinstance(motors, Controller):

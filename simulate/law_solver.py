@@ -57,9 +57,21 @@ class LawSolver:
         return self.law(depth)[0], depth
 
 
-def law_solver(law: Law, softness: float | Array) -> LawSolver:
-    """Return the solver of a law between sides that give way by ``softness`` [m/N]."""
-    return LawSolver(_power(law) if isinstance(law, PowerLaw) else _any(law), softness)
+def law_solver(law: Law, softness: float | Array, scale: float | Array = 1.0) -> LawSolver:
+    """Return the solver of a law between sides that give way by ``softness`` [m/N].
+
+    Args:
+        law: of contact.
+        softness: one number, or one for each impact.
+        scale: factor on the law's force, likewise.
+    """
+    plain = _power(law) if isinstance(law, PowerLaw) else _any(law)
+
+    def scaled(depth: Array) -> tuple[Array, Array]:
+        force, slope = plain(depth)
+        return scale * force, scale * slope
+
+    return LawSolver(scaled, softness)
 
 
 def _power(law: PowerLaw) -> LawAndSlope:

@@ -20,6 +20,7 @@ from softimpact.simulate import (
     assess_impact,
 )
 from softimpact.simulate.controller import Reference
+from softimpact.simulate.tolerances import Tolerances
 from softimpact.symbolic import Contact, InvalidValue, body_region
 from softimpact.symbolic.body.body_file import load_body, load_cover
 from softimpact.symbolic.robot.rigid import Array
@@ -52,6 +53,7 @@ class TypedImpact:
     motors: TypedMotors = NOTHING_SAID
     horizon: float | None = None
     safe_speed: bool = False
+    band: bool = False
     order: int = 3
     pid: str | None = None
     reference: str | None = None
@@ -92,6 +94,7 @@ def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
             payload=scene.payload,
             order=how.order,
             safe_speed=how.safe_speed,
+            tolerances=Tolerances() if how.band else None,
         )
     return _record(scene, contact, how, speed, horizon, found, definition)
 
@@ -163,6 +166,9 @@ def _record(
         "iso": found.two_body,
         "joint_speed_limit_exceeded": found.joint_speed_limit_exceeded,
         "torque_limit_exceeded": found.torque_limit_exceeded,
+        "band": None if found.band is None else found.band.peak,
+        "bands": found.band,
+        "tolerances": Tolerances() if found.band else None,
         "safe_speed": found.safe_speed,
         "safe_speeds": found.safe_speeds,
         "warnings": [*scene.warnings, *found.warnings, *_cautions(found)],
@@ -263,6 +269,9 @@ def print_impact(result: Mapping[str, Any]) -> None:
         ("  its speed for the transient limit", result["iso"]["safe_speed"], "m/s"),
         ("largest safe speed (--safe-speed)", result["safe_speed"], "m/s"),
     ]
+    if result["band"] is not None:
+        low, high = (f"{getattr(result['band'], end):.4g}" for end in ("low", "high"))
+        rows.insert(2, ("  95 of 100 cases lie within", f"{low} to {high}", "N"))
     if bracket is None:
         rows = [row for row in rows if "if " not in row[0][:5]]
     print_table(

@@ -78,6 +78,12 @@ Horizon = Annotated[
     float | None,
     typer.Option(metavar="S", help="How long contacts count (s); default 0.5."),
 ]
+Band = Annotated[
+    bool,
+    typer.Option(
+        "--band", help="Where 95 of 100 cases lie, for what is not known exactly (tolerances)."
+    ),
+]
 SafeSpeed = Annotated[
     bool,
     typer.Option("--safe-speed", help="Find the largest speed up to which every limit is kept."),
@@ -108,6 +114,7 @@ def simulate(
     pid: Pid = None,
     reference: Reference = None,
     safe_speed: SafeSpeed = False,
+    band: Band = False,
     joint_stiffness: o.JointStiffness = None,
     rotor_inertia: o.RotorInertia = None,
     position_gain: o.PositionGain = None,
@@ -134,6 +141,7 @@ def simulate(
         gear_ratio,
         damping_gain,
         torque_limit,
+        servo=motors == "servo",
     )
     arm = TypedArm(model, tip, end, lock, payload, tool)
     where = Typed(arm, q, direction, given, gravity, motor_angles)
@@ -146,6 +154,7 @@ def simulate(
         motors=TypedMotors(motors, reaction_time, stopping_time),
         horizon=horizon,
         safe_speed=safe_speed,
+        band=band,
         order=order,
         pid=pid,
         reference=reference,

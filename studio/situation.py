@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,7 +34,10 @@ from . import values
 
 @dataclass(frozen=True)
 class TypedDrives:
-    """The options that make up drives, as typed; see ``options``."""
+    """The options that make up drives, as typed; see ``options``.
+
+    With ``servo`` they are to have gains: the file's where none are given.
+    """
 
     joint_stiffness: str | None = None
     rotor_inertia: str | None = None
@@ -43,6 +46,13 @@ class TypedDrives:
     gear_ratio: str | None = None
     damping_gain: str | None = None
     torque_limit: str | None = None
+    servo: bool = False
+
+    @property
+    def has_gains(self) -> bool:
+        """Whether gains were given."""
+        gains = (self.position_gain, self.computed_torque_gain, self.damping_gain)
+        return any(gain is not None for gain in gains)
 
 
 @dataclass(frozen=True)
@@ -226,6 +236,8 @@ def drives_of(robot: Robot, typed: TypedDrives) -> Drives:
         return None if text is None else values.per_joint(field, text)
 
     rotors = typed.rotor_inertia
+    if typed.servo and not typed.has_gains:
+        return _file_servo(robot, typed)
     return drives(
         robot,
         joint_stiffness=given("joint_stiffness", typed.joint_stiffness),
@@ -236,6 +248,14 @@ def drives_of(robot: Robot, typed: TypedDrives) -> Drives:
         damping_gain=given("damping_gain", typed.damping_gain),
         torque_limit=given("torque_limit", typed.torque_limit),
     )
+
+
+def _file_servo(robot: Robot, typed: TypedDrives) -> Drives:
+    """Return drives with the gains of the file's servos."""
+    if not robot.position_gains.any():
+        raise InvalidValue("motors", "'servo' needs position_gain: the file has no servo either")
+    position, damping = (str(x.tolist()) for x in (robot.position_gains, robot.velocity_gains))
+    return drives_of(robot, replace(typed, position_gain=position, damping_gain=damping))
 
 
 def gravity_of(text: str | None) -> tuple[float, float, float]:

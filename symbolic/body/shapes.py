@@ -18,6 +18,9 @@ from typing import Protocol
 from ..errors import InvalidValue
 from .pads import HARDEST, Pad
 
+ENDS = 1.5
+"""How much higher than along its middle the pressure may be at the rounded ends of an edge."""
+
 CONSTRAINT = 4 / 3
 """E*/E = 1/(1 − ν²) of rubber, ν = 1/2."""
 
@@ -56,11 +59,11 @@ class Sphere:
 
 @dataclass(frozen=True)
 class Edge:
-    """A rounded edge that lies along the skin.
+    """A rounded edge that lies along the skin; its ends are balls of its radius.
 
     Attributes:
         radius: of its rounding [m].
-        length: that touches [m].
+        length: of the straight part that touches [m].
     """
 
     radius: float
@@ -72,15 +75,19 @@ class Edge:
     def pressure(self, force: float, pad: Pad = HARDEST) -> float:
         """Return a bound on the pressure [Pa] under a force [N], with f the force per length.
 
-        p_H = √(f E*/(πR)); p_T = 15f/(16a) with a⁵ = 15 R t³f/(2G). Never more than under a ball of
-        the same radius.
+        p_H = √(f E*/(πR)); p_T = 15f/(16a) with a⁵ = 15 R t³f/(2G); ``ENDS`` times as much at the
+        ends, but never more than under a ball of the same radius.
         """
-        E, R, t = pad.modulus, self.radius, pad.thickness
-        f = force / self.length
-        p_H = math.sqrt(f * CONSTRAINT * E / (math.pi * R))
-        half_width = (7.5 * R * t**3 * f / (E / 3)) ** 0.2
-        p_T = 15 * f / (16 * half_width) if force else 0.0
-        return min(p_H + p_T, Sphere(R).pressure(force, pad))
+        line = _under_a_line(force / self.length, self.radius, pad)
+        return min(ENDS * line, Sphere(self.radius).pressure(force, pad))
+
+
+def _under_a_line(f: float, R: float, pad: Pad) -> float:
+    """Return a bound on the pressure [Pa] under an edge without ends and f [N/m]."""
+    E, t = pad.modulus, pad.thickness
+    p_H = math.sqrt(f * CONSTRAINT * E / (math.pi * R))
+    half_width = (7.5 * R * t**3 * f / (E / 3)) ** 0.2
+    return p_H + (15 * f / (16 * half_width) if f else 0.0)
 
 
 @dataclass(frozen=True)
@@ -101,11 +108,12 @@ class Flat:
     def pressure(self, force: float, pad: Pad = HARDEST) -> float:
         """Return a bound on the pressure [Pa] under a force [N].
 
-        In the middle at most twice the mean (a round face on a thin layer), and at the rim at most
-        that of an edge that carries all; its length is that of a round face, the shortest.
+        In the middle at most twice the mean (a round face on a thin layer), at the rim at most that
+        of an edge that carries all; it is as long as that of a round face, the shortest. The sum is
+        up to five times too much, but holds for square faces, too.
         """
-        rim = Edge(self.rim_radius, 2 * math.sqrt(math.pi * self.area))
-        return 2 * force / self.area + rim.pressure(force, pad)
+        rim = 2 * math.sqrt(math.pi * self.area)
+        return 2 * force / self.area + _under_a_line(force / rim, self.rim_radius, pad)
 
 
 def force_at_pressure(shape: Shape, pressure: float, pad: Pad = HARDEST) -> float:

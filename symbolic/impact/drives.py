@@ -113,10 +113,14 @@ def drives(
         computed_torque_gain,
         ca.DM(np.where(robot.actuated, damping, 0.0)),
         limits,
-        tuple(
-            bool(b) for b in (rotors > 0) | (rotor_inertia is not None) | ~np.array(robot.actuated)
-        ),
+        _known(robot, rotors, rotor_inertia is not None),
     )
+
+
+def _known(robot: Robot, rotors: Array, given: bool) -> tuple[bool, ...]:
+    """Return whether each joint's rotor inertia is known: stated, or there is no motor."""
+    known = (rotors > 0) | given | robot.rotors_stated | ~np.array(robot.actuated)
+    return tuple(bool(is_known) for is_known in known)
 
 
 def _rotors(robot: Robot, rotor_inertia: PerJoint | None, gear_ratio: PerJoint | None) -> Array:

@@ -36,10 +36,11 @@ def load_robot(model: str | Path, tip: str | None = None, *, floating: bool = Fa
     joints, nor couplings between them (URDF ``mimic``, MJCF ``equality/joint``, tendons): weld
     such joints with ``chain_to`` or ``lock_joints``. Of MJCF's ``custom`` elements the text ``tip``
     names the contact frame, the numerics ``rotor_inertia:NAME`` hold sets of reflected rotor
-    inertias, and the numeric ``speed_limit`` the joints' largest speeds. MJCF ``equality/connect``
-    closes a loop: ``home`` is then the first keyframe (or the model's reference configuration), and
-    the custom text ``independent`` may name the joints whose coordinates describe the closed chain,
-    separated by spaces.
+    inertias, and the numeric ``speed_limit`` the joints' largest speeds; the text ``rotors`` with
+    the value ``stated`` says that joints without armature have no rotor, or that rotors are bodies
+    of their own. MJCF ``equality/connect`` closes a loop: ``home`` is then the first keyframe (or
+    the model's reference configuration), and the custom text ``independent`` may name the joints
+    whose coordinates describe the closed chain, separated by spaces.
 
     Args:
         model: name of a built-in robot, or path of a file.
@@ -153,6 +154,7 @@ class _RobotBuilder:
             sets,
             loops,
             base_inertia=self.base_inertia,
+            rotors_stated=_custom_texts(self.model).get("rotors") == "stated",
         )
 
     def _loops(self, carriers: Mapping[int, tuple[int, Placement]]) -> Iterator[Loop]:
@@ -216,6 +218,8 @@ class _RobotBuilder:
                 stiffness=float(model.jnt_stiffness[joint]),
                 spring_reference=float(model.qpos_spring[address]),
                 actuated=not self.actuated or joint in self.actuated,
+                damping=float(np.ravel(model.dof_damping[model.jnt_dofadr[joint]])[0]),
+                friction=float(model.dof_frictionloss[model.jnt_dofadr[joint]]),
                 torque_limit=_torque_limit(model, joint),
                 speed_limit=self.values.get(SPEED_LIMIT, (math.inf,) * model.njnt)[joint],
             )

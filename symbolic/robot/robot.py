@@ -43,12 +43,12 @@ class Joint:
         stiffness: of a spring in parallel with the joint [N·m/rad, N/m].
         spring_reference: coordinate at which that spring is unloaded.
         actuated: whether a motor drives the joint; passive joints have none.
-        damping: of the joint [N·m·s/rad, N·s/m].
+        damping: of a damper in parallel with the joint [N·m·s/rad, N·s/m].
         friction: dry friction of the joint [N·m, N].
-        position_gain: K_p of a position servo that the file has on the joint [N·m/rad, N/m].
-        velocity_gain: K_d of a servo that the file has on the joint [N·m·s/rad, N·s/m].
-        torque_limit: largest torque or force of its motor [N·m, N] (inf where unknown).
-        speed_limit: largest speed of the joint [rad/s, m/s] (inf where unknown).
+        position_gain: K_p of the file's servo on the joint [N·m/rad, N/m]; 0 where it has none.
+        velocity_gain: K_d of that servo [N·m·s/rad, N·s/m].
+        torque_limit: largest torque of the motor on the joint [N·m, N]; inf where unknown.
+        speed_limit: largest speed of the joint [rad/s, m/s]; inf where unknown.
     """
 
     name: str
@@ -128,7 +128,10 @@ class Robot:
         independent: names of the joints whose coordinates describe a closed chain; empty leaves
             the choice to ``closed_chain``.
         base_inertia: of what is fixed to the base, in its frame; felt by floating robots only.
+        rotors_stated: whether the file says all there is of rotors; else a motor's joint without
+            armature has a rotor of which nothing is known.
         payload: that it holds; with symbols in it, expressions need a q of symbols too.
+        warnings: what of its file was ignored or approximated, or looks implausible; one line each.
     """
 
     name: str
@@ -141,6 +144,8 @@ class Robot:
     independent: tuple[str, ...] = ()
     base_inertia: Inertia = field(default_factory=Inertia.zero)
     payload: PointMass | None = None
+    rotors_stated: bool = False
+    warnings: tuple[str, ...] = ()
 
     @property
     def n(self) -> int:
@@ -161,6 +166,16 @@ class Robot:
     def damping(self) -> Array:
         """Damping of the joints, shape (n,)."""
         return np.array([joint.damping for joint in self.joints])
+
+    @property
+    def position_gains(self) -> Array:
+        """K_p of the file's servos, shape (n,)."""
+        return np.array([joint.position_gain for joint in self.joints])
+
+    @property
+    def velocity_gains(self) -> Array:
+        """K_d of the file's servos, shape (n,)."""
+        return np.array([joint.velocity_gain for joint in self.joints])
 
     @property
     def torque_limits(self) -> Array:

@@ -16,8 +16,8 @@ from ...matrices import Matrix
 from ...robot.rigid import Array
 from .law import Law
 
-SOLID = 1e3
-"""How many times the last slope a curve has beyond its last point: as good as solid."""
+SOLID = 1e8
+"""Stiffness [N/m] that is as good as solid: a hundred times that of skin under 500 N."""
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,8 @@ class Curve(Law):
     def force(self, depth: Matrix) -> Matrix:
         """Return f(δ) [N]."""
         slopes = monotone_slopes(np.array(self.depths), np.array(self.forces))
-        last = (self.forces[-1] - self.forces[-2]) / (self.depths[-1] - self.depths[-2])
-        beyond = SOLID * max(last, float(slopes[-1]))
-        return through_points(depth, self.depths, self.forces, slopes, beyond)
+        beyond = max(SOLID, float(slopes[-1]))
+        return through_points(depth, self.depths, self.forces, slopes, slopes, beyond)
 
     def check(self) -> None:
         """Raise InvalidValue if the points are not a law."""
@@ -94,20 +93,29 @@ def monotone_slopes(depth: Array, force: Array) -> Array:
 
 def through_points(
     depth: Matrix,
-    points: tuple[float, ...],
-    force: tuple[float, ...],
-    slopes: Array,
+    points: Sequence[float],
+    force: Sequence[float],
+    slopes_before: Array,
+    slopes_after: Array,
     slope_beyond: float,
 ) -> Matrix:
     """Return the force [N] on a cubic through points, zero before them and straight after them.
 
     A sum of what each interval adds, without branches, so that it is an expression of any kind and
     shape; each interval's share stops at its ends.
+
+    Args:
+        depth: where.
+        points: depths of the points [m], rising from 0 on.
+        force: at the points [N].
+        slopes_before: at the points, coming from smaller depths [N/m].
+        slopes_after: the same coming from larger ones; equal but at corners.
+        slope_beyond: of the straight line after the last point [N/m].
     """
     total: Matrix = slope_beyond * ca.fmax(0, depth - points[-1])
     for i, (a, b) in enumerate(pairwise(points)):
         h, rise = b - a, force[i + 1] - force[i]
-        first, last = h * slopes[i], h * slopes[i + 1]
+        first, last = h * slopes_after[i], h * slopes_before[i + 1]
         t = ca.fmin(ca.fmax(0, (depth - a) / h), 1)
         total += t * (first + t * (3 * rise - 2 * first - last + t * (first + last - 2 * rise)))
     return total

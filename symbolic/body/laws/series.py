@@ -25,11 +25,17 @@ MOST_FORCE = 1e5
 SERIES_ERROR = 1e-5
 """Relative error that the force of a series may have above ``LEAST_FORCE``."""
 
-START = 4
+START = 8
 """Points in a decade of force before more are added where the error asks for it."""
 
-DEEPEST = 10.0
-"""Depth [m] by which a law must have reached ``MOST_FORCE``."""
+SHALLOWEST, DEEPEST = 1e-18, 10.0
+"""Depths [m] between which a law must reach every force up to twice ``MOST_FORCE``."""
+
+MOST_HALVINGS = 16
+"""How often an interval of forces may be halved."""
+
+BESIDE = 1e-6
+"""Relative step in force by which slopes are found."""
 
 
 @dataclass(frozen=True)
@@ -52,10 +58,7 @@ class Series(Law):
 
     def force(self, depth: Matrix) -> Matrix:
         """Return f(δ) [N]."""
-        points = _sampled(self.laws)
-        return through_points(
-            depth, tuple(points.depth), tuple(points.force), points.slope, points.slope[-1]
-        )
+        return _sampled(self.laws).at(depth)
 
     def check(self) -> None:
         """Raise InvalidValue if a number of one of the laws cannot be."""
@@ -92,52 +95,62 @@ def in_series(*laws: Law) -> Law:
 
 @dataclass(frozen=True, eq=False)
 class _Points:
+    """Points of a series, and slopes on both sides of each."""
+
     depth: Array
     force: Array
-    slope: Array
+    slope_before: Array
+    slope_after: Array
+
+    def at(self, depth: Matrix) -> Matrix:
+        beyond = float(self.slope_after[-1])
+        slopes = (self.slope_before, self.slope_after)
+        return through_points(depth, self.depth.tolist(), self.force.tolist(), *slopes, beyond)
 
 
 @lru_cache(maxsize=64)
 def _sampled(laws: tuple[Law, ...]) -> _Points:
     decades = np.log10(MOST_FORCE / LEAST_FORCE)
     forces = np.geomspace(LEAST_FORCE, MOST_FORCE, round(START * decades) + 1)
-    corners = [f for law in laws for f in getattr(law, "forces", ()) if f > LEAST_FORCE]
-    forces = np.unique([*forces, *(f for f in corners if f < MOST_FORCE)])
-    for _ in range(12):  # halves each interval at most so often
-        points = _exact(laws, forces)
-        between = np.sqrt(points.force[1:-1] * points.force[2:])
-        depth = _exact(laws, between).depth[1:]
-        found = through_points(
-            ca.DM(depth), tuple(points.depth), tuple(points.force), points.slope, points.slope[-1]
-        )
-        error = np.abs(np.array(found).ravel() / between - 1)
-        if (error <= SERIES_ERROR).all():
+    corners = [f for law in laws for f in getattr(law, "forces", ())]
+    forces = np.unique([*forces, *(f for f in corners if LEAST_FORCE < f < MOST_FORCE)])
+    for _ in range(MOST_HALVINGS):
+        between = np.sqrt(forces[:-1] * forces[1:])
+        sought = [forces, forces * (1 - BESIDE), forces * (1 + BESIDE), between]
+        sizes = np.cumsum([len(group) for group in sought[:-1]])
+        depth, less, more, middle = np.split(_depths(laws, np.concatenate(sought)), sizes)
+        step = BESIDE * forces
+        points = _rising(depth, forces, step / (depth - less), step / (more - depth))
+        rough = np.abs(np.array(points.at(ca.DM(middle))).ravel() / between - 1) > SERIES_ERROR
+        if not rough.any():
             break
-        forces = np.unique([*forces, *between[error > SERIES_ERROR]])
+        forces = np.unique([*forces, *between[rough]])
     return points
 
 
-def _exact(laws: tuple[Law, ...], forces: Array) -> _Points:
-    """Return the series at 0 and at some forces: depths add up, and so do 1/slopes."""
-    depth, softness = np.zeros_like(forces), np.zeros_like(forces)
-    x = ca.SX.sym("x")
+def _rising(depth: Array, force: Array, before: Array, after: Array) -> _Points:
+    """Return points with 0 in front, and slopes that keep a cubic through them rising."""
+    depth, force, before, after = (np.append(0.0, part) for part in (depth, force, before, after))
+    steepest = 3 * np.diff(force) / np.diff(depth)  # Fritsch and Carlson
+    before[1:] = np.minimum(before[1:], steepest)
+    after[:-1] = np.minimum(after[:-1], steepest)
+    return _Points(depth, force, before, after)
+
+
+def _depths(laws: tuple[Law, ...], forces: Array) -> Array:
+    """Return the depth of a series at some forces: the sum of its laws' depths, by bisection."""
+    total = np.zeros_like(forces)
     for law in laws:
-        f = law.force(x)
-        both = ca.Function("law", [x], [f, ca.jacobian(f, x)]).map(len(forces))
-        low, high = np.full_like(forces, 1e-20), np.full_like(forces, DEEPEST)
-        if (np.array(both(high[None, :])[0]) < MOST_FORCE).any():
-            raise InvalidValue(
-                "law", f"gives less than {MOST_FORCE:g} N at a depth of {DEEPEST:g} m"
-            )
-        for _ in range(80):
+        if isinstance(law, PowerLaw):
+            total += (forces / law.stiffness) ** (1 / law.exponent)
+            continue
+        low, high = np.full_like(forces, SHALLOWEST), np.full_like(forces, DEEPEST)
+        if float(law.force(ca.DM(DEEPEST))) < 2 * MOST_FORCE:
+            reason = f"gives less than {2 * MOST_FORCE:g} N at a depth of {DEEPEST:g} m"
+            raise InvalidValue("law", reason)
+        for _ in range(100):
             middle = np.sqrt(low * high)
-            above = np.array(both(middle[None, :])[0]).ravel() > forces
+            above = np.array(law.force(ca.DM(middle))).ravel() > forces
             low, high = np.where(above, low, middle), np.where(above, middle, high)
-        depth += high
-        softness += 1 / np.array(both(high[None, :])[1]).ravel()
-    at_zero = [0.0]
-    return _Points(
-        np.concatenate([at_zero, depth]),
-        np.concatenate([at_zero, forces]),
-        np.concatenate([at_zero, 1 / softness]),
-    )
+        total += high
+    return total
