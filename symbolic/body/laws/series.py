@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -137,13 +138,22 @@ def _depths(laws: tuple[Law, ...], forces: Array) -> Array:
         if isinstance(law, PowerLaw):
             total += (forces / law.stiffness) ** (1 / law.exponent)
             continue
+        force = _evaluated(law)
         low, high = np.full_like(forces, SHALLOWEST), np.full_like(forces, DEEPEST)
-        if float(law.force(ca.DM(DEEPEST))) < 2 * MOST_FORCE:
+        if force(high[:1])[0] < 2 * MOST_FORCE:
             reason = f"gives less than {2 * MOST_FORCE:g} N at a depth of {DEEPEST:g} m"
             raise InvalidValue("law", reason)
         for _ in range(100):
             middle = np.sqrt(low * high)
-            above = np.array(law.force(ca.DM(middle))).ravel() > forces
+            above = force(middle) > forces
             low, high = np.where(above, low, middle), np.where(above, middle, high)
         total += high
     return total
+
+
+def _evaluated(law: Law) -> Callable[[Array], Array]:
+    """Return a law's force over depths as arrays."""
+    if isinstance(law, Curve):
+        points = law.points
+        return lambda depth: points.evaluated(depth)[0]
+    return lambda depth: np.array(law.force(ca.DM(depth)), dtype=float).ravel()
