@@ -15,13 +15,14 @@ import typer
 
 from .console import accept_any_console
 from .interruption import INTERRUPTED, interruptible, report
+from .papers.factors_study_command import factors_study
+from .papers.reproduce_command import reproduce
 from .studio.analyze_command import analyze
 from .studio.design_command import design
 from .studio.factors_command import factors
-from .papers.factors_study_command import factors_study
 from .studio.generate_command import generate
 from .studio.pareto_command import pareto
-from .papers.reproduce_command import reproduce
+from .studio.program_command import SeveralValues, program
 from .studio.robots_command import robots
 from .studio.select_command import select
 from .studio.simulate_command import simulate
@@ -36,6 +37,7 @@ app.command()(analyze)
 app.command()(factors)
 app.command()(factors_study)
 app.command()(simulate)
+app.command(cls=SeveralValues)(program)
 app.command()(select)
 app.command()(design)
 app.command()(pareto)
@@ -97,7 +99,9 @@ def _refuse_repeated(words: Sequence[str]) -> None:
     given = [once[word.partition("=")[0]] for word in words if word.partition("=")[0] in once]
     twice = [name for name in given if given.count(name) > 1]
     if twice:
-        raise typer.BadParameter("is given twice; only one of them could count", param_hint=twice[0])
+        raise typer.BadParameter(
+            "is given twice; only one of them could count", param_hint=twice[0]
+        )
 
 
 def _exit_code(error: Exception) -> int | None:
