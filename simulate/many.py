@@ -40,10 +40,14 @@ FEWEST_STEPS = 40
 
 @dataclass(frozen=True, eq=False)
 class ManyPeaks:
-    """Forces of many impacts [N], one entry each; see ``ImpactHistory``."""
+    """Forces of many impacts [N], one entry each; see ``ImpactHistory``.
+
+    Where the force rises to the end, its first peak is where it ends.
+    """
 
     peak: Array
     first_contact: Array
+    first_peak: Array
     pressing: Array
 
 
@@ -80,7 +84,7 @@ def many_peaks(
             continue
         stage = _Stage(model, arrival, contact, what, law, motion, begin, min(end, until), v)
         motion, body, force = stage.run(body, force, found)
-    return ManyPeaks(found.peak, found.first_contact, found.pressing)
+    return ManyPeaks(found.peak, found.first_contact, found.first_peak, found.pressing)
 
 
 class _Found:
@@ -89,7 +93,8 @@ class _Found:
     def __init__(self, count: int, horizon: float) -> None:
         self.horizon = horizon
         self.peak, self.first_contact, self.pressing = (np.zeros(count) for _ in range(3))
-        self.touched, self.parted = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self.first_peak = np.zeros(count)
+        self.touched, self.fallen, self.parted = (np.zeros(count, dtype=bool) for _ in range(3))
         self.last, self.before = np.zeros(count), np.zeros(count)
 
     def see(self, time: float, force: Array) -> None:
@@ -101,6 +106,8 @@ class _Found:
         top = np.maximum(force, self.last + rise)
         if time <= self.horizon * (1 + 1e-9):
             self.peak = np.maximum(self.peak, top)
+        self.first_peak = np.where(self.fallen, self.first_peak, top)
+        self.fallen |= is_top & (force > 0) | self.touched & ~(force > 0)
         self.touched |= force > 0
         self.first_contact = np.where(
             self.parted, self.first_contact, np.maximum(self.first_contact, top)
