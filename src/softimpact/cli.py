@@ -16,10 +16,13 @@ import typer
 from .console import accept_any_console
 from .interruption import INTERRUPTED, interruptible, report
 from .studio.analyze_command import analyze
+from .studio.check_command import check
 from .studio.design_command import design
 from .studio.factors_command import factors
 from .papers.factors_study_command import factors_study
 from .studio.generate_command import generate
+from .studio.init_command import init
+from .studio.inspect_command import inspect
 from .studio.pareto_command import pareto
 from .papers.reproduce_command import reproduce
 from .studio.robots_command import robots
@@ -32,6 +35,9 @@ USER_ERROR = 2
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 app.command()(robots)
+app.command()(inspect)
+app.command()(init)
+app.command()(check)
 app.command()(analyze)
 app.command()(factors)
 app.command()(factors_study)
