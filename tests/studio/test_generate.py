@@ -22,6 +22,7 @@ def contents(folder: Path) -> dict[str, str]:
     }
 
 
+@pytest.mark.slow
 def test_writes_what_the_library_writes(tmp_path: Path) -> None:
     typed, called = tmp_path / "typed", tmp_path / "called"
     options = ("--real", "float", "--position-gain", "[500, 0, 400, 0]", "--order", 2)
@@ -57,6 +58,7 @@ def test_bad_input(tmp_path: Path, options: list[str], reason: str) -> None:
     assert not (tmp_path / "c").exists()
 
 
+@pytest.mark.slow
 def test_candidate_poses_come_from_a_file(tmp_path: Path) -> None:
     path = tmp_path / "poses.json"
     path.write_text('{"low": [0.1, 0, 0.2, 0], "high": [1, 0, 1, 0]}')
@@ -99,6 +101,7 @@ def test_foreign_files_stay(tmp_path: Path) -> None:
     assert contents(tmp_path) == {"notes.txt": "mine"}
 
 
+@pytest.mark.slow
 def test_failure_leaves_the_older_package(tmp_path: Path) -> None:
     folder = tmp_path / "c"
     assert run("generate", "rr", "--out", folder).code == 0
@@ -110,6 +113,7 @@ def test_failure_leaves_the_older_package(tmp_path: Path) -> None:
     assert (folder / "README.md").read_text() == "edited"
 
 
+@pytest.mark.slow
 def test_payload_and_frozen_parameters(tmp_path: Path) -> None:
     typed, called = tmp_path / "typed", tmp_path / "called"
     options = ("--payload", "--payload-mass", 2, "--payload-com", "[0, 0, 0.125]", "--order", 2)
