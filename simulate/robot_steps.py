@@ -81,7 +81,7 @@ class DampedSteps:
 
 
 def robot_steps(
-    squared: Array, shape: Array, damping: Array | None, h: float
+    squared: Array, shape: Array, damping: Array | None, h: float | Array
 ) -> UndampedSteps | DampedSteps:
     """Return the steps h [s] of modes ÿ + C ẏ + ω² y = −φ f_c + given forces.
 
@@ -89,10 +89,10 @@ def robot_steps(
         squared: ω², (r,) or (S, r).
         shape: φ, likewise.
         damping: C, (r, r) or (S, r, r); None where nothing damps.
-        h: step [s].
+        h: step [s], one number or one for each sample.
     """
     if damping is None:
-        return UndampedSteps(modal_step(squared, h), shape)
+        return UndampedSteps(modal_step(squared, np.asarray(h)[..., None]), shape)
     n = shape.shape[-1]
     A = np.zeros((*damping.shape[:-2], 2 * n, 2 * n))
     b = np.zeros((*damping.shape[:-2], 2 * n, n))

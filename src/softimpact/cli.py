@@ -15,13 +15,14 @@ import typer
 
 from .console import accept_any_console
 from .interruption import INTERRUPTED, interruptible, report
+from .papers.factors_study_command import factors_study
+from .papers.reproduce_command import reproduce
 from .studio.analyze_command import analyze
 from .studio.design_command import design
 from .studio.factors_command import factors
-from .papers.factors_study_command import factors_study
 from .studio.generate_command import generate
 from .studio.pareto_command import pareto
-from .papers.reproduce_command import reproduce
+from .studio.program_command import SeveralValues, program
 from .studio.robots_command import robots
 from .studio.select_command import select
 from .studio.simulate_command import simulate
@@ -36,6 +37,7 @@ app.command()(analyze)
 app.command()(factors)
 app.command()(factors_study)
 app.command()(simulate)
+app.command(cls=SeveralValues)(program)
 app.command()(select)
 app.command()(design)
 app.command()(pareto)
@@ -63,10 +65,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: default the process's own.
     """
+    words = list(sys.argv[1:] if arguments is None else arguments)
     accept_any_console()
     try:
+        _refuse_repeated(words)
         with interruptible():
-            code = app(args=arguments, prog_name="softimpact", standalone_mode=False)
+            code = app(args=words, prog_name="softimpact", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
         code = INTERRUPTED
     except Exception as error:
@@ -78,6 +82,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if code == INTERRUPTED:  # newer typer returns it
         report()
     return code if isinstance(code, int) else 0
+
+
+def _refuse_repeated(words: Sequence[str]) -> None:
+    """Raise a usage error if an option that takes one value is given twice: the first is lost."""
+    group = typer.main.get_command(app)
+    command = getattr(group, "commands", {}).get(words[0]) if words else None
+    if command is None:
+        return
+    once = {
+        name: parameter.opts[0]
+        for parameter in command.params
+        if not parameter.multiple and parameter.nargs == 1
+        for name in (*parameter.opts, *parameter.secondary_opts)
+    }
+    given = [once[word.partition("=")[0]] for word in words if word.partition("=")[0] in once]
+    twice = [name for name in given if given.count(name) > 1]
+    if twice:
+        raise typer.BadParameter(
+            "is given twice; only one of them could count", param_hint=twice[0]
+        )
 
 
 def _exit_code(error: Exception) -> int | None:

@@ -138,7 +138,7 @@ def test_two_body_formula_stands_beside() -> None:
     ("options", "reason"),
     [
         (["--motors", "off"], "unknown kind of motors 'off'; known: free, servo, driven, held"),
-        (["--motors", "servo"], "'servo' needs position_gain"),
+        (["--motors", "servo"], "'servo' needs position_gain: the file has no servo"),
         (["--motors", "driven", "--position-gain", "1e3"], "position_gain: is a servo's"),
         (["--motors", "held", "--position-gain", "1", "--safe-speed"], "cannot give a safe speed"),
         (["--position-gain", "-1"], "position_gain: must be finite and ≥ 0"),
