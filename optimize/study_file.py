@@ -129,7 +129,7 @@ def read_study_file(source: Path, overrides: dict[str, dict[str, Any]]) -> Study
 
 def _read(source: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(source.read_text(encoding="utf-8"))
+        return tomllib.loads(source.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise InvalidValue(str(source), "no such study file") from None
     except (OSError, UnicodeDecodeError) as error:

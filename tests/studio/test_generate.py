@@ -9,6 +9,7 @@ import pytest
 from command_line import refusal, run, run_json
 
 from softimpact.codegen import Payload, generate_package
+from softimpact.studio.pose_table import pose_table
 from softimpact.symbolic import drives, load_robot
 
 STUDY = Path(__file__).parents[2] / "robots/studies/panda_24_poses.toml"
@@ -65,6 +66,12 @@ def test_candidate_poses_come_from_a_file(tmp_path: Path) -> None:
     result = run_json("generate", "rr", "--out", tmp_path / "c", "--poses", path)
     assert result["poses"] == ["low", "high"]
     assert "RR_CANDIDATES 2" in (tmp_path / "c/include/rr.h").read_text()
+
+
+def test_a_byte_order_mark_is_no_content(tmp_path: Path) -> None:
+    path = tmp_path / "poses.json"
+    path.write_text('{"low": [0.1, 0, 0.2, 0]}', encoding="utf-8-sig")
+    assert pose_table(path, load_robot("rr")) == {"low": [0.1, 0, 0.2, 0]}
 
 
 @pytest.mark.parametrize(
