@@ -33,7 +33,7 @@ from .studio.simulate_command import simulate
 USER_ERROR = 2
 """Exit code; a failed solver's is 3 and comes with its exception."""
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer(pretty_exceptions_enable=False)
 
 app.command()(robots)
 app.command()(inspect)
