@@ -29,6 +29,7 @@ BODIES = {
     "cover": Contact(HAND, cover=PowerLaw(2e6)),
     "foam": Contact(HAND, cover=FOAM),
     "foam, free": Contact(HAND, clamped=False, cover=FOAM),
+    "squeezed flat": Contact(HAND, cover=Curve([0, 1e-3, 2e-3], [0, 10, 50])),
     "linear cover": Contact(body_region("chest"), cover=PowerLaw(2e5, 1.0)),
     "device": Contact(replace(RIG, plate_mass=0.0)),
     "device with plate": Contact(RIG),
