@@ -162,7 +162,8 @@ def _robot(section: RobotSection, source: Path) -> Robot:
     """Load the robot, a chain to its tip; a path is taken relative to the study file."""
     beside = source.parent / section.model
     with _naming(source, "robot", "model"):
-        robot = load_robot(beside if beside.is_file() else section.model)
+        model = beside if beside.is_file() else section.model
+        robot = load_robot(model, hold_base=section.hold_base, toward=section.tip)
     with _naming(source, "robot", "tip"):
         tip = section.tip if section.tip is not None else robot.tip
         if tip is None:

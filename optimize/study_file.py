@@ -25,6 +25,7 @@ class RobotSection(_Section):
 
     model: str
     tip: str | None = None
+    hold_base: bool = False
     rotor_inertia: str | Finite | list[Finite] | None = None
     position_gain: Finite | list[Finite] | None = None
     computed_torque_gain: Finite | None = None

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -84,6 +85,10 @@ Band = Annotated[
         "--band", help="Where 95 of 100 cases lie, for what is not known exactly (tolerances)."
     ),
 ]
+Report = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Write a report to file: one HTML page that opens offline."),
+]
 SafeSpeed = Annotated[
     bool,
     typer.Option("--safe-speed", help="Find the largest speed up to which every limit is kept."),
@@ -99,6 +104,7 @@ def simulate(
     tip: o.Tip = None,
     end: o.End = None,
     lock: o.Lock = None,
+    hold_base: o.HoldBase = False,
     payload: o.Payload = None,
     tool: o.Tool = None,
     fidelity: o.Fidelity = "linearised",
@@ -115,6 +121,7 @@ def simulate(
     reference: Reference = None,
     safe_speed: SafeSpeed = False,
     band: Band = False,
+    report: Report = None,
     joint_stiffness: o.JointStiffness = None,
     rotor_inertia: o.RotorInertia = None,
     position_gain: o.PositionGain = None,
@@ -128,7 +135,8 @@ def simulate(
     json: o.Json = False,
 ) -> None:
     """Simulate an impact and hold it against what the body may bear."""
-    from .impact import TypedBody, TypedImpact, impact, print_impact
+    from .impact import TypedBody, TypedImpact, impact
+    from .impact_record import print_impact, record_of
     from .output import print_json, print_warnings
     from .situation import Typed, TypedArm, TypedDrives
     from .typed_motors import TypedMotors
@@ -143,7 +151,7 @@ def simulate(
         torque_limit,
         servo=motors == "servo",
     )
-    arm = TypedArm(model, tip, end, lock, payload, tool)
+    arm = TypedArm(model, tip, end, lock, payload, tool, hold_base)
     where = Typed(arm, q, direction, given, gravity, motor_angles)
     how = TypedImpact(
         body=TypedBody(region, body, cover, clamped),
@@ -159,8 +167,13 @@ def simulate(
         pid=pid,
         reference=reference,
     )
-    result = impact(where, how)
+    answer = impact(where, how)
+    result = record_of(answer)
     print_warnings(result["warnings"])
+    if report is not None:
+        from .report.impact_report import write_impact_report
+
+        write_impact_report(answer, result, report)
     if json:
         print_json(result)
     else:

@@ -23,6 +23,7 @@ from softimpact.symbolic import (
     load_robot,
     lock_joints,
     unit_direction,
+    whole_configuration,
     with_load,
 )
 from softimpact.symbolic.impact.drives import PerJoint
@@ -65,6 +66,7 @@ class TypedArm:
     lock: str | None = None
     payload: str | None = None
     tool: str | None = None
+    hold_base: bool = False
 
 
 @dataclass(frozen=True)
@@ -116,7 +118,7 @@ class LoadedArm:
 def loaded_arm(typed: TypedArm) -> LoadedArm:
     """Return the arm that the options describe; raises SoftImpactError."""
     locked = {} if typed.lock is None else values.named_numbers("lock", typed.lock)
-    robot = load_robot(typed.model)
+    robot = load_robot(typed.model, hold_base=typed.hold_base, toward=typed.end or typed.tip)
     arm = arm_of(robot, typed.tip, typed.end, locked)
     loads = []
     if typed.payload is not None:
@@ -126,7 +128,7 @@ def loaded_arm(typed: TypedArm) -> LoadedArm:
     loaded = arm.robot
     for mass, com, inertia in loads:
         loaded = with_load(loaded, arm.end, mass, com, inertia)
-    warnings = (*getattr(robot, "warnings", ()), *arm.warnings)
+    warnings = (*arm.robot.warnings, *arm.warnings)
     return LoadedArm(loaded, sum(load[0] for load in loads), warnings)
 
 
@@ -139,7 +141,9 @@ def situation(typed: Typed) -> Situation:
     model = impact_model(
         robot, drives_=drives_of(robot, typed.drives), gravity=gravity_of(typed.gravity)
     )
-    angles = link_angles(model, np.array(q)) if typed.motor_angles else robot.vector("q", q)
+    angles = (
+        link_angles(model, np.array(q)) if typed.motor_angles else whole_configuration(robot, q)
+    )
     return Situation(
         model, angles, direction, arm.load, (*arm.warnings, *beyond_limits(robot, angles))
     )
@@ -187,10 +191,12 @@ def free_situation(typed: Typed) -> Situation:
     """Return the situation of a robot on a free base; its q begins with the base's six zeros."""
     robot = whole_robot(typed.arm.model, typed.arm.tip)
     free = floating_robot(robot)
-    q = robot.vector("q", values.vector("q", typed.q))
+    q = whole_configuration(robot, values.vector("q", typed.q))
     direction = unit_direction(values.vector("direction", typed.direction, 3))
     model = floating_model(free, drives_=drives_of(robot, typed.drives))
-    return Situation(model, np.array(free.coordinates(q)).ravel(), direction)
+    angles = np.array(free.coordinates(q)).ravel()
+    warnings = (*robot.warnings, *beyond_limits(robot, q))
+    return Situation(model, angles, direction, warnings=warnings)
 
 
 def whole_robot(name: str, tip: str | None) -> Robot:

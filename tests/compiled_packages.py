@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sharing import once
 
 from softimpact.codegen.description import CFunction
 from softimpact.codegen.functions import functions_of, symbols_of
@@ -101,9 +102,9 @@ class Generated:
     def load(self, real: str) -> Library:
         """Compile the package to a shared library beside it, once, and open it."""
         out = self.folder.with_suffix(f".{real}.so")
-        if not out.exists():
-            flags = [*self.flags(real), "-shared", "-fPIC"]
-            run(tool("gcc"), *flags, *self.folder.glob("src/*.c"), "-o", out, "-lm")
+        flags = [*self.flags(real), "-shared", "-fPIC"]
+        files = self.folder.glob("src/*.c")
+        once(out, lambda path: run(tool("gcc"), *flags, *files, "-o", path, "-lm"))
         return Library(self, ctypes.CDLL(str(out)), real)
 
 

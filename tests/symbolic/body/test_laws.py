@@ -19,6 +19,7 @@ from softimpact.symbolic import Contact, Curve, InvalidValue, Law, Matrix, Power
 from softimpact.symbolic import in_series as series
 from softimpact.symbolic.body.laws import Series
 from softimpact.symbolic.body.laws.law import form_of, numbers_of, with_numbers
+from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
 FOAM = Curve([0, 2e-3, 5e-3, 8e-3], [0, 20, 120, 600])
@@ -59,6 +60,18 @@ def test_a_law_is_an_expression_of_any_kind(law: Law) -> None:
         x = kind.sym("x", len(depths))
         found = ca.Function("f", [x], [law.force(x)])(depths)
         np.testing.assert_allclose(np.array(found).ravel(), force(law, depths), rtol=1e-12)
+
+
+@EVERY
+def test_numbers_are_those_of_the_expression(law: Law) -> None:
+    points, depths = points_of(law), np.array([0.0, 1e-5, 1e-3, 2e-3, 4e-3, 8e-3, 8.1e-3])
+    found, slope = points.evaluated(depths)
+    np.testing.assert_allclose(found, force(law, depths), rtol=1e-4, atol=1e-6)
+    inside = np.array([1e-5, 1e-3, 4e-3])
+    steps = 1e-6 * inside
+    rise = (points.evaluated(inside + steps)[0] - points.evaluated(inside - steps)[0]) / (2 * steps)
+    np.testing.assert_allclose(points.evaluated(inside)[1], rise, rtol=1e-5)
+    assert (slope[1:] > 0).all()
 
 
 @EVERY
