@@ -3,15 +3,14 @@
 
 MuJoCo's compiler refuses a model for the inertia of a body that may be welded to the ground or to
 a heavier one. So it never sees what the file says of inertias: it gets stand-ins, and the numbers
-are composed here. Where they come from shapes or meshes, a second copy of the model, in which
-nothing moves, lets it measure these.
+are composed here. Where they come from shapes or meshes, it measures these in a second copy.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import mujoco
@@ -73,7 +72,7 @@ def body_inertias(
 
     Args:
         spec: gets a stand-in for every body's inertia.
-        shapes: a second copy of the same file; all that moves is taken out of it.
+        shapes: a second copy of the same file, of which shapes are all that stays.
         source: the file, for messages.
 
     Returns:
@@ -134,46 +133,58 @@ def _measured(spec: mujoco.MjSpec, wanted: set[int], rules: Rules) -> dict[int, 
     """Let MuJoCo weigh the shapes of bodies, by their place in the file."""
     bodies = list(spec.bodies)
     missing: dict[int, list[str]] = {place: [] for place in wanted}
-    _weld_everything(spec)
+    _leave_shapes(spec)
+    _leave_what_counts(spec, bodies, missing, rules)
+    for place, body in enumerate(bodies[1:], start=1):
+        body.explicitinertial = False
+        if place not in wanted or not list(body.geoms):
+            _stand_in(body, False)
+    model = _weighed(spec, bodies, missing)
+    found = {}
+    for place in wanted:
+        inertia = Inertia.zero()
+        if list(bodies[place].geoms):
+            i = bodies[place].id
+            frame = placement(model.body_ipos[i], model.body_iquat[i])
+            moments = np.diag(model.body_inertia[i])
+            inertia = about_frame(float(model.body_mass[i]), moments, frame)
+        found[place] = replace(inertia, missing=tuple(missing[place]))
+    return found
+
+
+def _leave_what_counts(
+    spec: mujoco.MjSpec,
+    bodies: list[mujoco.MjsBody],
+    missing: dict[int, list[str]],
+    rules: Rules,
+) -> None:
+    """Take out geoms that give no inertia, and name meshes that are not there."""
     meshes = {mesh.name: mesh for mesh in spec.meshes}
     used: set[str] = set()
     for place, geom in [(place, geom) for place, b in enumerate(bodies) for geom in b.geoms]:
-        if place not in wanted or not rules.counts(geom):
+        mesh = meshes.get(geom.meshname) if geom.meshname else None
+        counts = place in missing and rules.counts(geom)
+        if counts and geom.meshname and (mesh is None or not _is_there(spec, mesh)):
+            missing[place].append(_words(bodies[place], geom.meshname, mesh))
+            counts = False
+        if not counts:
             spec.delete(geom)
             continue
         geom.material = ""
-        mesh = meshes.get(geom.meshname) if geom.meshname else None
-        if geom.meshname and (mesh is None or not _is_there(spec, mesh)):
-            missing[place].append(_words(bodies[place], geom.meshname, mesh))
-            spec.delete(geom)
-        elif mesh is not None:
+        if mesh is not None:
             used.add(mesh.name)
     for mesh in list(spec.meshes):
         if mesh.name not in used:
             spec.delete(mesh)
-    for place, body in enumerate(bodies[1:], start=1):
-        if place not in wanted:
-            _stand_in(body, False)
-        body.explicitinertial = place not in wanted
-    model = _weighed(spec, bodies, missing)
-    found = {}
-    for place in wanted:
-        i = bodies[place].id
-        frame = placement(model.body_ipos[i], model.body_iquat[i])
-        inertia = about_frame(float(model.body_mass[i]), np.diag(model.body_inertia[i]), frame)
-        found[place] = Inertia(
-            inertia.mass, inertia.first_moment, inertia.about_origin, tuple(missing[place])
-        )
-    return found
 
 
-def _weld_everything(spec: mujoco.MjSpec) -> None:
-    """Take out all but bodies, shapes and meshes; in particular the joints."""
+def _leave_shapes(spec: mujoco.MjSpec) -> None:
+    """Take out all but bodies, joints, shapes and meshes."""
     for sensor in list(spec.sensors):
         spec.delete(sensor)
     groups = (spec.actuators, spec.equalities, spec.tendons, spec.pairs, spec.excludes, spec.keys)
     files = (spec.skins, spec.flexes, spec.hfields, spec.materials, spec.textures)
-    for group in (*groups, *files, spec.tuples, spec.joints):
+    for group in (*groups, *files, spec.tuples):
         for item in list(group):
             spec.delete(item)
     spec.compiler.settotalmass, spec.compiler.fusestatic = NO_TOTAL, False
@@ -207,6 +218,8 @@ def _weighed(
         words = f"body '{bodies[place].name}' takes its inertia from a mesh ('{geom.meshname}'"
         missing[place].append(f"{words}, which MuJoCo does not read: {why})")
         spec.delete(geom)
+        if not list(bodies[place].geoms):
+            _stand_in(bodies[place], False)
     for mesh in list(spec.meshes):
         spec.delete(mesh)
     return spec.compile()
