@@ -47,14 +47,14 @@ def read_mjcf(path: Path) -> Description:
         UnsupportedModel: springs that are not linear.
     """
     with _warnings() as heard:
-        spec, shapes = _parsed(path), _parsed(path)
+        spec = _parsed(path)
         keys = [[float(x) for x in key.qpos] for key in spec.keys[:1]]
         _require_sound_joints(spec, str(path))
-        bodies, stated, measured, rules = body_inertias(spec, shapes, str(path))
-        warnings = _cleared(spec)
-        if any("NaN" in warning for warning in heard):
-            raise ModelFileError(str(path), "a number is NaN")
         try:
+            bodies, stated, measured, rules = body_inertias(spec, lambda: _parsed(path), str(path))
+            warnings = _cleared(spec)
+            if any("NaN" in warning for warning in heard):
+                raise ModelFileError(str(path), "a number is NaN")
             model = spec.compile()
         except ValueError as error:
             raise ModelFileError(str(path), one_line(error)) from None
