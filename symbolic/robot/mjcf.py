@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -46,14 +47,14 @@ def read_mjcf(path: Path) -> Description:
         UnsupportedModel: springs that are not linear.
     """
     with _warnings() as heard:
-        spec, shapes = _parsed(path), _parsed(path)
+        spec = _parsed(path)
         keys = [[float(x) for x in key.qpos] for key in spec.keys[:1]]
         _require_sound_joints(spec, str(path))
-        bodies, stated, measured, rules = body_inertias(spec, shapes, str(path))
-        warnings = _cleared(spec)
-        if any("NaN" in warning for warning in heard):
-            raise ModelFileError(str(path), "a number is NaN")
         try:
+            bodies, stated, measured, rules = body_inertias(spec, lambda: _parsed(path), str(path))
+            warnings = _cleared(spec)
+            if any("NaN" in warning for warning in heard):
+                raise ModelFileError(str(path), "a number is NaN")
             model = spec.compile()
         except ValueError as error:
             raise ModelFileError(str(path), one_line(error)) from None
@@ -80,8 +81,10 @@ def _parsed(path: Path) -> mujoco.MjSpec:
     except ValueError as error:
         raise ModelFileError(str(path), f"not a URDF or MJCF: {one_line(error)}") from None
     spec.compiler.fusestatic = False
-    if hasattr(spec.compiler, "alignfree"):
+    if hasattr(spec.compiler, "alignfree"):  # frames of bodies stay where the file has them
         spec.compiler.alignfree = False
+        for joint in spec.joints:
+            joint.align = mujoco.mjtAlignFree.mjALIGNFREE_FALSE
     return spec
 
 
@@ -134,8 +137,6 @@ def _require_sound_joints(spec: mujoco.MjSpec, source: str) -> None:
             raise UnsupportedModel(
                 source, f"{name}: springdamper; write its stiffness and damping as numbers"
             )
-        if hasattr(joint, "align"):
-            joint.align = mujoco.mjtAlignFree.mjALIGNFREE_FALSE
 
 
 def _require_finite(model: mujoco.MjModel, path: Path) -> None:
@@ -199,7 +200,7 @@ class _Reader:
         model = self.model
         bodies = tuple(self._body(i) for i in range(model.nbody))
         names = [joint.name for body in bodies for joint in body.joints]
-        twice = [name for name in names if names.count(name) > 1]
+        twice = [name for name, count in Counter(names).items() if count > 1]
         if twice:
             raise ModelFileError(str(self.path), f"two joints go by '{twice[0]}'; name every joint")
         texts = _custom_texts(model)

@@ -3,15 +3,14 @@
 
 MuJoCo's compiler refuses a model for the inertia of a body that may be welded to the ground or to
 a heavier one. So it never sees what the file says of inertias: it gets stand-ins, and the numbers
-are composed here. Where they come from shapes or meshes, a second copy of the model, in which
-nothing moves, lets it measure these.
+are composed here. Where they come from shapes or meshes, it measures these in a second copy.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import mujoco
@@ -67,13 +66,13 @@ class Rules:
 
 
 def body_inertias(
-    spec: mujoco.MjSpec, shapes: mujoco.MjSpec, source: str
+    spec: mujoco.MjSpec, parse: Callable[[], mujoco.MjSpec], source: str
 ) -> tuple[list[mujoco.MjsBody], Mapping[int, Array], Mapping[int, Inertia], Rules]:
     """Take the inertias out of a spec, so that its compiler has nothing to refuse.
 
     Args:
         spec: gets a stand-in for every body's inertia.
-        shapes: a second copy of the same file; all that moves is taken out of it.
+        parse: reads the same file again, into a copy of which shapes are all that stays.
         source: the file, for messages.
 
     Returns:
@@ -100,7 +99,7 @@ def body_inertias(
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
     spec.compiler.boundmass = spec.compiler.boundinertia = 0.0
     spec.compiler.balanceinertia, spec.compiler.settotalmass = False, NO_TOTAL
-    measured = _measured(shapes, from_geoms, rules) if from_geoms else {}
+    measured = _measured(parse, from_geoms, rules) if from_geoms else {}
     return bodies, stated, measured, rules
 
 
@@ -130,50 +129,77 @@ def _stand_in(body: mujoco.MjsBody, keeps_its_frame: bool) -> None:
     body.explicitinertial = True
 
 
-def _measured(spec: mujoco.MjSpec, wanted: set[int], rules: Rules) -> dict[int, Inertia]:
+def _measured(
+    parse: Callable[[], mujoco.MjSpec], wanted: set[int], rules: Rules
+) -> dict[int, Inertia]:
     """Let MuJoCo weigh the shapes of bodies, by their place in the file."""
+    try:
+        return _weighed(parse(), wanted, rules)
+    except ValueError as error:  # a mesh without volume, or one that it cannot read
+        return _weighed(parse(), wanted, rules, " ".join(str(error).split()))
+
+
+def _weighed(
+    spec: mujoco.MjSpec, wanted: set[int], rules: Rules, no_meshes: str = ""
+) -> dict[int, Inertia]:
     bodies = list(spec.bodies)
     missing: dict[int, list[str]] = {place: [] for place in wanted}
-    _weld_everything(spec)
+    _leave_shapes(spec)
+    _leave_what_counts(spec, bodies, missing, rules, no_meshes)
+    for place, body in enumerate(bodies[1:], start=1):
+        body.explicitinertial = False
+        if place not in wanted or not list(body.geoms):
+            _stand_in(body, False)
+    model = spec.compile()
+    found = {}
+    for place in wanted:
+        inertia = Inertia.zero()
+        if list(bodies[place].geoms):
+            i = bodies[place].id
+            frame = placement(model.body_ipos[i], model.body_iquat[i])
+            moments = np.diag(model.body_inertia[i])
+            inertia = about_frame(float(model.body_mass[i]), moments, frame)
+        found[place] = replace(inertia, missing=tuple(missing[place]))
+    return found
+
+
+def _leave_what_counts(
+    spec: mujoco.MjSpec,
+    bodies: list[mujoco.MjsBody],
+    missing: dict[int, list[str]],
+    rules: Rules,
+    no_meshes: str,
+) -> None:
+    """Take out geoms that give no inertia, and name meshes that are not there, or not good."""
     meshes = {mesh.name: mesh for mesh in spec.meshes}
     used: set[str] = set()
     for place, geom in [(place, geom) for place, b in enumerate(bodies) for geom in b.geoms]:
-        if place not in wanted or not rules.counts(geom):
+        mesh = meshes.get(geom.meshname) if geom.meshname else None
+        counts = place in missing and rules.counts(geom)
+        if counts and geom.meshname:
+            fault = no_meshes or _absence(spec, mesh)
+            counts = fault is None
+            if fault is not None:
+                words = f"takes its inertia from a mesh ('{geom.meshname}', {fault})"
+                missing[place].append(f"body '{bodies[place].name}' {words}")
+        if not counts:
             spec.delete(geom)
             continue
         geom.material = ""
-        mesh = meshes.get(geom.meshname) if geom.meshname else None
-        if geom.meshname and (mesh is None or not _is_there(spec, mesh)):
-            missing[place].append(_words(bodies[place], geom.meshname, mesh))
-            spec.delete(geom)
-        elif mesh is not None:
+        if mesh is not None:
             used.add(mesh.name)
     for mesh in list(spec.meshes):
         if mesh.name not in used:
             spec.delete(mesh)
-    for place, body in enumerate(bodies[1:], start=1):
-        if place not in wanted:
-            _stand_in(body, False)
-        body.explicitinertial = place not in wanted
-    model = _weighed(spec, bodies, missing)
-    found = {}
-    for place in wanted:
-        i = bodies[place].id
-        frame = placement(model.body_ipos[i], model.body_iquat[i])
-        inertia = about_frame(float(model.body_mass[i]), np.diag(model.body_inertia[i]), frame)
-        found[place] = Inertia(
-            inertia.mass, inertia.first_moment, inertia.about_origin, tuple(missing[place])
-        )
-    return found
 
 
-def _weld_everything(spec: mujoco.MjSpec) -> None:
-    """Take out all but bodies, shapes and meshes; in particular the joints."""
+def _leave_shapes(spec: mujoco.MjSpec) -> None:
+    """Take out all but bodies, joints, shapes and meshes."""
     for sensor in list(spec.sensors):
         spec.delete(sensor)
     groups = (spec.actuators, spec.equalities, spec.tendons, spec.pairs, spec.excludes, spec.keys)
     files = (spec.skins, spec.flexes, spec.hfields, spec.materials, spec.textures)
-    for group in (*groups, *files, spec.tuples, spec.joints):
+    for group in (*groups, *files, spec.tuples):
         for item in list(group):
             spec.delete(item)
     spec.compiler.settotalmass, spec.compiler.fusestatic = NO_TOTAL, False
@@ -181,35 +207,14 @@ def _weld_everything(spec: mujoco.MjSpec) -> None:
     spec.compiler.discardvisual = False
 
 
-def _is_there(spec: mujoco.MjSpec, mesh: mujoco.MjsMesh) -> bool:
+def _absence(spec: mujoco.MjSpec, mesh: mujoco.MjsMesh | None) -> str | None:
+    """Say why a mesh is not there."""
+    if mesh is None:
+        return "which is not in the file"
     if not mesh.file:
-        return True  # its vertices are in the file
-    return (Path(str(spec.modelfiledir)) / str(spec.meshdir) / str(mesh.file)).is_file()
-
-
-def _words(body: mujoco.MjsBody, name: str, mesh: mujoco.MjsMesh | None) -> str:
-    file = f", file '{mesh.file}' is not there" if mesh is not None and mesh.file else ""
-    return f"body '{body.name}' takes its inertia from a mesh ('{name}'{file})"
-
-
-def _weighed(
-    spec: mujoco.MjSpec,
-    bodies: list[mujoco.MjsBody],
-    missing: dict[int, list[str]],
-) -> mujoco.MjModel:
-    """Compile; where a mesh has no volume or cannot be read, without meshes."""
-    try:
-        return spec.compile()
-    except ValueError as error:
-        why = " ".join(str(error).split())
-    meshes = [(p, geom) for p, body in enumerate(bodies) for geom in body.geoms if geom.meshname]
-    for place, geom in meshes:
-        words = f"body '{bodies[place].name}' takes its inertia from a mesh ('{geom.meshname}'"
-        missing[place].append(f"{words}, which MuJoCo does not read: {why})")
-        spec.delete(geom)
-    for mesh in list(spec.meshes):
-        spec.delete(mesh)
-    return spec.compile()
+        return None  # its vertices are in the file
+    path = Path(str(spec.modelfiledir)) / str(spec.meshdir) / str(mesh.file)
+    return None if path.is_file() else f"file '{mesh.file}' is not there"
 
 
 def placement(position: Array, quaternion: Array) -> Placement:

@@ -119,16 +119,20 @@ def _cross(v: Array) -> Array:
 def _body(robot: Robot, joint: int) -> str:
     """Name of the first body that a joint moves."""
     names = (frame.name for frame in robot.frames.values() if frame.joint == joint)
-    return next(names, robot.joint_names[joint])
+    return next(names, robot.joints[joint].name)
 
 
 def implausible(robot: Robot) -> Iterator[str]:
     """Yield what looks wrong in a robot's numbers, a line each."""
-    for i, joint in enumerate(robot.joints):
+    bodies: dict[int, str] = {}
+    for frame in robot.frames.values():
+        bodies.setdefault(frame.joint, frame.name)
+    names = [bodies.get(i, joint.name) for i, joint in enumerate(robot.joints)]
+    for name, joint in zip(names, robot.joints, strict=True):
         line = _doubt(joint.inertia)
         if line:
-            yield f"body '{_body(robot, i)}' {line}"
-    odd = {_body(robot, i): _density(joint.inertia) for i, joint in enumerate(robot.joints)}
+            yield f"body '{name}' {line}"
+    odd = {name: _density(j.inertia) for name, j in zip(names, robot.joints, strict=True)}
     shown = [
         f"'{body}' ({density:.2g} kg/m³)"
         for body, density in odd.items()
@@ -137,10 +141,9 @@ def implausible(robot: Robot) -> Iterator[str]:
     if shown:
         yield f"inertias of implausible density: {', '.join(shown)}"
     yield from _doubtful_limits(robot)
-    empty = [_body(robot, i) for i, joint in enumerate(robot.joints) if not joint.inertia.mass]
+    empty = [f"'{name}'" for name, j in zip(names, robot.joints, strict=True) if not j.inertia.mass]
     if empty:
-        names = ", ".join(f"'{name}'" for name in empty)
-        yield f"bodies without mass between or after joints: {names}"
+        yield f"bodies without mass between or after joints: {', '.join(empty)}"
     armature = robot.armature
     if robot.n > 2 and armature[0] > 0 and (armature == armature[0]).all():
         digits = f"{armature[0]:e}".split("e")[0].rstrip("0.")

@@ -127,7 +127,11 @@ def chain_to(robot: Robot, frame: str, rest: ArrayLike | None = None) -> Robot:
     """
     path, loops = _with_loops(robot, set(robot.ancestors(robot.frame(frame).joint)))
     values = np.zeros(robot.n) if rest is None else robot.vector("rest", rest)
-    locked = {j.name: float(values[i]) for i, j in enumerate(robot.joints) if i not in path}
+    locked = {
+        joint.name: float(values[i])
+        for i, joint in enumerate(robot.joints)
+        if i not in path and joint.name not in robot.followers
+    }
     welded = lock_joints(robot, locked)
     kept = {loop.name for loop in loops}
     chain = replace(
