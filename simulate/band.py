@@ -16,8 +16,7 @@ from softimpact.symbolic.robot.rigid import Array, Inertia
 from .approach import Approach, Arrival, arrival_of
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import LinearSystem, given_motion, linear_system, modes
-from .many import ManyPeaks
-from .stepping import Bodies, LargestForces, Stage, at_first_touch, faster, slower
+from .stepping import Bodies, LargestForces, ManyPeaks, Stage, at_first_touch, faster, slower
 from .tolerances import Factors, Tolerances, factors
 
 SAMPLES = 1000
@@ -145,7 +144,7 @@ def varied_peaks(
     varied = factors(tolerances or Tolerances(), model.robot.n, samples)
     bodies = _bodies(contact, varied)
     until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
-    largest = LargestForces(samples, horizon)
+    largest = LargestForces(samples, horizon, contact.clamped)
     state = at_first_touch(samples, model.size, bodies)
     v = np.full(samples, arrival.speed)
     links = _mass_of_each_link(model, arrival)
@@ -162,7 +161,7 @@ def varied_peaks(
             system, found, law, slower(state.motion, v), before, begin, motors.stopping_time
         )
         state = stage.run(*faster(*given, v), state, largest)
-    return ManyPeaks(largest.peak, largest.first_contact, largest.pressing)
+    return largest.found
 
 
 def _bodies(contact: Contact, varied: Factors) -> Bodies:

@@ -154,7 +154,7 @@ def _joined(scene: Scene, pieces: list[Piece]) -> Course:
         first, *later = (getattr(run, name) for run in runs)
         return np.concatenate([first, *(values[1:] for values in later)])
 
-    names = ("time", "depth", "closing", "force")
+    names = ("time", "depth", "closing", "force", "reading")
     run = Run(state=np.zeros((0, 0)), **{name: joined(name) for name in names})
     return Course(scene, tuple(pieces), run)
 

@@ -21,8 +21,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import LinearSystem, given_motion, modes
-from .many import ManyPeaks
-from .stepping import Bodies, LargestForces, Stage, at_first_touch, faster, slower
+from .stepping import Bodies, LargestForces, ManyPeaks, Stage, at_first_touch, faster, slower
 
 AT_ONCE = 2000
 """Most samples that are stepped together, for the memory's sake."""
@@ -104,14 +103,13 @@ class SampledImpacts:
 
     def peaks(self, speeds: Array) -> ManyPeaks:
         """Return the forces at speeds along n [m/s], one for each sample."""
-        peak, first, pressing = (np.zeros(self.count) for _ in range(3))
+        all_found = ManyPeaks(*(np.zeros(self.count) for _ in range(4)))
         for rows, group in self.groups:
-            found = LargestForces(len(rows), self.horizon)
+            found = LargestForces(len(rows), self.horizon, self.contact.clamped)
             group.run(speeds[rows], found)
-            peak[rows], first[rows] = found.peak, found.first_contact
-            if self.contact.clamped:
-                pressing[rows] = found.pressing
-        return ManyPeaks(peak, first, pressing)
+            for name, forces in vars(found.found).items():
+                getattr(all_found, name)[rows] = forces
+        return all_found
 
 
 def _alike(model: ImpactModel, at: Samples, bodies: Bodies) -> Iterator[NDArray[np.intp]]:

@@ -35,19 +35,34 @@ SHORTEST = 1e-9
 """Shortest stage [s], for impacts in which it does not happen at all."""
 
 
+@dataclass(frozen=True, eq=False)
+class ManyPeaks:
+    """Forces of many impacts [N], one entry each; see ``ImpactHistory``.
+
+    Where the force rises to the end, its first peak is where it ends.
+    """
+
+    peak: Array
+    first_contact: Array
+    first_peak: Array
+    pressing: Array
+
+
 class LargestForces:
     """The largest forces of each impact so far [N].
 
     Attributes:
         peak: of all contacts up to a horizon.
         first_contact: until robot and body part.
-        pressing: from ``HORIZON`` on.
+        first_peak: first local maximum; where the force rises to the end, the last.
+        pressing: from ``HORIZON`` on, on a clamped body.
     """
 
-    def __init__(self, count: int, horizon: float) -> None:
-        self.horizon = horizon
+    def __init__(self, count: int, horizon: float, clamped: bool) -> None:
+        self.horizon, self.clamped = horizon, clamped
         self.peak, self.first_contact, self.pressing = (np.zeros(count) for _ in range(3))
-        self._touched, self._parted = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self.first_peak = np.zeros(count)
+        self._touched, self._fallen, self._parted = (np.zeros(count, dtype=bool) for _ in range(3))
         self._last, self._before = np.zeros(count), np.zeros(count)
 
     def see(self, time: Array, force: Array) -> None:
@@ -59,14 +74,21 @@ class LargestForces:
         top = np.maximum(force, self._last + rise)
         early = time <= self.horizon * (1 + 1e-9)
         self.peak = np.where(early, np.maximum(self.peak, top), self.peak)
+        self.first_peak = np.where(self._fallen, self.first_peak, top)
+        self._fallen |= is_top & (force > 0) | self._touched & ~(force > 0)
         self._touched |= force > 0
         self.first_contact = np.where(
             self._parted, self.first_contact, np.maximum(self.first_contact, top)
         )
         self._parted |= self._touched & ~(force > 0)
-        late = time >= HORIZON * (1 - 1e-9)
+        late = self.clamped & (time >= HORIZON * (1 - 1e-9))
         self.pressing = np.where(late, np.maximum(self.pressing, force), self.pressing)
         self._before, self._last = self._last, force
+
+    @property
+    def found(self) -> ManyPeaks:
+        """What was seen."""
+        return ManyPeaks(self.peak, self.first_contact, self.first_peak, self.pressing)
 
 
 @dataclass(frozen=True, eq=False)

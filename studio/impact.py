@@ -22,6 +22,7 @@ from softimpact.simulate.controller import Reference
 from softimpact.simulate.tolerances import Tolerances
 from softimpact.symbolic import Contact, InvalidValue, body_region
 from softimpact.symbolic.body.body_file import load_body, load_cover
+from softimpact.symbolic.body.shapes import shape_from
 from softimpact.symbolic.robot.rigid import Array
 
 from . import values
@@ -37,6 +38,7 @@ class TypedBody:
     file: str | None = None
     cover: str | None = None
     clamped: bool = True
+    shape: str | None = None
 
 
 @dataclass(frozen=True)
@@ -102,6 +104,7 @@ def impact(where: Typed, how: TypedImpact) -> Answer:
     scene = situation(where)
     speed, velocity = _speed(scene, how)
     horizon = HORIZON if how.horizon is None else how.horizon
+    shape = None if how.body.shape is None else shape_from(how.body.shape)
     with _naming_options():
         found = assess_impact(
             scene.model,
@@ -111,6 +114,7 @@ def impact(where: Typed, how: TypedImpact) -> Answer:
             motors=controller_of(how) or motors,
             reaction=reaction,
             horizon=horizon,
+            shape=shape,
             payload=scene.payload,
             order=how.order,
             safe_speed=how.safe_speed,

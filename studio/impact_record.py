@@ -10,6 +10,8 @@ import numpy as np
 
 from softimpact.simulate import Assessment
 from softimpact.simulate.tolerances import Tolerances
+from softimpact.symbolic.body.regions import NEWTON_PER_CM2
+from softimpact.symbolic.body.shapes import shape_from
 
 from .impact import Answer, controller_of
 from .output import print_table
@@ -58,11 +60,16 @@ def record_of(answer: Answer) -> dict[str, Any]:
         "time_of_first_peak": history.time_of_first_peak,
         "separation": history.separation,
         "pressing": history.pressing,
+        "reading": _reading(answer),
         "energy": found.energy,
+        "shape": how.body.shape,
+        "pressure": _pressure(answer),
         "limits": {
             "transient": contact.region.force_limit,
             "quasi_static": contact.region.quasi_static_limit if contact.clamped else None,
             "energy": contact.region.energy_limit,
+            "transient_pressure": contact.region.transient_pressure,
+            "quasi_static_pressure": contact.region.quasi_static_pressure,
             "permitted": limits.permitted,
             "least_transient_force": limits.transient.force,
             "least_quasi_static_force": None if pressing is None else pressing.force,
@@ -92,10 +99,38 @@ def _springs(springs: Any, elastic: tuple[bool, ...]) -> list[float | None]:
     return [float(k) if gives else None for k, gives in zip(numbers, elastic, strict=True)]
 
 
+def _pressure(answer: Answer) -> float | None:
+    """Return a bound on the pressure at the peak [Pa]; None where no shape was given."""
+    shape = answer.how.body.shape
+    return None if shape is None else shape_from(shape).pressure(answer.found.history.peak)
+
+
+def _reading(answer: Answer) -> float | None:
+    """Return what a device with a plate shows at most [N]; without one it is the force."""
+    history = answer.found.history
+    if not answer.contact.region.plate_mass:
+        return None
+    return float(history.reading[history.time <= answer.horizon].max())
+
+
+def _per_cm2(pressure: float | None) -> float | None:
+    return None if pressure is None else pressure / NEWTON_PER_CM2
+
+
 def warnings_of(answer: Answer) -> list[str]:
     """Return what was ignored or assumed, and what to know before using the numbers."""
     found = answer.found
-    return [*answer.scene.warnings, *found.warnings, *_cautions(found)]
+    reach, peak = answer.contact.law.reach, found.history.peak
+    beyond = [
+        f"the force exceeds what is known of cover and skin ({reach:g} N); beyond it they are "
+        "taken as solid"
+    ]
+    return [
+        *answer.scene.warnings,
+        *found.warnings,
+        *_cautions(found),
+        *(beyond if peak > reach else []),
+    ]
 
 
 def _cautions(found: Assessment) -> Iterator[str]:
@@ -125,7 +160,9 @@ def print_impact(result: Mapping[str, Any]) -> None:
         ("  after", None if first is None else 1e3 * first, "ms"),
         ("separation after", None if separation is None else 1e3 * separation, "ms"),
         ("pressing after 0.5 s", result["pressing"], "N"),
+        ("largest reading of the device", result["reading"], "N"),
         ("energy in the body's spring", result["energy"], "J"),
+        ("pressure, at most", _per_cm2(result["pressure"]), "N/cm²"),
         ("limit, transient force", limits["transient"], "N"),
         ("limit, quasi-static force", limits["quasi_static"], "N"),
         (f"verdict, by {result['binding']}", result["verdict"], ""),
@@ -136,6 +173,11 @@ def print_impact(result: Mapping[str, Any]) -> None:
     if result["band"] is not None:
         low, high = (f"{getattr(result['band'], end):.4g}" for end in ("low", "high"))
         rows.insert(2, ("  95 of 100 cases lie within", f"{low} to {high}", "N"))
+    absent = {
+        "pressure, at most": result["pressure"],
+        "largest reading of the device": result["reading"],
+    }
+    rows = [row for row in rows if absent.get(row[0], 0.0) is not None]
     if bracket is None:
         rows = [row for row in rows if "if " not in row[0][:5]]
     print_table(

@@ -28,6 +28,15 @@ Cover = Annotated[
         metavar="FILE", help="What the robot wears at the contact (TOML).", rich_help_panel=BODY
     ),
 ]
+Shape = Annotated[
+    str | None,
+    typer.Option(
+        metavar="SHAPE",
+        help="What of the robot touches, so that pressure is judged, too: sphere:RADIUS, "
+        "edge:RADIUS,LENGTH or flat:AREA,RIM_RADIUS (m, m²).",
+        rich_help_panel=BODY,
+    ),
+]
 Clamped = Annotated[
     bool,
     typer.Option(
@@ -110,6 +119,7 @@ def simulate(
     fidelity: o.Fidelity = "linearised",
     body: Body = None,
     cover: Cover = None,
+    shape: Shape = None,
     clamped: Clamped = True,
     joint_velocity: JointVelocity = None,
     peak: Peak = "peak",
@@ -154,7 +164,7 @@ def simulate(
     arm = TypedArm(model, tip, end, lock, payload, tool, hold_base)
     where = Typed(arm, q, direction, given, gravity, motor_angles)
     how = TypedImpact(
-        body=TypedBody(region, body, cover, clamped),
+        body=TypedBody(region, body, cover, clamped, shape),
         speed=speed,
         fidelity=fidelity,
         joint_velocity=joint_velocity,

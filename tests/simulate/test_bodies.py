@@ -29,6 +29,7 @@ BODIES = {
     "cover": Contact(HAND, cover=PowerLaw(2e6)),
     "foam": Contact(HAND, cover=FOAM),
     "foam, free": Contact(HAND, clamped=False, cover=FOAM),
+    "squeezed flat": Contact(HAND, cover=Curve([0, 1e-3, 2e-3], [0, 10, 50])),
     "linear cover": Contact(body_region("chest"), cover=PowerLaw(2e5, 1.0)),
     "device": Contact(replace(RIG, plate_mass=0.0)),
     "device with plate": Contact(RIG),
@@ -106,6 +107,21 @@ def test_a_plate_makes_the_first_touch_harder() -> None:
     assert peaks[0] is not None
     assert peaks[1] is not None
     assert peaks[1].force > 1.05 * peaks[0].force
+
+
+def test_a_device_reads_the_force_in_its_spring() -> None:
+    """f_c less what the plate takes, by differences of the reading's own motion."""
+    contact = BODIES["device with plate"]
+    run, _ = impact(contact)
+    k, m = contact.region.stiffness, contact.region.plate_mass
+    step = float(np.ptp(run.time[:3])) / 2
+    inner = slice(1, 399)
+    x_0 = run.reading / k
+    acceleration = (x_0[2:400] - 2 * x_0[1:399] + x_0[:398]) / step**2
+    error = run.force[inner] - run.reading[inner] - m * acceleration
+    assert abs(error).max() < 2e-3 * run.force.max()
+    bare, _ = impact(BODIES["skin"])
+    np.testing.assert_array_equal(bare.reading, bare.force)
 
 
 def test_covers_help_and_thicker_ones_more() -> None:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -179,6 +179,8 @@ def test_a_contact_is_cover_and_skin_in_series() -> None:
     assert padded.force(1e-3) < bare.force(1e-3)
     with pytest.raises(InvalidValue, match="Hertz"):
         _ = Contact(chest, cover=FOAM).series_stiffness
+    with pytest.raises(InvalidValue, match="plate_mass"):
+        _ = Contact(replace(chest, plate_mass=0.1)).series_stiffness
 
 
 def test_laws_that_differ_in_numbers_alone_share_a_form() -> None:
