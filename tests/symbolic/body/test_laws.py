@@ -140,6 +140,7 @@ def test_a_series_agrees_with_bisection(name: str) -> None:
         assert force(law, depth)[0] == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(curves(), st.floats(1e4, 1e9), st.sampled_from([1.0, 1.5, 2.0]))
 def test_a_series_is_softer_than_each_part(curve: Curve, stiffness: float, exponent: float) -> None:
