@@ -110,7 +110,7 @@ def load_study(path: str | Path, overrides: dict[str, dict[str, Any]] | None = N
             and field.
     """
     source = Path(path)
-    return _build(read_study_file(source, overrides or {}), source)
+    return build_study(read_study_file(source, overrides or {}), source)
 
 
 @contextmanager
@@ -124,7 +124,8 @@ def _naming(source: Path, section: str, field: str) -> Iterator[None]:
         raise InvalidValue(f"{source}: {section}.{field}", str(error)) from None
 
 
-def _build(file: StudyFile, source: Path) -> Study:
+def build_study(file: StudyFile, source: Path) -> Study:
+    """Return the study that a file describes; raises InvalidValue, which names file and field."""
     robot = _robot(file.robot, source)
     with _naming(source, "stiffness", "lower"):
         lower, upper, nominal = _stiffness(robot, file.stiffness)

@@ -117,7 +117,7 @@ def read_study_file(source: Path, overrides: dict[str, dict[str, Any]]) -> Study
     Raises:
         InvalidValue: names file and field.
     """
-    content = _read(source)
+    content = read_toml(source)
     for section, fields in overrides.items():
         given = content.get(section, {})
         content[section] = {**given, **fields} if isinstance(given, dict) else given
@@ -127,9 +127,10 @@ def read_study_file(source: Path, overrides: dict[str, dict[str, Any]]) -> Study
         raise _first_problem(source, error) from None
 
 
-def _read(source: Path) -> dict[str, Any]:
+def read_toml(source: Path) -> dict[str, Any]:
+    """Read a TOML file; raises InvalidValue."""
     try:
-        return tomllib.loads(source.read_text(encoding="utf-8"))
+        return tomllib.loads(source.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise InvalidValue(str(source), "no such study file") from None
     except (OSError, UnicodeDecodeError) as error:

@@ -144,7 +144,7 @@ def varied_peaks(
     varied = factors(tolerances or Tolerances(), model.robot.n, samples)
     bodies = _bodies(contact, varied)
     until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
-    largest = LargestForces(samples, horizon)
+    largest = LargestForces(samples, horizon, contact.clamped)
     state = at_first_touch(samples, model.size, bodies)
     v = np.full(samples, arrival.speed)
     links = _mass_of_each_link(model, arrival)

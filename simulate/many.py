@@ -38,7 +38,7 @@ def many_peaks(
     v = np.atleast_1d(np.asarray(speeds, dtype=float))
     before = generalised_velocity(model, arrival.link_velocity)
     until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
-    largest = LargestForces(len(v), horizon)
+    largest = LargestForces(len(v), horizon, contact.clamped)
     bodies = Bodies.of([contact.region], contact.clamped, contact.law)
     state = at_first_touch(len(v), model.size, bodies)
     ends = [begin for begin, _ in what.laws[1:]] + [until]

@@ -105,7 +105,7 @@ class SampledImpacts:
         """Return the forces at speeds along n [m/s], one for each sample."""
         all_found = ManyPeaks(*(np.zeros(self.count) for _ in range(4)))
         for rows, group in self.groups:
-            found = LargestForces(len(rows), self.horizon)
+            found = LargestForces(len(rows), self.horizon, self.contact.clamped)
             group.run(speeds[rows], found)
             for name, forces in vars(found.found).items():
                 getattr(all_found, name)[rows] = forces

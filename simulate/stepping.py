@@ -59,11 +59,11 @@ class LargestForces:
         peak: of all contacts up to a horizon.
         first_contact: until robot and body part.
         first_peak: first local maximum; where the force rises to the end, the last.
-        pressing: from ``HORIZON`` on.
+        pressing: from ``HORIZON`` on, on a clamped body.
     """
 
-    def __init__(self, count: int, horizon: float) -> None:
-        self.horizon = horizon
+    def __init__(self, count: int, horizon: float, clamped: bool) -> None:
+        self.horizon, self.clamped = horizon, clamped
         self.peak, self.first_contact, self.pressing = (np.zeros(count) for _ in range(3))
         self.first_peak = np.zeros(count)
         self._touched, self._fallen, self._parted = (np.zeros(count, dtype=bool) for _ in range(3))
@@ -85,7 +85,7 @@ class LargestForces:
             self._parted, self.first_contact, np.maximum(self.first_contact, top)
         )
         self._parted |= self._touched & ~(force > 0)
-        late = time >= HORIZON * (1 - 1e-9)
+        late = self.clamped & (time >= HORIZON * (1 - 1e-9))
         self.pressing = np.where(late, np.maximum(self.pressing, force), self.pressing)
         self._before, self._last = self._last, force
 

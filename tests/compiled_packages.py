@@ -7,10 +7,11 @@ import ctypes
 import os
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,7 +35,21 @@ WARNINGS = [
 COMMITTED = sorted(path.name for path in (Path(__file__).parents[1] / "generated").iterdir())
 """Names of the built-in robots whose packages are in the repository."""
 
+QUICK = ("panda", "rr", "gantry", "rmin")
+"""Robots with whose packages the fast tests are content; the others' are slow."""
+
 KINDS = {"double": (ctypes.c_double, np.float64), "float": (ctypes.c_float, np.float32)}
+
+
+def mostly_slow(cases: Iterable[Any], quick: Collection[Any] = QUICK) -> list[Any]:
+    """Return cases for ``parametrize``, marked slow but for the quick ones."""
+    slow = pytest.mark.slow
+    return [
+        pytest.param(
+            *(case if isinstance(case, tuple) else (case,)), marks=() if case in quick else slow
+        )
+        for case in cases
+    ]
 
 
 def candidate_poses(name: str, robot: Robot) -> dict[str, Sequence[float]]:

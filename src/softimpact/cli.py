@@ -18,9 +18,12 @@ from .interruption import INTERRUPTED, interruptible, report
 from .papers.factors_study_command import factors_study
 from .papers.reproduce_command import reproduce
 from .studio.analyze_command import analyze
+from .studio.check_command import check
 from .studio.design_command import design
 from .studio.factors_command import factors
 from .studio.generate_command import generate
+from .studio.init_command import init
+from .studio.inspect_command import inspect
 from .studio.pareto_command import pareto
 from .studio.program_command import SeveralValues, program
 from .studio.robots_command import robots
@@ -30,9 +33,12 @@ from .studio.simulate_command import simulate
 USER_ERROR = 2
 """Exit code; a failed solver's is 3 and comes with its exception."""
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer(pretty_exceptions_enable=False)
 
 app.command()(robots)
+app.command()(inspect)
+app.command()(init)
+app.command()(check)
 app.command()(analyze)
 app.command()(factors)
 app.command()(factors_study)

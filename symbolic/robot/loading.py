@@ -81,7 +81,8 @@ def load_robot(
     description = describe(model_path(model))
     chosen = tip or description.tip
     robot = assemble(description, toward or chosen, base)
-    robot = replace(robot, tip=chosen, warnings=(*robot.warnings, *implausible(robot)))
+    doubts = () if str(model) in built_in_robots() else implausible(robot)  # those cite sources
+    robot = replace(robot, tip=chosen, warnings=(*robot.warnings, *doubts))
     if robot.tip is not None:
         robot.frame(robot.tip)
         chain_to(robot, robot.tip)

@@ -86,6 +86,8 @@ class _Reader:
             carried[child] = name
             children[parent].append(joint)
         roots = [name for name in links if name not in carried]
+        if not links:
+            raise self._error("has no links")
         if not roots:
             raise self._error("has no root: its joints form a ring")
         if len(roots) > 1:
