@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.symbolic import BodyRegion
-from softimpact.symbolic.body.laws import Law
+from softimpact.symbolic.body.laws import Law, PowerLaw
+from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
 from .exact_steps import DenseStep, body_system, dense_step, standing_compliance
@@ -27,6 +28,9 @@ from .scene import Motion
 
 PHASE = 0.08
 """Most radians of the contact's vibration in a step: forces are then right to 1e-3."""
+
+HARD = 500.0
+"""Force [N] at which a plate's bounce on the skin must still be resolved."""
 
 FEWEST_STEPS = 40
 """Fewest steps of a stage of the motors."""
@@ -101,7 +105,8 @@ class Bodies:
         system: A and b of ``body_system``.
         out: x_0 is this times the body's state, length m.
         standing: compliance that follows the force at once [m/N].
-        stiffness: k_h [N/m].
+        stiffness: that a robot vibrates against at most [N/m]: k_h, or the law's where a plate has
+            a mass, on which the skin bounces.
         mobility: that the body adds to the robot's [1/kg].
     """
 
@@ -122,6 +127,7 @@ class Bodies:
         A, b = (np.array([system[i] for system in systems]) for i in (0, 1))
         if len(regions) == 1:
             A, b = A[0], b[0]
+        bouncing = float(np.max(scale)) * _tangent(law, HARD)
         plate = [1 / r.plate_mass if r.plate_mass else 0.0 for r in regions]
         free = [0.0 if clamped else 1 / r.effective_mass for r in regions]
         return Bodies(
@@ -130,13 +136,25 @@ class Bodies:
             system=(A, b),
             out=systems[0][2],
             standing=np.array([standing_compliance(region) for region in regions]),
-            stiffness=np.array([region.stiffness for region in regions]),
+            stiffness=np.array(
+                [max(r.stiffness, bouncing if r.plate_mass else 0.0) for r in regions]
+            ),
             mobility=np.array(plate) + np.array(free),
         )
 
     def frequency(self, robot_mobility: Array) -> Array:
         """Return ω of a contact [rad/s] with a robot of some mobility at its point [1/kg]."""
         return np.asarray(np.sqrt(self.stiffness * (robot_mobility + self.mobility)))
+
+
+def _tangent(law: Law, force: float) -> float:
+    """Return the slope of a law [N/m] at a force [N]."""
+    if isinstance(law, PowerLaw):
+        n = law.exponent
+        return float(n * law.stiffness ** (1 / n) * force ** (1 - 1 / n))
+    points = points_of(law)
+    depth = np.interp(force, points.forces, points.depth)
+    return float(points.evaluated(np.array([depth]))[1][0])
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,13 +8,27 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
+from impact_cases import ALONG_Y, POSE
 from scipy.integrate import solve_ivp
 
+from softimpact.simulate import Approach, simulate_impact
 from softimpact.simulate.events import Peaks, course_of, peaks_of
+from softimpact.simulate.many import many_peaks
 from softimpact.simulate.mechanism import BodyKind, Mechanism
 from softimpact.simulate.scene import Run, Scene, one_stage
 from softimpact.simulate.simulator import build_simulator
-from softimpact.symbolic import Contact, Curve, PowerLaw, body_region, in_series
+from softimpact.symbolic import (
+    Contact,
+    Curve,
+    ImpactModel,
+    Motors,
+    PowerLaw,
+    Robot,
+    body_region,
+    drives,
+    impact_model,
+    in_series,
+)
 from softimpact.symbolic.body.devices import measuring_device
 from softimpact.symbolic.body.pads import PADS
 from softimpact.symbolic.robot.rigid import Array
@@ -93,6 +107,25 @@ def test_agrees_with_scipy(name: str) -> None:
     tolerance = 1e-3 if contact.region.damping == contact.region.plate_mass == 0 else 2e-5
     np.testing.assert_allclose(run.force[at], expected, rtol=0, atol=tolerance * peak)
     assert expected.max() <= peak * (1 + 1e-4)
+
+
+@pytest.fixture(scope="module")
+def arm(panda: Robot) -> ImpactModel:
+    return impact_model(panda, drives_=drives(panda, 1e4))
+
+
+HEAVY = Contact(measuring_device(75e3, PADS["sh70"], 2.0))
+
+
+@pytest.mark.parametrize("contact", [*BODIES.values(), HEAVY], ids=[*BODIES, "heavy plate"])
+def test_many_impacts_at_once_are_those_of_sundials(arm: ImpactModel, contact: Contact) -> None:
+    loose, motors = replace(contact, clamped=False), Motors("driven", 0.01)
+    for speed in (0.2, 0.8):
+        approach = Approach(POSE, ALONG_Y, speed)
+        one = simulate_impact(arm, approach, loose, motors=motors, horizon=0.04)
+        many = many_peaks(arm, approach, loose, speed, motors=motors, horizon=0.04)
+        assert many.peak[0] == pytest.approx(one.peak, rel=1e-3)
+        assert many.first_contact[0] == pytest.approx(one.first_contact, rel=1e-3)
 
 
 def test_a_light_plate_does_not_matter() -> None:
