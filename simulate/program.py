@@ -46,6 +46,7 @@ class Danger:
         sample: of the program, length P.
         speed: of the point there [m/s].
         direction: in which it moves, P×3.
+        link_velocity: of the independent joints per 1 m/s of that speed, P×n.
         safe_speed: largest speed that keeps all limits [m/s]; infinite where the program's does.
         peak: force at the program's speed [N].
         share: how much of the limits the program's speed uses; above 1 they are exceeded.
@@ -59,6 +60,7 @@ class Danger:
     sample: NDArray[np.intp]
     speed: Array
     direction: Array
+    link_velocity: Array
     safe_speed: Array
     peak: Array
     share: Array
@@ -235,6 +237,7 @@ def _danger(
         sample=at.sample,
         speed=at.speed,
         direction=at.samples.direction,
+        link_velocity=at.samples.link_velocity,
         safe_speed=safe,
         peak=peak,
         share=share,

@@ -109,6 +109,8 @@ class SampledImpacts:
             group.run(speeds[rows], found)
             for name, forces in vars(found.found).items():
                 getattr(all_found, name)[rows] = forces
+        if not self.contact.clamped:  # what gives way cannot be pressed
+            all_found.pressing[:] = 0.0
         return all_found
 
 

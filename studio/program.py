@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from softimpact.simulate import HORIZON
+from softimpact.simulate import HORIZON, Approach
 from softimpact.simulate.assessment import bracket
+from softimpact.simulate.band import Band, impact_band
 from softimpact.simulate.program import (
     Danger,
     SafeProgram,
@@ -29,6 +30,7 @@ from softimpact.symbolic import (
     body_region,
     frame_pose,
     impact_model,
+    limits_of,
     load_robot,
 )
 from softimpact.symbolic.body.body_file import load_cover
@@ -62,6 +64,7 @@ class TypedProgram:
     clamped: bool = True
     horizon: float | None = None
     gravity: str | None = None
+    band: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +110,32 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     safe = safe_program(motion, dangers)
     warnings = [*arm.warnings, *told, *assumed, *_cautions(robot, motion, bodies, dangers)]
     record = _record(path, how, model, motion, points, ends, horizon, dangers, safe, warnings)
+    if how.band:
+        for moment in record["worst"]:
+            moment["band"] = _band(model, motion, safe, moment["sample"], bodies, ends, horizon)
     return ProgramResult(motion, dangers, safe, record)
+
+
+def _band(
+    model: ImpactModel,
+    motion: Trajectory,
+    safe: SafeProgram,
+    sample: int,
+    bodies: Sequence[Contact],
+    ends: dict[str, Motors],
+    horizon: float,
+) -> Band:
+    """Return the band of the peak at the program's own speed, at its worst danger."""
+    worst = safe.worst[sample]
+    assert worst is not None
+    danger, row = worst
+    (body,) = [body for body in bodies if body.region.name == danger.region]
+    at = replace(model, tip=model.robot.frame(danger.point).name)
+    approach = Approach(
+        motion.q[sample], danger.direction[row], danger.speed[row], danger.link_velocity[row]
+    )
+    limits = limits_of(body.region, body.clamped)
+    return impact_band(at, approach, body, ends.values(), limits, horizon=horizon).peak
 
 
 def _end(robot: Robot, how: TypedProgram) -> str | None:
@@ -143,7 +171,11 @@ def _bodies(how: TypedProgram) -> list[Contact]:
     names = dict.fromkeys(how.regions)
     if not names:
         raise InvalidValue("regions", "names no region of the body")
-    return [Contact(body_region(name), how.clamped, cover=cover) for name in names]
+    bodies = [Contact(body_region(name), how.clamped, cover=cover) for name in names]
+    for body in bodies:
+        if limits_of(body.region, body.clamped).transient.force == np.inf:
+            raise InvalidValue("regions", f"'{body.region.name}' has no limits to be kept")
+    return bodies
 
 
 def _cautions(
@@ -237,11 +269,23 @@ def print_program(found: ProgramResult, out: Path | None) -> None:
     safe, record = found.safe, found.record
     longer = safe.time_after / safe.time_before - 1
     slowed = int((safe.factor < 1).sum())
+    bands = {"band N": None} if any("band" in moment for moment in record["worst"]) else {}
     print_table(
         f"{record['robot']}: {safe.time_before:.4g} s become {safe.time_after:.4g} s "
         f"(+{100 * longer:.3g} %; by the two-body formula {safe.time_by_formula:.4g} s); "
         f"{slowed} of {len(safe.factor)} samples slow down",
-        ("worst at", "factor", "point", "region", "limit", "motors", "m/s", "safe m/s", "N"),
+        (
+            "worst at",
+            "factor",
+            "point",
+            "region",
+            "limit",
+            "motors",
+            "m/s",
+            "safe m/s",
+            "N",
+            *bands,
+        ),
         [
             (
                 f"{moment['t']:.4g} s",
@@ -253,6 +297,7 @@ def print_program(found: ProgramResult, out: Path | None) -> None:
                 moment["speed"],
                 moment["safe_speed"] if np.isfinite(moment["safe_speed"]) else None,
                 moment["peak"],
+                *(f"{moment['band'].low:.0f} to {moment['band'].high:.0f}" for _ in bands),
             )
             for moment in record["worst"]
         ],

@@ -71,6 +71,12 @@ Regions = Annotated[
         rich_help_panel=BODY,
     ),
 ]
+Band = Annotated[
+    bool,
+    typer.Option(
+        "--band", help="Where 95 of 100 cases of the worst moments lie, for what is not known."
+    ),
+]
 Out = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder for results.json, CSV tables and a figure."),
@@ -99,6 +105,7 @@ def program(
     torque_limit: o.TorqueLimit = None,
     gear_ratio: o.GearRatio = None,
     gravity: o.Gravity = None,
+    band: Band = False,
     out: Out = None,
     json: o.Json = False,
 ) -> None:
@@ -130,6 +137,7 @@ def program(
         clamped=clamped,
         horizon=horizon,
         gravity=gravity,
+        band=band,
     )
     found = run_program(motion, how)
     print_warnings(found.record["warnings"])

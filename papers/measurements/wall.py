@@ -2,9 +2,9 @@
 """The Panda on a rigid wall: how heavy it seems, and as which rigid body.
 
 Y. Wang, N. Dehio, A. Kheddar, On Inverse Inertia Matrix and Contact-Force Model for Robotic
-Manipulators at Normal Impacts, IEEE RA-L 7(2), 2022 (arXiv 2109.04756) hit a force plate 150 times
-with a Panda that followed its path stiffly, and found that the inverse inertia of the composite
-rigid body, all joints locked, fits best.
+Manipulators at Normal Impacts, IEEE RA-L 7(2), 2022 (arXiv 2109.04756) hit a rigid wall with a
+force sensor 150 times, with a stiffly controlled Panda, and found that the inverse inertia of the
+composite rigid body, all joints locked, fits best.
 """
 
 from __future__ import annotations

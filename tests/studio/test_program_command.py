@@ -92,11 +92,12 @@ def test_coarse_motions_are_called_so(result: tuple[Found, Path]) -> None:
 def test_table(motion: Path) -> None:
     outcome = run(
         *("program", motion, "--model", "panda", "--points", "hand_tcp"),
-        *("--regions", "hand", *QUICK),
+        *("--regions", "hand", *QUICK, "--band"),
     )
     assert outcome.code == 0
     assert "2 s become" in outcome.out
     assert "hand_tcp" in outcome.out
+    assert "band N" in outcome.out
 
 
 def test_points_by_default_are_the_end_and_some_along_the_arm(motion: Path) -> None:
@@ -134,6 +135,7 @@ def arguments(motion: Path, *more: object) -> tuple[object, ...]:
     ("more", "reason"),
     [
         (("nose",), "unknown body region 'nose'"),
+        (("device_75_sh70",), "regions: 'device_75_sh70' has no limits to be kept"),
         (("hand", "--motors", "held", "--position-gain", 1), "cannot give a safe program"),
         (("hand", "--horizon", 0), "horizon: must be"),
         (("hand", "--end", "elbow"), "unknown frame 'elbow'"),
