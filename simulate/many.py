@@ -95,7 +95,7 @@ class _Found:
         self.peak, self.first_contact, self.pressing = (np.zeros(count) for _ in range(3))
         self.first_peak = np.zeros(count)
         self.touched, self.fallen, self.parted = (np.zeros(count, dtype=bool) for _ in range(3))
-        self.last, self.before = np.zeros(count), np.zeros(count)
+        self.last, self.before, self.time = np.zeros(count), np.zeros(count), 0.0
 
     def see(self, time: float, force: Array) -> None:
         """Take in the forces at a node; tops are those of parabolas through three nodes."""
@@ -106,6 +106,9 @@ class _Found:
         top = np.maximum(force, self.last + rise)
         if time <= self.horizon * (1 + 1e-9):
             self.peak = np.maximum(self.peak, top)
+        elif self.time < self.horizon:
+            share = (self.horizon - self.time) / (time - self.time)
+            self.peak = np.maximum(self.peak, self.last + share * (force - self.last))
         self.first_peak = np.where(self.fallen, self.first_peak, top)
         self.fallen |= is_top & (force > 0) | self.touched & ~(force > 0)
         self.touched |= force > 0
@@ -115,7 +118,7 @@ class _Found:
         self.parted |= self.touched & ~(force > 0)
         if time >= HORIZON * (1 - 1e-9):
             self.pressing = np.maximum(self.pressing, force)
-        self.before, self.last = self.last, force
+        self.before, self.last, self.time = self.last, force, time
 
 
 class _Stage:
