@@ -67,7 +67,7 @@ class LargestForces:
         self.peak, self.first_contact, self.pressing = (np.zeros(count) for _ in range(3))
         self.first_peak = np.zeros(count)
         self._touched, self._fallen, self._parted = (np.zeros(count, dtype=bool) for _ in range(3))
-        self._last, self._before = np.zeros(count), np.zeros(count)
+        self._last, self._before, self._time = np.zeros(count), np.zeros(count), np.zeros(1)
 
     def see(self, time: Array, force: Array) -> None:
         """Take in the forces at a node; tops are those of parabolas through three nodes."""
@@ -77,7 +77,11 @@ class LargestForces:
         rise = np.where(is_top, lean * lean / np.where(bend < 0, -8 * bend, 1.0), 0.0)
         top = np.maximum(force, self._last + rise)
         early = time <= self.horizon * (1 + 1e-9)
-        self.peak = np.where(early, np.maximum(self.peak, top), self.peak)
+        share = np.clip((self.horizon - self._time) / (time - self._time), 0.0, 1.0)
+        at_horizon = self._last + share * (force - self._last)
+        crosses = self._time < self.horizon
+        seen = np.where(early, top, np.where(crosses, at_horizon, 0.0))
+        self.peak = np.maximum(self.peak, seen)
         self.first_peak = np.where(self._fallen, self.first_peak, top)
         self._fallen |= is_top & (force > 0) | self._touched & ~(force > 0)
         self._touched |= force > 0
@@ -87,7 +91,7 @@ class LargestForces:
         self._parted |= self._touched & ~(force > 0)
         late = self.clamped & (time >= HORIZON * (1 - 1e-9))
         self.pressing = np.where(late, np.maximum(self.pressing, force), self.pressing)
-        self._before, self._last = self._last, force
+        self._before, self._last, self._time = self._last, force, time
 
     @property
     def found(self) -> ManyPeaks:
