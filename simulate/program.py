@@ -30,6 +30,9 @@ from .sampled import Samples
 from .sampled_speeds import safe_speeds
 from .trajectory import Trajectory, passes, time_at_speeds
 
+MOMENTS_APART = 0.05
+"""Least share of a program's time between two of its worst moments."""
+
 STILL = 1e-4
 """Speed below which a point does not hit anything [m/s]."""
 
@@ -166,17 +169,22 @@ def safe_program(motion: Trajectory, dangers: Sequence[Danger]) -> SafeProgram:
     )
 
 
-def worst_moments(program: SafeProgram, count: int = 5) -> list[int]:
-    """Return the worst samples, each the worst of its neighbours, then others; worst first."""
-    known = [(k, worst) for k, worst in enumerate(program.worst) if worst is not None]
+def worst_moments(motion: Trajectory, program: SafeProgram, count: int = 5) -> list[int]:
+    """Return the worst samples, some way apart in time while there are others; worst first."""
     severity = np.full(len(program.factor), -np.inf)
-    for k, (danger, row) in known:
-        factor = program.factor[k]
-        severity[k] = 2 - factor if factor < 1 else min(danger.share[row], 1.0)
-    beside = np.concatenate([[-np.inf], severity, [-np.inf]])
-    peaks = (severity > -np.inf) & (severity >= beside[:-2]) & (severity > beside[2:])
-    order = np.lexsort((-severity, ~peaks))
-    return [int(k) for k in order[:count] if severity[k] > -np.inf]
+    for k, worst in enumerate(program.worst):
+        if worst is not None:
+            danger, row = worst
+            slowed = program.factor[k] < 1
+            severity[k] = 2 - program.factor[k] if slowed else min(danger.share[row], 1.0)
+    order = [int(k) for k in np.argsort(-severity, kind="stable") if severity[k] > -np.inf]
+    apart = MOMENTS_APART * program.time_before
+    chosen: list[int] = []
+    for k in order:
+        if all(abs(motion.time[k] - motion.time[other]) > apart for other in chosen):
+            chosen.append(k)
+    more = [k for k in order if k not in chosen[:count]]
+    return sorted([*chosen[:count], *more][:count], key=order.index)
 
 
 @dataclass(frozen=True, eq=False)
