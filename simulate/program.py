@@ -106,7 +106,7 @@ def program_dangers(
     *,
     horizon: float = HORIZON,
     payload: float = 0.0,
-    seen: Callable[[], None] = lambda: None,
+    seen: Callable[[int], None] = lambda count: None,
 ) -> list[Danger]:
     """Return what each point may do to each body.
 
@@ -118,7 +118,8 @@ def program_dangers(
         ends: what the motors may do, by kind; the worst of them counts.
         horizon: up to which the largest force counts [s].
         payload: mass that the model holds, for the standard's formula [kg].
-        seen: called after each point, body and kind of motors.
+        seen: called with the number of samples that were looked at for a point, a body and a kind
+            of motors, every few thousand.
 
     Raises:
         InvalidValue: a point that never moves.
@@ -221,13 +222,13 @@ def _danger(
     ends: Mapping[str, Motors],
     horizon: float,
     by_formula: float,
-    seen: Callable[[], None],
+    seen: Callable[[int], None],
 ) -> Danger:
     count = len(at.speed)
     safe, peak, share = np.full(count, np.inf), np.zeros(count), np.zeros(count)
     limit, motors = np.full(count, "", dtype="<U24"), np.full(count, "", dtype="<U8")
     for kind, end in ends.items():
-        found = safe_speeds(at.model, at.samples, at.speed, body, end, horizon)
+        found = safe_speeds(at.model, at.samples, at.speed, body, end, horizon, seen)
         speed, name, used = found.safe, found.limit, found.share
         worse = (speed < safe) | ((speed == safe) & (used > share))
         limit[worse], motors[worse] = name[worse], kind
@@ -236,7 +237,6 @@ def _danger(
             np.maximum(peak, found.peak),
             np.maximum(share, used),
         )
-        seen()
     return Danger(
         point=at.point,
         region=body.region.name,

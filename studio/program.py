@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -37,6 +39,7 @@ from softimpact.symbolic.robot.robot import BASE
 
 from .motion_file import limits_left, read_motion
 from .program_record import ProgramResult, program_record
+from .progress import progress_bar
 from .situation import TypedArm, TypedDrives, drives_of, gravity_of, loaded_arm
 from .typed_motors import TypedMotors, motors_of
 from .waypoints import read_waypoints
@@ -83,9 +86,10 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     horizon = HORIZON if how.horizon is None else how.horizon
     if not 0 < horizon < np.inf:
         raise InvalidValue("horizon", f"must be finite and greater than 0 s, not {horizon:g}")
-    dangers = program_dangers(
-        model, motion, points, bodies, ends, horizon=horizon, payload=arm.load
-    )
+    with _progress(len(motion.time) * len(points) * len(bodies) * len(ends)) as seen:
+        dangers = program_dangers(
+            model, motion, points, bodies, ends, horizon=horizon, payload=arm.load, seen=seen
+        )
     safe = safe_program(motion, dangers)
     warnings = [*arm.warnings, *told, *assumed, *_cautions(robot, motion, bodies, dangers)]
     record = program_record(
@@ -95,6 +99,17 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
         for moment in record["worst"]:
             moment["band"] = _band(model, motion, safe, moment["sample"], bodies, ends, horizon)
     return ProgramResult(motion, dangers, safe, record)
+
+
+@contextmanager
+def _progress(total: int) -> Iterator[Callable[[int], None]]:
+    """Show a bar on stderr if somebody looks at it."""
+    if not sys.stderr.isatty():
+        yield lambda count: None
+        return
+    with progress_bar() as progress:
+        task = progress.add_task("impacts", total=total)
+        yield lambda count: progress.advance(task, count)
 
 
 def _motion(path: Path, robot: Robot, whole: Robot) -> tuple[Trajectory, list[str]]:
