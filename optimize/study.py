@@ -124,7 +124,7 @@ def load_study(path: str | Path, overrides: dict[str, dict[str, Any]] | None = N
             and field.
     """
     source = Path(path)
-    return _build(read_study_file(source, overrides or {}), source)
+    return build_study(read_study_file(source, overrides or {}), source)
 
 
 @contextmanager
@@ -138,7 +138,8 @@ def _naming(source: Path, section: str, field: str) -> Iterator[None]:
         raise InvalidValue(f"{source}: {section}.{field}", str(error)) from None
 
 
-def _build(file: StudyFile, source: Path) -> Study:
+def build_study(file: StudyFile, source: Path) -> Study:
+    """Return the study that a file describes; raises InvalidValue, which names file and field."""
     robot = _robot(file.robot, source)
     with _naming(source, "stiffness", "lower"):
         lower, upper, nominal = _stiffness(robot, file.stiffness)
@@ -184,7 +185,8 @@ def _robot(section: RobotSection, source: Path) -> Robot:
     """Load the robot, a chain to its tip; a path is taken relative to the study file."""
     beside = source.parent / section.model
     with _naming(source, "robot", "model"):
-        robot = load_robot(beside if beside.is_file() else section.model)
+        model = beside if beside.is_file() else section.model
+        robot = load_robot(model, hold_base=section.hold_base, toward=section.tip)
     with _naming(source, "robot", "tip"):
         tip = section.tip if section.tip is not None else robot.tip
         if tip is None:

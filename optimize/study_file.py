@@ -27,6 +27,7 @@ class RobotSection(_Section):
 
     model: str
     tip: str | None = None
+    hold_base: bool = False
     rotor_inertia: str | Finite | list[Finite] | None = None
     position_gain: Finite | list[Finite] | None = None
     computed_torque_gain: Finite | None = None
@@ -164,7 +165,7 @@ def read_study_file(source: Path, overrides: dict[str, dict[str, Any]]) -> Study
     Raises:
         InvalidValue: names file and field.
     """
-    content = _read(source)
+    content = read_toml(source)
     for section, fields in overrides.items():
         given = content.get(section, {})
         content[section] = {**given, **fields} if isinstance(given, dict) else given
@@ -174,9 +175,10 @@ def read_study_file(source: Path, overrides: dict[str, dict[str, Any]]) -> Study
         raise _first_problem(source, error) from None
 
 
-def _read(source: Path) -> dict[str, Any]:
+def read_toml(source: Path) -> dict[str, Any]:
+    """Read a TOML file; raises InvalidValue."""
     try:
-        return tomllib.loads(source.read_text(encoding="utf-8"))
+        return tomllib.loads(source.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise InvalidValue(str(source), "no such study file") from None
     except (OSError, UnicodeDecodeError) as error:

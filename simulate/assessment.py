@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -18,10 +18,12 @@ from softimpact.symbolic.impact.two_body import TwoBody, moving_mass, two_body
 from softimpact.symbolic.robot.rigid import Array
 
 from .approach import Approach, arrival_of
+from .band import ImpactBand, impact_band
 from .controller import Controller
 from .history import HORIZON, Fidelity, ImpactHistory
 from .impact import simulate_impact
 from .safe_speed import ForceLimits, largest_safe_speed
+from .tolerances import Tolerances
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +43,7 @@ class Assessment:
         joint_speed_limit_exceeded: names of joints that are then faster than they can be.
         torque_limit_exceeded: names of joints on which a servo asks for more than its motor has,
             in a linear model, which lets it have that.
+        band: of the impact for what is not known exactly; None if not asked for.
         warnings: what was assumed for want of a number, a line each.
     """
 
@@ -54,6 +57,7 @@ class Assessment:
     joint_velocity: Array
     joint_speed_limit_exceeded: tuple[str, ...]
     torque_limit_exceeded: tuple[str, ...]
+    band: ImpactBand | None
     warnings: tuple[str, ...]
 
     @property
@@ -80,6 +84,7 @@ def assess_impact(
     payload: float = 0.0,
     order: int = 3,
     safe_speed: bool = False,
+    tolerances: Tolerances | None = None,
     tolerance: float = 1e-10,
 ) -> Assessment:
     """Assess one impact.
@@ -96,6 +101,7 @@ def assess_impact(
         payload: that the robot holds, for the standard's formula [kg]; the model has it already.
         order: of a chain.
         safe_speed: whether to find the largest safe speed.
+        tolerances: how far numbers may be from the truth, for the band; None leaves it out.
         tolerance: as in ``simulate_impact``.
 
     Raises:
@@ -113,7 +119,7 @@ def assess_impact(
         for name, end in ends.items()
     }
     limits = limits_of(contact.region, contact.clamped, shape)
-    worst = max(found, key=lambda name: _verdict(limits, found[name]).share)
+    worst = max(found, key=lambda name: (_verdict(limits, found[name]).share, found[name].peak))
     formula = two_body(contact.region, contact.clamped, moving_mass(model.robot) - payload, payload)
     speeds = None
     if safe_speed:
@@ -133,7 +139,27 @@ def assess_impact(
         joint_velocity=arrival.speed * arrival.link_velocity,
         joint_speed_limit_exceeded=_too_fast(model, arrival.speed * arrival.link_velocity),
         torque_limit_exceeded=_too_strong(model, found[worst]),
-        warnings=tuple(warnings),
+        band=_band(model, approach, contact, ends, limits, tolerances, horizon),
+        warnings=(*warnings, *_of_the_file(model, lumped)),
+    )
+
+
+def _band(
+    model: ImpactModel,
+    approach: Approach,
+    contact: Contact,
+    ends: Mapping[str, Motors | Controller | None],
+    limits: Limits,
+    tolerances: Tolerances | None,
+    horizon: float,
+) -> ImpactBand | None:
+    if tolerances is None:
+        return None
+    known = [end for end in ends.values() if isinstance(end, Motors)]
+    if len(known) < len(ends):
+        raise InvalidValue("band", "needs motors of a kind: a chain, linearised or full model")
+    return impact_band(
+        model, approach, contact, known, limits, tolerances=tolerances, horizon=horizon
     )
 
 
@@ -155,7 +181,7 @@ def bracket(
         InvalidValue: motors are free or a servo, and a rotor's inertia is unknown.
     """
     if lumped:
-        return {"free": None}, []
+        return {"free": motors}, []
     if isinstance(motors, Controller):
         return {"controller": motors}, []
     kind = motors.kind if motors else ("servo" if model.drives.has_gains else None)
@@ -177,6 +203,21 @@ def bracket(
     if kind is None:
         return {k: replace(how, kind=k) for k in KINDS if k in ("free", "driven")}, []
     return {kind: replace(how, kind=kind)}, []
+
+
+def _of_the_file(model: ImpactModel, lumped: bool) -> Iterator[str]:
+    """Yield what of the file is used in a way to know of, or not used."""
+    robot = model.robot
+    if robot.damping.any() and not lumped:
+        yield (
+            "the joints' damping counts; motors are taken to go on with what it needed of them "
+            "before the impact, as the worse case"
+        )
+    rubbing = _names(model, np.array([robot.joints[i].friction > 0 for i in model.independent]))
+    if rubbing:
+        yield f"dry friction of joints {', '.join(rubbing)} is not used; it would lower the force"
+    if robot.position_gains.any() and not model.drives.has_gains:
+        yield "the file's servos are not used; 'servo' motors take their gains from it"
 
 
 def unknown_rotors(model: ImpactModel) -> list[str]:

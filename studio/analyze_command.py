@@ -18,6 +18,7 @@ def analyze(
     tip: o.Tip = None,
     end: o.End = None,
     lock: o.Lock = None,
+    hold_base: o.HoldBase = False,
     payload: o.Payload = None,
     tool: o.Tool = None,
     motors: o.Motors = None,
@@ -42,7 +43,7 @@ def analyze(
         joint_stiffness, rotor_inertia, position_gain, computed_torque_gain, gear_ratio
     )
     known, _ = motors_of(TypedMotors(motors), given)
-    arm = TypedArm(model, tip, end, lock, payload, tool)
+    arm = TypedArm(model, tip, end, lock, payload, tool, hold_base)
     scene = situation(Typed(arm, q, direction, given, gravity, motor_angles))
     law = None if known is None else known.kind
     result = analyse(scene.model, scene.q, scene.direction, order, law)

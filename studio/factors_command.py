@@ -20,6 +20,7 @@ def factors(
     tip: o.Tip = None,
     end: o.End = None,
     lock: o.Lock = None,
+    hold_base: o.HoldBase = False,
     payload: o.Payload = None,
     tool: o.Tool = None,
     floating: Annotated[
@@ -49,7 +50,7 @@ def factors(
     json: o.Json = False,
 ) -> None:
     """Print impact factors: GIAF and its kin, IMF, dynamic impact measure, joint impulses."""
-    from softimpact.symbolic import impact_factors
+    from softimpact.symbolic import InvalidValue, impact_factors
 
     from .output import print_json, print_warnings
     from .situation import (
@@ -62,7 +63,9 @@ def factors(
     )
 
     given = TypedDrives(rotor_inertia=rotor_inertia, gear_ratio=gear_ratio)
-    typed = Typed(TypedArm(model, tip, end, lock, payload, tool), q, direction, given)
+    typed = Typed(TypedArm(model, tip, end, lock, payload, tool, hold_base), q, direction, given)
+    if floating and hold_base:
+        raise InvalidValue("hold_base", "excludes floating; give one of them")
     scene = free_situation(typed) if floating else situation(typed)
     found = impact_factors(
         scene.model,

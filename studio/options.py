@@ -139,6 +139,12 @@ Lock = Annotated[
     str | None,
     typer.Option(metavar="JOINT=X,...", help="Joints to weld, and where; others off the way at 0."),
 ]
+HoldBase = Annotated[
+    bool,
+    typer.Option(
+        "--hold-base", help="Hold the base of a robot that floats or stands, where its file has it."
+    ),
+]
 Payload = Annotated[
     str | None,
     typer.Option(

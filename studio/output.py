@@ -83,13 +83,7 @@ def write_json(path: Path, result: Any) -> None:
 
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     """Print a table to stdout; numbers to four digits, what does not apply as a dash."""
-    table = Table(
-        title=Text(title),
-        title_justify="left",
-        box=SIMPLE_HEAD,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-    )
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for column in columns:
         table.add_column(Text(column), overflow="fold")
     for row in rows:
@@ -98,6 +92,7 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell
     if not console.is_terminal:  # a file or a pipe has no width to fold into
         unbounded = console.options.update(max_width=ENDLESS)
         console.width = max(console.width, console.measure(table, options=unbounded).maximum)
+    console.print(Text(title, style="table.title"), soft_wrap=True)
     console.print(table)
 
 

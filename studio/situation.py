@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from softimpact.symbolic import (
     load_robot,
     lock_joints,
     unit_direction,
+    whole_configuration,
     with_load,
 )
 from softimpact.symbolic.impact.drives import PerJoint
@@ -34,7 +35,10 @@ from . import values
 
 @dataclass(frozen=True)
 class TypedDrives:
-    """The options that make up drives, as typed; see ``options``."""
+    """The options that make up drives, as typed; see ``options``.
+
+    With ``servo`` they are to have gains: the file's where none are given.
+    """
 
     joint_stiffness: str | None = None
     rotor_inertia: str | None = None
@@ -43,6 +47,13 @@ class TypedDrives:
     gear_ratio: str | None = None
     damping_gain: str | None = None
     torque_limit: str | None = None
+    servo: bool = False
+
+    @property
+    def has_gains(self) -> bool:
+        """Whether gains were given."""
+        gains = (self.position_gain, self.computed_torque_gain, self.damping_gain)
+        return any(gain is not None for gain in gains)
 
 
 @dataclass(frozen=True)
@@ -55,6 +66,7 @@ class TypedArm:
     lock: str | None = None
     payload: str | None = None
     tool: str | None = None
+    hold_base: bool = False
 
 
 @dataclass(frozen=True)
@@ -106,7 +118,7 @@ class LoadedArm:
 def loaded_arm(typed: TypedArm) -> LoadedArm:
     """Return the arm that the options describe; raises SoftImpactError."""
     locked = {} if typed.lock is None else values.named_numbers("lock", typed.lock)
-    robot = load_robot(typed.model)
+    robot = load_robot(typed.model, hold_base=typed.hold_base, toward=typed.end or typed.tip)
     arm = arm_of(robot, typed.tip, typed.end, locked)
     loads = []
     if typed.payload is not None:
@@ -116,7 +128,7 @@ def loaded_arm(typed: TypedArm) -> LoadedArm:
     loaded = arm.robot
     for mass, com, inertia in loads:
         loaded = with_load(loaded, arm.end, mass, com, inertia)
-    warnings = (*getattr(robot, "warnings", ()), *arm.warnings)
+    warnings = (*arm.robot.warnings, *arm.warnings)
     return LoadedArm(loaded, sum(load[0] for load in loads), warnings)
 
 
@@ -129,7 +141,9 @@ def situation(typed: Typed) -> Situation:
     model = impact_model(
         robot, drives_=drives_of(robot, typed.drives), gravity=gravity_of(typed.gravity)
     )
-    angles = link_angles(model, np.array(q)) if typed.motor_angles else robot.vector("q", q)
+    angles = (
+        link_angles(model, np.array(q)) if typed.motor_angles else whole_configuration(robot, q)
+    )
     return Situation(
         model, angles, direction, arm.load, (*arm.warnings, *beyond_limits(robot, angles))
     )
@@ -177,10 +191,12 @@ def free_situation(typed: Typed) -> Situation:
     """Return the situation of a robot on a free base; its q begins with the base's six zeros."""
     robot = whole_robot(typed.arm.model, typed.arm.tip)
     free = floating_robot(robot)
-    q = robot.vector("q", values.vector("q", typed.q))
+    q = whole_configuration(robot, values.vector("q", typed.q))
     direction = unit_direction(values.vector("direction", typed.direction, 3))
     model = floating_model(free, drives_=drives_of(robot, typed.drives))
-    return Situation(model, np.array(free.coordinates(q)).ravel(), direction)
+    angles = np.array(free.coordinates(q)).ravel()
+    warnings = (*robot.warnings, *beyond_limits(robot, q))
+    return Situation(model, angles, direction, warnings=warnings)
 
 
 def whole_robot(name: str, tip: str | None) -> Robot:
@@ -226,6 +242,8 @@ def drives_of(robot: Robot, typed: TypedDrives) -> Drives:
         return None if text is None else values.per_joint(field, text)
 
     rotors = typed.rotor_inertia
+    if typed.servo and not typed.has_gains:
+        return _file_servo(robot, typed)
     return drives(
         robot,
         joint_stiffness=given("joint_stiffness", typed.joint_stiffness),
@@ -236,6 +254,14 @@ def drives_of(robot: Robot, typed: TypedDrives) -> Drives:
         damping_gain=given("damping_gain", typed.damping_gain),
         torque_limit=given("torque_limit", typed.torque_limit),
     )
+
+
+def _file_servo(robot: Robot, typed: TypedDrives) -> Drives:
+    """Return drives with the gains of the file's servos."""
+    if not robot.position_gains.any():
+        raise InvalidValue("motors", "'servo' needs position_gain: the file has no servo either")
+    position, damping = (str(x.tolist()) for x in (robot.position_gains, robot.velocity_gains))
+    return drives_of(robot, replace(typed, position_gain=position, damping_gain=damping))
 
 
 def gravity_of(text: str | None) -> tuple[float, float, float]:

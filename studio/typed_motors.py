@@ -42,8 +42,6 @@ def motors_of(typed: TypedMotors, drives: TypedDrives) -> tuple[Motors | None, M
         raise InvalidValue(given[0], f"is a servo's; motors that are '{kind}' have no gains")
     if drives.damping_gain is not None and kind == "held":
         raise InvalidValue("damping_gain", "is a servo's; motors that are 'held' have K_p alone")
-    if kind == "servo" and not given:
-        raise InvalidValue("motors", "'servo' needs position_gain or computed_torque_gain")
     if kind == "held" and len(given) == 0:
         raise InvalidValue("motors", "'held' needs position_gain or computed_torque_gain")
     how = Motors()

@@ -134,6 +134,8 @@ class ImpactModel:
         """
         if law == "free":
             return self.with_drives(self.drives.without_gains()).linear(q, direction)
+        if law == "held":
+            return self.with_drives(replace(self.drives, damping_gains=None)).linear(q, direction)
         F = self.moving(law)
         stiffness, damping = self.generalised_stiffness(q), self.generalised_damping(q)
         jacobian = self.contact_jacobian(q, direction)
@@ -206,8 +208,7 @@ class ImpactModel:
         return gains + self.drives.computed_torque_gain * block
 
     def _potential(self, q: Matrix) -> Matrix:
-        has_springs = any(joint.stiffness for joint in self.robot.joints)
-        if not has_springs and not any(self.gravity):
+        if not self.robot.has_springs and not any(self.gravity):
             return ca.DM(len(self.independent), len(self.independent))
         if self.robot.loops:
             return constrained_stiffness(self.robot, q, self.gravity)
