@@ -130,7 +130,7 @@ class Configuration:
 
 
 def has_configuration(robot: Robot) -> bool:
-    """Whether motors decide where the other joints of a robot with loops rest."""
+    """Whether motors decide where other joints rest; couplings alone need no solver."""
     chain = closed_chain(robot)
     motors = {i for i, actuated in enumerate(robot.actuated) if actuated}
     closed = any(isinstance(loop, Loop) for loop in robot.loops)

@@ -7,9 +7,10 @@ from .controller import Controller, Reference
 from .decoupling import Decoupling, decoupling_stiffness, is_isolated, scaled_springs
 from .history import HORIZON, Fidelity, ImpactHistory, PeakDefinition
 from .impact import simulate_impact
-from .many import ManyPeaks, many_peaks
+from .many import many_peaks
 from .safe_speed import ForceLimits, largest_safe_speed
 from .simulator import SimulationFailed
+from .stepping import ManyPeaks
 
 __all__ = [
     "HORIZON",

@@ -119,7 +119,7 @@ def assess_impact(
         for name, end in ends.items()
     }
     limits = limits_of(contact.region, contact.clamped, shape)
-    worst = max(found, key=lambda name: _verdict(limits, found[name]).share)
+    worst = max(found, key=lambda name: (_verdict(limits, found[name]).share, found[name].peak))
     formula = two_body(contact.region, contact.clamped, moving_mass(model.robot) - payload, payload)
     speeds = None
     if safe_speed:

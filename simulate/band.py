@@ -5,10 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
-from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors, generalised_velocity
+from softimpact.symbolic import (
+    Contact,
+    ImpactModel,
+    InvalidValue,
+    Motors,
+    Robot,
+    generalised_velocity,
+)
 from softimpact.symbolic.body.verdict import Limits
 from softimpact.symbolic.impact.motors import MotorLaw
 from softimpact.symbolic.robot.rigid import Array, Inertia
@@ -16,8 +24,7 @@ from softimpact.symbolic.robot.rigid import Array, Inertia
 from .approach import Approach, Arrival, arrival_of
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import LinearSystem, given_motion, linear_system, modes
-from .many import ManyPeaks
-from .stepping import Bodies, LargestForces, Stage, at_first_touch, faster, slower
+from .stepping import Bodies, LargestForces, ManyPeaks, Stage, at_first_touch, faster, slower
 from .tolerances import Factors, Tolerances, factors
 
 SAMPLES = 1000
@@ -145,7 +152,7 @@ def varied_peaks(
     varied = factors(tolerances or Tolerances(), model.robot.n, samples)
     bodies = _bodies(contact, varied)
     until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
-    largest = LargestForces(samples, horizon)
+    largest = LargestForces(samples, horizon, contact.clamped)
     state = at_first_touch(samples, model.size, bodies)
     v = np.full(samples, arrival.speed)
     links = _mass_of_each_link(model, arrival)
@@ -162,7 +169,7 @@ def varied_peaks(
             system, found, law, slower(state.motion, v), before, begin, motors.stopping_time
         )
         state = stage.run(*faster(*given, v), state, largest)
-    return ManyPeaks(largest.peak, largest.first_contact, largest.pressing)
+    return largest.found
 
 
 def _bodies(contact: Contact, varied: Factors) -> Bodies:
@@ -176,16 +183,21 @@ def _bodies(contact: Contact, varied: Factors) -> Bodies:
 
 def _mass_of_each_link(model: ImpactModel, arrival: Arrival) -> Array:
     """Return what each link adds to the mass matrix over the independent joints, n×m×m."""
-    robot = model.robot
-    found = []
-    for i, own in enumerate(robot.joints):
-        joints = tuple(
-            own if k == i else replace(joint, inertia=Inertia.zero())
-            for k, joint in enumerate(robot.joints)
-        )
-        alone = replace(model, robot=replace(robot, joints=joints, payload=None))
-        found.append(np.array(alone.mass_matrix(arrival.q), dtype=float))
-    return np.array(found)
+    found = [replace(model, robot=alone).mass_matrix(arrival.q) for alone in _links(model.robot)]
+    return np.array([np.array(M, dtype=float) for M in found])
+
+
+@lru_cache(maxsize=8)
+def _links(robot: Robot) -> tuple[Robot, ...]:
+    """Return the robot with one of its links at a time, the same ones for the same robot.
+
+    Their expressions are then derived once.
+    """
+    massless = [replace(joint, inertia=Inertia.zero()) for joint in robot.joints]
+    return tuple(
+        replace(robot, joints=(*massless[:i], own, *massless[i + 1 :]), payload=None)
+        for i, own in enumerate(robot.joints)
+    )
 
 
 def _varied(

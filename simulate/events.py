@@ -22,7 +22,8 @@ from .scene import Leg, Run, Scene
 from .simulator import NODES
 
 SPAN, LATER_SPAN = 0.02, 0.05
-"""Longest single run [s]: while most contacts have their peaks, and later."""
+"""Longest single run [s]: while most contacts have their peaks, and later; a run to the end of the
+first contact goes on in short ones, as a robot may not get far beyond it."""
 
 EARLY = 0.1
 """Until when runs are short [s]."""
@@ -124,7 +125,7 @@ def course_of(scene: Scene, until: float | None) -> Course:
         leg = stage.enter(motion)
         body = scene.body_of(pieces[-1].leg, pieces[-1].run.state[:, -1]) if pieces else None
         state = scene.state_of(leg, scene.at_rest(leg) if body is None else body)
-        for start, stop in pairwise(_starts(stage.begin, end)):
+        for start, stop in pairwise(_starts(stage.begin, end, LATER_SPAN if until else SPAN)):
             run = scene.run(leg, state, stop - start, start)
             pieces.append(Piece(leg, stage.begin, run))
             state = run.state[:, -1]
@@ -136,10 +137,10 @@ def course_of(scene: Scene, until: float | None) -> Course:
     return _joined(scene, pieces)
 
 
-def _starts(begin: float, end: float) -> Array:
+def _starts(begin: float, end: float, later: float) -> Array:
     """Return when runs start and the last one ends."""
     marks = [begin, *([EARLY] if begin < EARLY < end else []), end]
-    spans = [SPAN if a < EARLY else LATER_SPAN for a in marks[:-1]]
+    spans = [SPAN if a < EARLY else later for a in marks[:-1]]
     parts = [
         np.linspace(a, b, math.ceil((b - a) / span), endpoint=False)
         for (a, b), span in zip(pairwise(marks), spans, strict=True)
@@ -154,7 +155,7 @@ def _joined(scene: Scene, pieces: list[Piece]) -> Course:
         first, *later = (getattr(run, name) for run in runs)
         return np.concatenate([first, *(values[1:] for values in later)])
 
-    names = ("time", "depth", "closing", "force")
+    names = ("time", "depth", "closing", "force", "reading")
     run = Run(state=np.zeros((0, 0)), **{name: joined(name) for name in names})
     return Course(scene, tuple(pieces), run)
 
@@ -164,21 +165,22 @@ def peaks_of(course: Course, horizon: float | None) -> Peaks:
     run = course.run
     ends = downward(run.depth)
     last = int(ends[0]) if ends.size else len(run.time) - 1
-    until = len(run.time) if horizon is None else int(np.searchsorted(run.time, horizon, "right"))
+    end = float(run.time[-1]) if horizon is None else min(horizon, float(run.time[-1]))
+    until = int(np.searchsorted(run.time, end, "right"))
     found = course.peaks()
     first = [i for i in found if i <= last]
     return Peaks(
         first_peak=course.peak_near(first[0]) if first else None,
-        first_contact=_largest(course, first, last + 1),
-        peak=_largest(course, [i for i in found if i < until - 1], until),
+        first_contact=_largest(course, first, float(run.time[last])),
+        peak=_largest(course, [i for i in found if i < until - 1], end),
         separation=course.end_near(last) if ends.size else None,
     )
 
 
-def _largest(course: Course, peaks: list[int], until: int) -> Event:
-    """Return the largest force before a node: at a peak, or where it was cut short in a rise."""
+def _largest(course: Course, peaks: list[int], until: float) -> Event:
+    """Return the largest force up to a time: at a peak, or where it was cut short in a rise."""
     run = course.run
-    cut = Event(float(run.time[until - 1]), float(run.force[until - 1]))
+    cut = Event(until, float(np.interp(until, run.time, run.force)))
     if not peaks:
         return cut
     heights = [vertex(run, i, course.scene.contact).force for i in peaks]

@@ -77,6 +77,7 @@ def simulate_impact(
         motors=what if isinstance(what, Motors) and not _is_lumped(fidelity) else None,
         time=run.time,
         force=run.force,
+        reading=run.reading,
         peak=found.peak.force,
         time_of_peak=found.peak.time,
         first_contact=found.first_contact.force,

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import casadi as ca
 import numpy as np
 
 from softimpact.symbolic.body.laws import Law, PowerLaw
+from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
 NEWTON, CLOSE = 40, 1e-10
@@ -65,7 +65,7 @@ def law_solver(law: Law, softness: float | Array, scale: float | Array = 1.0) ->
         softness: one number, or one for each impact.
         scale: factor on the law's force, likewise.
     """
-    plain = _power(law) if isinstance(law, PowerLaw) else _any(law)
+    plain = _power(law) if isinstance(law, PowerLaw) else points_of(law).evaluated
 
     def scaled(depth: Array) -> tuple[Array, Array]:
         force, slope = plain(depth)
@@ -80,17 +80,5 @@ def _power(law: PowerLaw) -> LawAndSlope:
     def evaluated(depth: Array) -> tuple[Array, Array]:
         slope = k * (np.sqrt(depth) if n == 1.5 else depth ** (n - 1))
         return slope * depth, n * slope
-
-    return evaluated
-
-
-def _any(law: Law) -> LawAndSlope:
-    depth = ca.SX.sym("depth")
-    force = law.force(depth)
-    function = ca.Function("law", [depth], [force, ca.jacobian(force, depth)])
-
-    def evaluated(depth: Array) -> tuple[Array, Array]:
-        found = function(ca.DM(depth).T)
-        return np.array(found[0]).ravel(), np.array(found[1]).ravel()
 
     return evaluated

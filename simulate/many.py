@@ -3,27 +3,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from softimpact.symbolic import Contact, ImpactModel, Motors, generalised_velocity
-from softimpact.symbolic.robot.rigid import Array
 
 from .approach import Approach, arrival_of
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import given_motion, linear_system, modes
-from .stepping import Bodies, LargestForces, Stage, at_first_touch, faster, slower
-
-
-@dataclass(frozen=True, eq=False)
-class ManyPeaks:
-    """Forces of many impacts [N], one entry each; see ``ImpactHistory``."""
-
-    peak: Array
-    first_contact: Array
-    pressing: Array
+from .stepping import Bodies, LargestForces, ManyPeaks, Stage, at_first_touch, faster, slower
 
 
 def many_peaks(
@@ -50,7 +38,7 @@ def many_peaks(
     v = np.atleast_1d(np.asarray(speeds, dtype=float))
     before = generalised_velocity(model, arrival.link_velocity)
     until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
-    largest = LargestForces(len(v), horizon)
+    largest = LargestForces(len(v), horizon, contact.clamped)
     bodies = Bodies.of([contact.region], contact.clamped, contact.law)
     state = at_first_touch(len(v), model.size, bodies)
     ends = [begin for begin, _ in what.laws[1:]] + [until]
@@ -64,4 +52,4 @@ def many_peaks(
             system, found, law, slower(state.motion, v), before, begin, what.stopping_time
         )
         state = stage.run(*faster(*given, v), state, largest)
-    return ManyPeaks(largest.peak, largest.first_contact, largest.pressing)
+    return largest.found

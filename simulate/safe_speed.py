@@ -141,10 +141,10 @@ def _slower_violation(
     """Return the slowest of some speeds below the approach's at which the force is too large."""
     speeds = approach.speed * np.geomspace(SLOWEST, 1, SPEEDS, endpoint=False)
     found = many_peaks(model, approach, contact, speeds, motors=motors, horizon=horizon)
-    force = found.first_contact if definition == "first_contact" else found.peak
+    force = getattr(found, definition)
     share = np.maximum(force / limits.transient, found.pressing / limits.quasi_static)
     above = np.flatnonzero(share > 1 + OFF)
-    return float(speeds[above[0]]) if above.size and definition != "first_peak" else None
+    return float(speeds[above[0]]) if above.size else None
 
 
 def _root(excess: Callable[[float], float], guess: float, highest: float = inf) -> float:

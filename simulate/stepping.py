@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.symbolic import BodyRegion
-from softimpact.symbolic.body.laws import Law
+from softimpact.symbolic.body.laws import Law, PowerLaw
+from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
 from .exact_steps import DenseStep, body_system, dense_step, standing_compliance
@@ -28,11 +29,27 @@ from .scene import Motion
 PHASE = 0.08
 """Most radians of the contact's vibration in a step: forces are then right to 1e-3."""
 
+HARD = 500.0
+"""Force [N] at which a plate's bounce on the skin must still be resolved."""
+
 FEWEST_STEPS = 40
 """Fewest steps of a stage of the motors."""
 
 SHORTEST = 1e-9
 """Shortest stage [s], for impacts in which it does not happen at all."""
+
+
+@dataclass(frozen=True, eq=False)
+class ManyPeaks:
+    """Forces of many impacts [N], one entry each; see ``ImpactHistory``.
+
+    Where the force rises to the end, its first peak is where it ends.
+    """
+
+    peak: Array
+    first_contact: Array
+    first_peak: Array
+    pressing: Array
 
 
 class LargestForces:
@@ -41,14 +58,17 @@ class LargestForces:
     Attributes:
         peak: of all contacts up to a horizon.
         first_contact: until robot and body part.
-        pressing: from ``HORIZON`` on.
+        first_peak: first local maximum; where the force rises to the end, the last.
+        pressing: from ``HORIZON`` on, on a clamped body.
     """
 
-    def __init__(self, count: int, horizon: float) -> None:
-        self.horizon = horizon
+    def __init__(self, count: int, horizon: float, clamped: bool) -> None:
+        self.horizon, self.clamped = horizon, clamped
         self.peak, self.first_contact, self.pressing = (np.zeros(count) for _ in range(3))
-        self._touched, self._parted = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self.first_peak = np.zeros(count)
+        self._touched, self._fallen, self._parted = (np.zeros(count, dtype=bool) for _ in range(3))
         self._last, self._before = np.zeros(count), np.zeros(count)
+        self._time = np.zeros(count)
 
     def see(self, time: Array, force: Array) -> None:
         """Take in the forces at a node; tops are those of parabolas through three nodes."""
@@ -58,15 +78,37 @@ class LargestForces:
         rise = np.where(is_top, lean * lean / np.where(bend < 0, -8 * bend, 1.0), 0.0)
         top = np.maximum(force, self._last + rise)
         early = time <= self.horizon * (1 + 1e-9)
-        self.peak = np.where(early, np.maximum(self.peak, top), self.peak)
+        crosses = ~early & (self._time < self.horizon)
+        until = np.where(crosses, self._force_at(self.horizon, time, force), top)
+        self.peak = np.where(early | crosses, np.maximum(self.peak, until), self.peak)
+        self.first_peak = np.where(self._fallen, self.first_peak, top)
+        self._fallen |= is_top & (force > 0) | self._touched & ~(force > 0)
         self._touched |= force > 0
         self.first_contact = np.where(
             self._parted, self.first_contact, np.maximum(self.first_contact, top)
         )
         self._parted |= self._touched & ~(force > 0)
-        late = time >= HORIZON * (1 - 1e-9)
-        self.pressing = np.where(late, np.maximum(self.pressing, force), self.pressing)
-        self._before, self._last = self._last, force
+        self.pressing = np.where(
+            self.clamped & (time >= HORIZON * (1 - 1e-9)),
+            np.maximum(self.pressing, self._pressing(time, force, top)),
+            self.pressing,
+        )
+        self._before, self._last, self._time = self._last, force, time + 0.0 * force
+
+    def _pressing(self, time: Array, force: Array, top: Array) -> Array:
+        """Return the largest force since the node before, or since ``HORIZON`` if that is later."""
+        at_horizon = self._force_at(HORIZON, time, force)
+        return np.where(self._time < HORIZON, np.maximum(force, at_horizon), top)
+
+    def _force_at(self, when: float, time: Array, force: Array) -> Array:
+        """Return the force at a time since the node before, as on a line."""
+        share = np.clip((time - when) / np.maximum(time - self._time, SHORTEST), 0.0, 1.0)
+        return np.asarray(force + share * (self._last - force))
+
+    @property
+    def found(self) -> ManyPeaks:
+        """What was seen."""
+        return ManyPeaks(self.peak, self.first_contact, self.first_peak, self.pressing)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +121,8 @@ class Bodies:
         system: A and b of ``body_system``.
         out: x_0 is this times the body's state, length m.
         standing: compliance that follows the force at once [m/N].
-        stiffness: k_h [N/m].
+        stiffness: that a robot vibrates against at most [N/m]: k_h, or the law's where a plate has
+            a mass, on which the skin bounces.
         mobility: that the body adds to the robot's [1/kg].
     """
 
@@ -100,6 +143,7 @@ class Bodies:
         A, b = (np.array([system[i] for system in systems]) for i in (0, 1))
         if len(regions) == 1:
             A, b = A[0], b[0]
+        bouncing = float(np.max(scale)) * _tangent(law, HARD)
         plate = [1 / r.plate_mass if r.plate_mass else 0.0 for r in regions]
         free = [0.0 if clamped else 1 / r.effective_mass for r in regions]
         return Bodies(
@@ -108,13 +152,25 @@ class Bodies:
             system=(A, b),
             out=systems[0][2],
             standing=np.array([standing_compliance(region) for region in regions]),
-            stiffness=np.array([region.stiffness for region in regions]),
+            stiffness=np.array(
+                [max(r.stiffness, bouncing if r.plate_mass else 0.0) for r in regions]
+            ),
             mobility=np.array(plate) + np.array(free),
         )
 
     def frequency(self, robot_mobility: Array) -> Array:
         """Return ω of a contact [rad/s] with a robot of some mobility at its point [1/kg]."""
         return np.asarray(np.sqrt(self.stiffness * (robot_mobility + self.mobility)))
+
+
+def _tangent(law: Law, force: float) -> float:
+    """Return the slope of a law [N/m] at a force [N]."""
+    if isinstance(law, PowerLaw):
+        n = law.exponent
+        return float(n * law.stiffness ** (1 / n) * force ** (1 - 1 / n))
+    points = points_of(law)
+    depth = np.interp(force, points.forces, points.depth)
+    return float(points.evaluated(np.array([depth]))[1][0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +218,14 @@ class Stage:
     _solver: LawSolver
 
     @staticmethod
-    def of(system: LinearSystem, found: Modes, bodies: Bodies, begin: Array, end: Array) -> Stage:
+    def of(
+        system: LinearSystem,
+        found: Modes,
+        bodies: Bodies,
+        begin: Array,
+        end: Array,
+        phase: float = PHASE,
+    ) -> Stage:
         """Prepare the steps of a stage.
 
         Args:
@@ -171,10 +234,11 @@ class Stage:
             bodies: that they hit.
             begin: of the stage, one number or one for each impact [s since first touch].
             end: of the stage, likewise.
+            phase: most radians of the contact's vibration in a step.
         """
         span = np.maximum(np.asarray(end - begin), SHORTEST)
         rate = bodies.frequency((found.shape**2).sum(axis=-1))
-        steps = max(FEWEST_STEPS, int(np.ceil((span * rate).max() / PHASE)))
+        steps = max(FEWEST_STEPS, int(np.ceil((span * rate).max() / phase)))
         h = span / steps
         robot = robot_steps(found.squared_frequency, found.shape, found.damping, h)
         body = dense_step(*bodies.system, h)

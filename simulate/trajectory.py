@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
@@ -62,7 +62,7 @@ class Passes:
         velocity: of the joints there, P×n [rad/s, m/s].
     """
 
-    sample: Array
+    sample: NDArray[np.intp]
     velocity: Array
 
 

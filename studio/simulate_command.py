@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -25,6 +26,15 @@ Cover = Annotated[
     str | None,
     typer.Option(
         metavar="FILE", help="What the robot wears at the contact (TOML).", rich_help_panel=BODY
+    ),
+]
+Shape = Annotated[
+    str | None,
+    typer.Option(
+        metavar="SHAPE",
+        help="What of the robot touches, so that pressure is judged, too: sphere:RADIUS, "
+        "edge:RADIUS,LENGTH or flat:AREA,RIM_RADIUS (m, m²).",
+        rich_help_panel=BODY,
     ),
 ]
 Clamped = Annotated[
@@ -84,6 +94,10 @@ Band = Annotated[
         "--band", help="Where 95 of 100 cases lie, for what is not known exactly (tolerances)."
     ),
 ]
+Report = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Write a report to file: one HTML page that opens offline."),
+]
 SafeSpeed = Annotated[
     bool,
     typer.Option("--safe-speed", help="Find the largest speed up to which every limit is kept."),
@@ -105,6 +119,7 @@ def simulate(
     fidelity: o.Fidelity = "linearised",
     body: Body = None,
     cover: Cover = None,
+    shape: Shape = None,
     clamped: Clamped = True,
     joint_velocity: JointVelocity = None,
     peak: Peak = "peak",
@@ -116,6 +131,7 @@ def simulate(
     reference: Reference = None,
     safe_speed: SafeSpeed = False,
     band: Band = False,
+    report: Report = None,
     joint_stiffness: o.JointStiffness = None,
     rotor_inertia: o.RotorInertia = None,
     position_gain: o.PositionGain = None,
@@ -129,7 +145,8 @@ def simulate(
     json: o.Json = False,
 ) -> None:
     """Simulate an impact and hold it against what the body may bear."""
-    from .impact import TypedBody, TypedImpact, impact, print_impact
+    from .impact import TypedBody, TypedImpact, impact
+    from .impact_record import print_impact, record_of
     from .output import print_json, print_warnings
     from .situation import Typed, TypedArm, TypedDrives
     from .typed_motors import TypedMotors
@@ -147,7 +164,7 @@ def simulate(
     arm = TypedArm(model, tip, end, lock, payload, tool, hold_base)
     where = Typed(arm, q, direction, given, gravity, motor_angles)
     how = TypedImpact(
-        body=TypedBody(region, body, cover, clamped),
+        body=TypedBody(region, body, cover, clamped, shape),
         speed=speed,
         fidelity=fidelity,
         joint_velocity=joint_velocity,
@@ -160,8 +177,13 @@ def simulate(
         pid=pid,
         reference=reference,
     )
-    result = impact(where, how)
+    answer = impact(where, how)
+    result = record_of(answer)
     print_warnings(result["warnings"])
+    if report is not None:
+        from .report.impact_report import write_impact_report
+
+        write_impact_report(answer, result, report)
     if json:
         print_json(result)
     else:

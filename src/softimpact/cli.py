@@ -15,16 +15,17 @@ import typer
 
 from .console import accept_any_console
 from .interruption import INTERRUPTED, interruptible, report
+from .papers.factors_study_command import factors_study
+from .papers.reproduce_command import reproduce
 from .studio.analyze_command import analyze
 from .studio.check_command import check
 from .studio.design_command import design
 from .studio.factors_command import factors
-from .papers.factors_study_command import factors_study
 from .studio.generate_command import generate
 from .studio.init_command import init
 from .studio.inspect_command import inspect
 from .studio.pareto_command import pareto
-from .papers.reproduce_command import reproduce
+from .studio.program_command import SeveralValues, program
 from .studio.robots_command import robots
 from .studio.select_command import select
 from .studio.simulate_command import simulate
@@ -32,7 +33,7 @@ from .studio.simulate_command import simulate
 USER_ERROR = 2
 """Exit code; a failed solver's is 3 and comes with its exception."""
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer(pretty_exceptions_enable=False)
 
 app.command()(robots)
 app.command()(inspect)
@@ -42,6 +43,7 @@ app.command()(analyze)
 app.command()(factors)
 app.command()(factors_study)
 app.command()(simulate)
+app.command(cls=SeveralValues)(program)
 app.command()(select)
 app.command()(design)
 app.command()(pareto)
@@ -103,7 +105,9 @@ def _refuse_repeated(words: Sequence[str]) -> None:
     given = [once[word.partition("=")[0]] for word in words if word.partition("=")[0] in once]
     twice = [name for name in given if given.count(name) > 1]
     if twice:
-        raise typer.BadParameter("is given twice; only one of them could count", param_hint=twice[0])
+        raise typer.BadParameter(
+            "is given twice; only one of them could count", param_hint=twice[0]
+        )
 
 
 def _exit_code(error: Exception) -> int | None:

@@ -12,6 +12,7 @@ solution of the layer. Covers are left out: they spread the force further.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -114,6 +115,34 @@ class Flat:
         """
         rim = 2 * math.sqrt(math.pi * self.area)
         return 2 * force / self.area + _under_a_line(force / rim, self.rim_radius, pad)
+
+
+def shape_from(text: str) -> Shape:
+    """Return a shape by its name and lengths in m: ``sphere:R``, ``edge:R,L`` or ``flat:AREA,R``.
+
+    Raises:
+        InvalidValue: there is no such shape, or a number is missing or impossible.
+    """
+    name, _, numbers = text.partition(":")
+    if name not in SHAPES:
+        raise InvalidValue("shape", f"must be {', '.join(HOW.values())}, not '{text}'")
+    try:
+        values = [float(number) for number in numbers.split(",")]
+    except ValueError:
+        values = []
+    if len(values) != HOW[name].count(",") + 1:
+        raise InvalidValue("shape", f"must be {HOW[name]}, with numbers in m and m², not '{text}'")
+    try:
+        return SHAPES[name](*values)
+    except InvalidValue as error:
+        raise InvalidValue(f"shape.{error.field}", error.reason) from None
+
+
+SHAPES: dict[str, Callable[..., Shape]] = {"sphere": Sphere, "edge": Edge, "flat": Flat}
+"""Every shape by the name that the command line has for it."""
+
+HOW = {"sphere": "sphere:RADIUS", "edge": "edge:RADIUS,LENGTH", "flat": "flat:AREA,RIM_RADIUS"}
+"""How each is written."""
 
 
 def force_at_pressure(shape: Shape, pressure: float, pad: Pad = HARDEST) -> float:

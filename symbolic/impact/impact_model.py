@@ -134,6 +134,8 @@ class ImpactModel:
         """
         if law == "free":
             return self.with_drives(self.drives.without_gains()).linear(q, direction)
+        if law == "held":
+            return self.with_drives(replace(self.drives, damping_gains=None)).linear(q, direction)
         F = self.moving(law)
         stiffness, damping = self.generalised_stiffness(q), self.generalised_damping(q)
         jacobian = self.contact_jacobian(q, direction)

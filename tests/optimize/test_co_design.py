@@ -48,7 +48,7 @@ def assert_feasible(study: Study, outcome: Outcome) -> None:
     assert np.linalg.norm(moved, axis=0).max() <= study.max_deflection * (1 + 1e-5)
 
 
-@pytest.fixture(scope="module", params=["chest", "head"])
+@pytest.fixture(scope="module", params=["chest", pytest.param("head", marks=pytest.mark.slow)])
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Design:
     folder = tmp_path_factory.mktemp(request.param)
     study = study_of(folder, {"impact": {"region": request.param}}, POSES)
@@ -116,7 +116,7 @@ def one_or_two_free(folder: Path, region: str, joints: tuple[int, ...], poses: A
 
 
 @pytest.mark.parametrize("joints", [(1, 3), (0, 5), (3, 4)])
-@pytest.mark.parametrize("region", ["chest", "head"])
+@pytest.mark.parametrize("region", ["chest", pytest.param("head", marks=pytest.mark.slow)])
 def test_two_springs_are_no_worse_than_a_grid(
     tmp_path: Path, region: str, joints: tuple[int, int]
 ) -> None:
@@ -157,8 +157,8 @@ def self_motion(study: Study, step: float = 0.05) -> Iterator[Array]:
             yield at
 
 
-@pytest.mark.parametrize("joint", [1, 5])
-@pytest.mark.parametrize("region", ["chest", "head"])
+@pytest.mark.parametrize("joint", [1, pytest.param(5, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("region", ["chest", pytest.param("head", marks=pytest.mark.slow)])
 def test_posture_and_spring_are_no_worse_than_a_sweep(
     tmp_path: Path, region: str, joint: int
 ) -> None:
@@ -272,6 +272,7 @@ def test_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     np.testing.assert_allclose(slow.winner.springs, fast.winner.springs, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_pose_turned_by_half_is_led_back_to_the_task(tmp_path: Path) -> None:
     study = study_of(tmp_path, {"task": {"exact": False}}, ("q9",))
     half = study.task_pose.q + np.pi * np.eye(7)[6]

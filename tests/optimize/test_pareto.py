@@ -38,7 +38,7 @@ from softimpact.symbolic.robot.rigid import Array
 POSES = ("q9", "q18")
 
 
-@pytest.fixture(scope="module", params=["chest", "head"])
+@pytest.fixture(scope="module", params=["chest", pytest.param("head", marks=pytest.mark.slow)])
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Pareto:
     folder = tmp_path_factory.mktemp(request.param)
     study = study_of(folder, {"impact": {"region": request.param}, "pareto": {"points": 4}}, POSES)
@@ -121,6 +121,7 @@ def test_levels_hold_the_ends_and_the_studys_bound(found: Pareto) -> None:
     assert found.levels[-1] == pytest.approx(found.free.points[-1].deflection, rel=0.05)
 
 
+@pytest.mark.slow
 def test_levels_agree_with_designs(found: Pareto) -> None:
     """At both ends and the study's own bound, by searches that know nothing of the others."""
     for level in (found.levels[0], found.study.max_deflection, found.levels[-1]):
@@ -174,7 +175,7 @@ def assert_no_better(result: Pareto, front: Front, grid: Any) -> None:
     assert compared >= 3
 
 
-@pytest.mark.parametrize("region", ["chest", "head"])
+@pytest.mark.parametrize("region", ["chest", pytest.param("head", marks=pytest.mark.slow)])
 def test_two_springs_are_no_worse_than_a_grid(tmp_path: Path, region: str) -> None:
     study = small(tmp_path, region, (1, 3), ("q9",))
     result = pareto_fronts(study, InProcess())
@@ -185,7 +186,7 @@ def test_two_springs_are_no_worse_than_a_grid(tmp_path: Path, region: str) -> No
     assert_no_better(result, result.task, grid)
 
 
-@pytest.mark.parametrize("region", ["chest", "head"])
+@pytest.mark.parametrize("region", ["chest", pytest.param("head", marks=pytest.mark.slow)])
 def test_posture_and_spring_are_no_worse_than_a_sweep(tmp_path: Path, region: str) -> None:
     study = small(tmp_path, region, (1,), POSES)
     result = pareto_fronts(study, InProcess())

@@ -100,6 +100,21 @@ def test_a_placeholder_is_not_taken_as_a_rotor(name: str, path: Path, robot: Rob
         assert re.search("placeholder|class default without a source", path.read_text())
 
 
+ROTOR_PER_TORQUE = 0.03
+"""Most reflected rotor inertia over largest torque [s²] of arms whose rotors somebody states."""
+
+
+def test_rotors_are_no_larger_than_the_upper_estimate(name: str, robot: Robot) -> None:
+    """So that it may stand for rotors that are unknown."""
+    if np.isinf(robot.torque_limits).any():
+        return
+    upper = ROTOR_PER_TORQUE * robot.torque_limits
+    if robot.armature.any():
+        assert (robot.armature <= upper).all()
+    else:
+        np.testing.assert_allclose(robot.rotor_inertia_set("upper_estimate"), upper)
+
+
 def test_limits_of_speed_are_sane(robot: Robot) -> None:
     assert (robot.speed_limits > 0).all()
     assert np.isinf(robot.speed_limits).all() == np.isinf(robot.speed_limits).any()

@@ -8,13 +8,27 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
+from impact_cases import ALONG_Y, POSE
 from scipy.integrate import solve_ivp
 
+from softimpact.simulate import Approach, simulate_impact
 from softimpact.simulate.events import Peaks, course_of, peaks_of
+from softimpact.simulate.many import many_peaks
 from softimpact.simulate.mechanism import BodyKind, Mechanism
 from softimpact.simulate.scene import Run, Scene, one_stage
 from softimpact.simulate.simulator import build_simulator
-from softimpact.symbolic import Contact, Curve, PowerLaw, body_region, in_series
+from softimpact.symbolic import (
+    Contact,
+    Curve,
+    ImpactModel,
+    Motors,
+    PowerLaw,
+    Robot,
+    body_region,
+    drives,
+    impact_model,
+    in_series,
+)
 from softimpact.symbolic.body.devices import measuring_device
 from softimpact.symbolic.body.pads import PADS
 from softimpact.symbolic.robot.rigid import Array
@@ -29,6 +43,7 @@ BODIES = {
     "cover": Contact(HAND, cover=PowerLaw(2e6)),
     "foam": Contact(HAND, cover=FOAM),
     "foam, free": Contact(HAND, clamped=False, cover=FOAM),
+    "squeezed flat": Contact(HAND, cover=Curve([0, 1e-3, 2e-3], [0, 10, 50])),
     "linear cover": Contact(body_region("chest"), cover=PowerLaw(2e5, 1.0)),
     "device": Contact(replace(RIG, plate_mass=0.0)),
     "device with plate": Contact(RIG),
@@ -94,6 +109,25 @@ def test_agrees_with_scipy(name: str) -> None:
     assert expected.max() <= peak * (1 + 1e-4)
 
 
+@pytest.fixture(scope="module")
+def arm(panda: Robot) -> ImpactModel:
+    return impact_model(panda, drives_=drives(panda, 1e4))
+
+
+HEAVY = Contact(measuring_device(75e3, PADS["sh70"], 2.0))
+
+
+@pytest.mark.parametrize("contact", [*BODIES.values(), HEAVY], ids=[*BODIES, "heavy plate"])
+def test_many_impacts_at_once_are_those_of_sundials(arm: ImpactModel, contact: Contact) -> None:
+    loose, motors = replace(contact, clamped=False), Motors("driven", 0.01)
+    for speed in (0.2, 0.8):
+        approach = Approach(POSE, ALONG_Y, speed)
+        one = simulate_impact(arm, approach, loose, motors=motors, horizon=0.04)
+        many = many_peaks(arm, approach, loose, speed, motors=motors, horizon=0.04)
+        assert many.peak[0] == pytest.approx(one.peak, rel=1e-3)
+        assert many.first_contact[0] == pytest.approx(one.first_contact, rel=1e-3)
+
+
 def test_a_light_plate_does_not_matter() -> None:
     bare = highest(Contact(replace(RIG, plate_mass=0.0)))
     light = highest(Contact(replace(RIG, plate_mass=1e-5)))
@@ -106,6 +140,21 @@ def test_a_plate_makes_the_first_touch_harder() -> None:
     assert peaks[0] is not None
     assert peaks[1] is not None
     assert peaks[1].force > 1.05 * peaks[0].force
+
+
+def test_a_device_reads_the_force_in_its_spring() -> None:
+    """f_c less what the plate takes, by differences of the reading's own motion."""
+    contact = BODIES["device with plate"]
+    run, _ = impact(contact)
+    k, m = contact.region.stiffness, contact.region.plate_mass
+    step = float(np.ptp(run.time[:3])) / 2
+    inner = slice(1, 399)
+    x_0 = run.reading / k
+    acceleration = (x_0[2:400] - 2 * x_0[1:399] + x_0[:398]) / step**2
+    error = run.force[inner] - run.reading[inner] - m * acceleration
+    assert abs(error).max() < 2e-3 * run.force.max()
+    bare, _ = impact(BODIES["skin"])
+    np.testing.assert_array_equal(bare.reading, bare.force)
 
 
 def test_covers_help_and_thicker_ones_more() -> None:

@@ -26,8 +26,8 @@ from softimpact.symbolic import (
     Contact,
     ImpactModel,
     InvalidValue,
+    Motors,
     Robot,
-    SoftImpactError,
     UnknownName,
     body_region,
     drives,
@@ -90,7 +90,9 @@ def test_controlled_rr_agrees_with_mujoco_before_and_after_the_reaction(
     controller = replace(RR, reference=reference, reaction_time=0.006)
     ours = simulate_impact(model, approach, HEAD, "full", motors=controller, horizon=0.016)
     theirs = extrapolated(partial(forces_by_mujoco, approach, controller, HEAD, 0.0161))
-    difference = ours.force - np.interp(ours.time, STEP * np.arange(len(theirs)), theirs)
+    seen = ours.time <= 0.016  # a clamped body is followed further
+    time, force = ours.time[seen], ours.force[seen]
+    difference = force - np.interp(time, STEP * np.arange(len(theirs)), theirs)
     assert abs(difference).max() < 4e-4 * ours.first_contact  # at the first steps of touch
 
 
@@ -139,10 +141,10 @@ def test_proportional_control_of_a_standing_reference_is_k_p() -> None:
     slow = replace(approach, speed=1e-3)
     only_p = Controller(6050.0, 0.0, 0.0, "held", np.inf)
     controlled = simulate_impact(model, slow, CHEST, "full", motors=only_p)
-    held = simulate_impact(model, slow, CHEST, "full")
+    held = simulate_impact(model, slow, CHEST, "full", motors=Motors("held"))
     assert controlled.first_contact == pytest.approx(held.first_contact, rel=1e-5)
     linear = simulate_impact(model, slow, CHEST, "linearised", motors=only_p)
-    modal = simulate_impact(model, slow, CHEST, "linearised")
+    modal = simulate_impact(model, slow, CHEST, "linearised", motors=Motors("held"))
     assert linear.first_contact == pytest.approx(modal.first_contact, rel=1e-7)
 
 
@@ -207,5 +209,5 @@ def test_unknown_references_are_refused() -> None:
                                      {"fidelity": "chain", "end": "free"}])  # fmt: skip
 def test_models_without_motors_take_no_controller(options: dict[str, str]) -> None:
     model, approach = turned_by_both_motors()
-    with pytest.raises(SoftImpactError, match="controller"):
+    with pytest.raises(InvalidValue, match=r"motors|controller"):
         simulate_impact(model, approach, CHEST, **options, motors=RR)  # type: ignore[arg-type]

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
 
-import casadi as ca
 import numpy as np
 
 from ...errors import InvalidValue
 from ...matrices import Matrix
 from ...robot.rigid import Array
 from .law import Law
+from .points import Points
 
 SOLID = 1e8
 """Stiffness [N/m] that is as good as solid: a hundred times that of skin under 500 N."""
@@ -52,9 +52,14 @@ class Curve(Law):
 
     def force(self, depth: Matrix) -> Matrix:
         """Return f(δ) [N]."""
-        slopes = monotone_slopes(np.array(self.depths), np.array(self.forces))
-        beyond = max(SOLID, float(slopes[-1]))
-        return through_points(depth, self.depths, self.forces, slopes, slopes, beyond)
+        return self.points.force(depth)
+
+    @property
+    def points(self) -> Points:
+        """The points with their slopes."""
+        depth, force = np.array(self.depths), np.array(self.forces)
+        slopes = monotone_slopes(depth, force)
+        return Points(depth, force, slopes, slopes, max(SOLID, float(slopes[-1])))
 
     def check(self) -> None:
         """Raise InvalidValue if the points are not a law."""
@@ -89,33 +94,3 @@ def monotone_slopes(depth: Array, force: Array) -> Array:
     first = end(h[0], h[1], chord[0], chord[1])
     last = end(h[-1], h[-2], chord[-1], chord[-2])
     return np.array([first, *inner, last])
-
-
-def through_points(
-    depth: Matrix,
-    points: Sequence[float],
-    force: Sequence[float],
-    slopes_before: Array,
-    slopes_after: Array,
-    slope_beyond: float,
-) -> Matrix:
-    """Return the force [N] on a cubic through points, zero before them and straight after them.
-
-    A sum of what each interval adds, without branches, so that it is an expression of any kind and
-    shape; each interval's share stops at its ends.
-
-    Args:
-        depth: where.
-        points: depths of the points [m], rising from 0 on.
-        force: at the points [N].
-        slopes_before: at the points, coming from smaller depths [N/m].
-        slopes_after: the same coming from larger ones; equal but at corners.
-        slope_beyond: of the straight line after the last point [N/m].
-    """
-    total: Matrix = slope_beyond * ca.fmax(0, depth - points[-1])
-    for i, (a, b) in enumerate(pairwise(points)):
-        h, rise = b - a, force[i + 1] - force[i]
-        first, last = h * slopes_after[i], h * slopes_before[i + 1]
-        t = ca.fmin(ca.fmax(0, (depth - a) / h), 1)
-        total += t * (first + t * (3 * rise - 2 * first - last + t * (first + last - 2 * rise)))
-    return total

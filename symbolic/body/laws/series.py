@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -12,8 +13,9 @@ import numpy as np
 from ...errors import InvalidValue
 from ...matrices import Matrix
 from ...robot.rigid import Array
-from .curve import through_points
+from .curve import Curve
 from .law import Law
+from .points import Points
 from .power import PowerLaw
 
 LEAST_FORCE = 1e-4
@@ -58,7 +60,7 @@ class Series(Law):
 
     def force(self, depth: Matrix) -> Matrix:
         """Return f(δ) [N]."""
-        return _sampled(self.laws).at(depth)
+        return _sampled(self.laws).force(depth)
 
     def check(self) -> None:
         """Raise InvalidValue if a number of one of the laws cannot be."""
@@ -93,23 +95,15 @@ def in_series(*laws: Law) -> Law:
     return parts[0] if len(parts) == 1 else Series(parts)
 
 
-@dataclass(frozen=True, eq=False)
-class _Points:
-    """Points of a series, and slopes on both sides of each."""
-
-    depth: Array
-    force: Array
-    slope_before: Array
-    slope_after: Array
-
-    def at(self, depth: Matrix) -> Matrix:
-        beyond = float(self.slope_after[-1])
-        slopes = (self.slope_before, self.slope_after)
-        return through_points(depth, self.depth.tolist(), self.force.tolist(), *slopes, beyond)
+def points_of(law: Law) -> Points:
+    """Return the points through which a law goes: a curve's own, any other's sampled."""
+    if isinstance(law, Curve):
+        return law.points
+    return _sampled(law.laws if isinstance(law, Series) else (law,))
 
 
 @lru_cache(maxsize=64)
-def _sampled(laws: tuple[Law, ...]) -> _Points:
+def _sampled(laws: tuple[Law, ...]) -> Points:
     decades = np.log10(MOST_FORCE / LEAST_FORCE)
     forces = np.geomspace(LEAST_FORCE, MOST_FORCE, round(START * decades) + 1)
     corners = [f for law in laws for f in getattr(law, "forces", ())]
@@ -121,20 +115,20 @@ def _sampled(laws: tuple[Law, ...]) -> _Points:
         depth, less, more, middle = np.split(_depths(laws, np.concatenate(sought)), sizes)
         step = BESIDE * forces
         points = _rising(depth, forces, step / (depth - less), step / (more - depth))
-        rough = np.abs(np.array(points.at(ca.DM(middle))).ravel() / between - 1) > SERIES_ERROR
+        rough = np.abs(points.evaluated(middle)[0] / between - 1) > SERIES_ERROR
         if not rough.any():
             break
         forces = np.unique([*forces, *between[rough]])
     return points
 
 
-def _rising(depth: Array, force: Array, before: Array, after: Array) -> _Points:
+def _rising(depth: Array, force: Array, before: Array, after: Array) -> Points:
     """Return points with 0 in front, and slopes that keep a cubic through them rising."""
     depth, force, before, after = (np.append(0.0, part) for part in (depth, force, before, after))
     steepest = 3 * np.diff(force) / np.diff(depth)  # Fritsch and Carlson
     before[1:] = np.minimum(before[1:], steepest)
     after[:-1] = np.minimum(after[:-1], steepest)
-    return _Points(depth, force, before, after)
+    return Points(depth, force, before, after, float(after[-1]))
 
 
 def _depths(laws: tuple[Law, ...], forces: Array) -> Array:
@@ -144,13 +138,22 @@ def _depths(laws: tuple[Law, ...], forces: Array) -> Array:
         if isinstance(law, PowerLaw):
             total += (forces / law.stiffness) ** (1 / law.exponent)
             continue
+        force = _evaluated(law)
         low, high = np.full_like(forces, SHALLOWEST), np.full_like(forces, DEEPEST)
-        if float(law.force(ca.DM(DEEPEST))) < 2 * MOST_FORCE:
+        if force(high[:1])[0] < 2 * MOST_FORCE:
             reason = f"gives less than {2 * MOST_FORCE:g} N at a depth of {DEEPEST:g} m"
             raise InvalidValue("law", reason)
         for _ in range(100):
             middle = np.sqrt(low * high)
-            above = np.array(law.force(ca.DM(middle))).ravel() > forces
+            above = force(middle) > forces
             low, high = np.where(above, low, middle), np.where(above, middle, high)
         total += high
     return total
+
+
+def _evaluated(law: Law) -> Callable[[Array], Array]:
+    """Return a law's force over depths as arrays."""
+    if isinstance(law, Curve):
+        points = law.points
+        return lambda depth: points.evaluated(depth)[0]
+    return lambda depth: np.array(law.force(ca.DM(depth)), dtype=float).ravel()

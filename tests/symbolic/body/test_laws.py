@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -19,6 +19,7 @@ from softimpact.symbolic import Contact, Curve, InvalidValue, Law, Matrix, Power
 from softimpact.symbolic import in_series as series
 from softimpact.symbolic.body.laws import Series
 from softimpact.symbolic.body.laws.law import form_of, numbers_of, with_numbers
+from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
 FOAM = Curve([0, 2e-3, 5e-3, 8e-3], [0, 20, 120, 600])
@@ -59,6 +60,18 @@ def test_a_law_is_an_expression_of_any_kind(law: Law) -> None:
         x = kind.sym("x", len(depths))
         found = ca.Function("f", [x], [law.force(x)])(depths)
         np.testing.assert_allclose(np.array(found).ravel(), force(law, depths), rtol=1e-12)
+
+
+@EVERY
+def test_numbers_are_those_of_the_expression(law: Law) -> None:
+    points, depths = points_of(law), np.array([0.0, 1e-5, 1e-3, 2e-3, 4e-3, 8e-3, 8.1e-3])
+    found, slope = points.evaluated(depths)
+    np.testing.assert_allclose(found, force(law, depths), rtol=1e-4, atol=1e-6)
+    inside = np.array([1e-5, 1e-3, 4e-3])
+    steps = 1e-6 * inside
+    rise = (points.evaluated(inside + steps)[0] - points.evaluated(inside - steps)[0]) / (2 * steps)
+    np.testing.assert_allclose(points.evaluated(inside)[1], rise, rtol=1e-5)
+    assert (slope[1:] > 0).all()
 
 
 @EVERY
@@ -127,6 +140,7 @@ def test_a_series_agrees_with_bisection(name: str) -> None:
         assert force(law, depth)[0] == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(curves(), st.floats(1e4, 1e9), st.sampled_from([1.0, 1.5, 2.0]))
 def test_a_series_is_softer_than_each_part(curve: Curve, stiffness: float, exponent: float) -> None:
@@ -166,6 +180,8 @@ def test_a_contact_is_cover_and_skin_in_series() -> None:
     assert padded.force(1e-3) < bare.force(1e-3)
     with pytest.raises(InvalidValue, match="Hertz"):
         _ = Contact(chest, cover=FOAM).series_stiffness
+    with pytest.raises(InvalidValue, match="plate_mass"):
+        _ = Contact(replace(chest, plate_mass=0.1)).series_stiffness
 
 
 def test_laws_that_differ_in_numbers_alone_share_a_form() -> None:

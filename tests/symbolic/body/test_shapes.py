@@ -13,7 +13,7 @@ from layer_contact import Gap, largest_pressure
 
 from softimpact.symbolic import Edge, Flat, InvalidValue, Sphere
 from softimpact.symbolic.body.pads import HARDEST, PADS, young_modulus
-from softimpact.symbolic.body.shapes import Shape, force_at_pressure
+from softimpact.symbolic.body.shapes import Shape, force_at_pressure, shape_from
 
 NUMERICAL = 1.01
 """What the grid and the neighbours of a periodic shape may hide."""
@@ -116,6 +116,36 @@ def test_pads_that_were_not_measured_follow_from_the_one_that_was(name: str) -> 
     assert pad.law.exponent == 1.5
     if name != "sh70":
         assert pad.law.stiffness == pytest.approx(1.9e7 * pad.modulus / nominal, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("text", "shape"),
+    [
+        ("sphere:0.01", Sphere(0.01)),
+        ("edge:2e-3,0.05", Edge(2e-3, 0.05)),
+        ("flat:4e-3,0.005", Flat(4e-3, 0.005)),
+    ],
+)
+def test_shapes_have_a_short_form(text: str, shape: Shape) -> None:
+    assert shape_from(text) == shape
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("cone:1", "shape: must be sphere:RADIUS, edge:RADIUS,LENGTH, .* not 'cone:1'"),
+        ("", "shape: must be sphere"),
+        ("sphere", "shape: must be sphere:RADIUS, with numbers"),
+        ("sphere:big", "shape: must be sphere:RADIUS"),
+        ("edge:0.01", "shape: must be edge:RADIUS,LENGTH"),
+        ("sphere:0.01,2", "shape: must be sphere:RADIUS"),
+        ("edge:0.01,-1", "shape.length: must be finite and greater than 0"),
+        ("sphere:nan", "shape.radius: must be finite"),
+    ],
+)
+def test_short_forms_that_say_no_shape(text: str, message: str) -> None:
+    with pytest.raises(InvalidValue, match=message):
+        shape_from(text)
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf")])
