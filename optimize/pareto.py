@@ -46,7 +46,7 @@ class Reference:
         q: posture, length n [rad].
         springs: joint stiffness, length n [N·m/rad].
         deflection: largest of the tip under the study's forces [m].
-        force: peak of the first contact [N].
+        force: largest peak [N].
     """
 
     q: Array
@@ -188,7 +188,7 @@ def _fronts(
         held={name: front(study, bounds, outcomes) for name, outcomes in held.items()},
         reference=_reference(problem),
         timing=problem.timing,
-        compiled=problem.program.library is not None,
+        compiled=problem.program.library,
     )
 
 

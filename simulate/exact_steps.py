@@ -48,8 +48,11 @@ class ModalStep:
         return position, speed + self.before_rate * first + self.after_rate * last
 
 
-def modal_step(squared: Array, h: float) -> ModalStep:
-    """Return the step h [s] of modes of squared frequencies ω² (negative: they run away)."""
+def modal_step(squared: Array, h: float | Array) -> ModalStep:
+    """Return the step h [s] of modes of squared frequencies ω² (negative: they run away).
+
+    h is one number, or has shape (S, 1).
+    """
     root = np.sqrt(np.asarray(squared, dtype=complex))
     x = squared * h * h
     slow = abs(x) < SMALL
@@ -90,13 +93,14 @@ def _applied(matrix: Array, rows: Array) -> Array:
     return np.asarray((matrix @ rows[..., None])[..., 0])
 
 
-def dense_step(A: Array, b: Array, h: float) -> DenseStep:
-    """Return the step h [s] of ẋ = A x + b f."""
+def dense_step(A: Array, b: Array, h: float | Array) -> DenseStep:
+    """Return the step h [s], one number or one for each sample, of ẋ = A x + b f."""
     m, k = b.shape[-2:]
-    shape = (*A.shape[:-2], m + 2 * k, m + 2 * k)
-    block = np.zeros(shape)
-    block[..., :m, :m] = A * h
-    block[..., :m, m : m + k] = b * h
+    steps = np.asarray(h)[..., None, None]
+    leading = np.broadcast_shapes(A.shape[:-2], b.shape[:-2], steps.shape[:-2])
+    block = np.zeros((*leading, m + 2 * k, m + 2 * k))
+    block[..., :m, :m] = A * steps
+    block[..., :m, m : m + k] = b * steps
     block[..., m : m + k, m + k :] = np.eye(k)
     E = exponential(block)
     constant, ramp = E[..., :m, m : m + k], E[..., :m, m + k :]

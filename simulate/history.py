@@ -34,6 +34,8 @@ class ImpactHistory:
         motors: what they did; None for the papers' controller and for lone masses.
         time: since first touch [s], length K.
         force: f_c at these times [N].
+        reading: of a measuring device at these times [N]: the force in the body's spring, which is
+            f_c but for the inertia of a plate.
         peak: largest force over all contacts up to the horizon [N].
         time_of_peak: [s].
         first_contact: largest force until separation [N].
@@ -50,6 +52,7 @@ class ImpactHistory:
     motors: Motors | None
     time: Array
     force: Array
+    reading: Array
     peak: float
     time_of_peak: float
     first_contact: float

@@ -77,6 +77,7 @@ def simulate_impact(
         motors=what if isinstance(what, Motors) and not _is_lumped(fidelity) else None,
         time=run.time,
         force=run.force,
+        reading=run.reading,
         peak=found.peak.force,
         time_of_peak=found.peak.time,
         first_contact=found.first_contact.force,
@@ -105,8 +106,8 @@ def _scene(
 ) -> Scene:
     if _is_lumped(fidelity):
         if motors != Motors("free") and not (isinstance(motors, Motors) and model.drives.has_gains):
-            reason = "needs motors: a chain, or the linearised or full model"
-            raise InvalidValue("motors", reason)
+            field = "controller" if isinstance(motors, Controller) else "motors"
+            raise InvalidValue(field, "needs motors: a chain, or the linearised or full model")
         build = one_mass_scene if fidelity == "one_mass" else two_mass_scene
         return build(model, arrival, contact, tolerance)
     if isinstance(motors, Controller):

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import casadi as ca
 import numpy as np
 
 from softimpact.symbolic.body.laws import Law, PowerLaw
+from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
 NEWTON, CLOSE = 40, 1e-10
@@ -31,7 +31,7 @@ class LawSolver:
     """
 
     law: LawAndSlope
-    softness: float
+    softness: float | Array
 
     def solve(self, pushed: Array, guess: Array | None = None) -> tuple[Array, Array]:
         """Return force [N] and depth [m] for depths p that there would be without the force.
@@ -57,9 +57,21 @@ class LawSolver:
         return self.law(depth)[0], depth
 
 
-def law_solver(law: Law, softness: float) -> LawSolver:
-    """Return the solver of a law between sides that give way by ``softness`` [m/N]."""
-    return LawSolver(_power(law) if isinstance(law, PowerLaw) else _any(law), softness)
+def law_solver(law: Law, softness: float | Array, scale: float | Array = 1.0) -> LawSolver:
+    """Return the solver of a law between sides that give way by ``softness`` [m/N].
+
+    Args:
+        law: of contact.
+        softness: one number, or one for each impact.
+        scale: factor on the law's force, likewise.
+    """
+    plain = _power(law) if isinstance(law, PowerLaw) else points_of(law).evaluated
+
+    def scaled(depth: Array) -> tuple[Array, Array]:
+        force, slope = plain(depth)
+        return scale * force, scale * slope
+
+    return LawSolver(scaled, softness)
 
 
 def _power(law: PowerLaw) -> LawAndSlope:
@@ -68,17 +80,5 @@ def _power(law: PowerLaw) -> LawAndSlope:
     def evaluated(depth: Array) -> tuple[Array, Array]:
         slope = k * (np.sqrt(depth) if n == 1.5 else depth ** (n - 1))
         return slope * depth, n * slope
-
-    return evaluated
-
-
-def _any(law: Law) -> LawAndSlope:
-    depth = ca.SX.sym("depth")
-    force = law.force(depth)
-    function = ca.Function("law", [depth], [force, ca.jacobian(force, depth)])
-
-    def evaluated(depth: Array) -> tuple[Array, Array]:
-        found = function(ca.DM(depth).T)
-        return np.array(found[0]).ravel(), np.array(found[1]).ravel()
 
     return evaluated

@@ -26,7 +26,8 @@ class LinearSystem:
     """M z̈ + D ż + K z = −Jᵀ f_c + forces that do not depend on the impact.
 
     z is the deviation from the motion before the impact, of the coordinates ``moving``, which are
-    some of the model's; those ``given`` move as the motors' law has it.
+    some of the model's; those ``given`` move as the motors' law has it. Arrays of many systems have
+    a leading axis.
 
     Attributes:
         shapes: how the coordinates that move do so with each of the system's own, N×r; a chain
@@ -155,6 +156,8 @@ def _array(matrix: ArrayLike) -> Array:
 class Modes:
     """A linear system by its modes y, of mass one: ÿ + ω² y + C ẏ = −φ f_c + given forces.
 
+    Those of many systems have a leading axis.
+
     Attributes:
         squared_frequency: ω², length r [1/s²].
         shape: φ, length r [1/√kg]; the contact point moves by φᵀ y.
@@ -171,22 +174,35 @@ class Modes:
 
 
 def modes(system: LinearSystem) -> Modes:
-    """Return the modes of a linear system."""
-    root = np.linalg.cholesky(system.mass)
-    half = np.linalg.solve(root, system.stiffness)
-    squared_frequency, vectors = np.linalg.eigh(np.linalg.solve(root, half.T))
-    own = np.linalg.solve(root.T, vectors)
+    """Return the modes of a linear system, or of many."""
+    root = np.asarray(np.linalg.cholesky(system.mass), dtype=float)
+    half = np.asarray(np.linalg.solve(root, system.stiffness), dtype=float)
+    squared_frequency, vectors = np.linalg.eigh(np.linalg.solve(root, _turned(half)))
+    own = np.linalg.solve(_turned(root), vectors)
     basis = system.shapes @ own
-    M = system.whole[0][np.ix_(system.moving, system.moving)]
-    damping = None if system.damping is None else own.T @ system.damping @ own
-    return Modes(squared_frequency, own.T @ system.jacobian, basis, basis.T @ M, damping)
+    M = _block(system.whole[0], system.moving, system.moving)
+    damping = None if system.damping is None else _turned(own) @ system.damping @ own
+    shape = _on(_turned(own), system.jacobian)
+    return Modes(squared_frequency, shape, basis, _turned(basis) @ M, damping)
+
+
+def _turned(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)
+
+
+def _block(matrix: Array, rows: list[int], columns: list[int]) -> Array:
+    return np.asarray(matrix[..., rows, :][..., columns])
+
+
+def _on(matrix: Array, vector: Array) -> Array:
+    return np.asarray((matrix @ vector[..., None])[..., 0])
 
 
 @dataclass(frozen=True, eq=False)
 class Given:
     """What does not depend on the impact, as polynomials in the time since a stage began.
 
-    Everything is for an approach of 1 m/s.
+    Everything is for an approach of 1 m/s; of many impacts with a leading axis.
 
     Attributes:
         force: on each mode, coefficients of 1, τ, τ², r×3.
@@ -203,7 +219,7 @@ def given_motion(
     law: MotorLaw,
     motion: Motion,
     arrival_rate: Array,
-    begin: float,
+    begin: float | Array,
     stopping_time: float,
 ) -> tuple[Given, Array]:
     """Return the given forces and displacement of a stage, and the motors' given deviation.
@@ -212,7 +228,7 @@ def given_motion(
         system: of the stage.
         found: its modes.
         law: of the motors.
-        motion: of all coordinates when it begins.
+        motion: of all coordinates when it begins, coordinates last.
         arrival_rate: q̇0 over all coordinates per 1 m/s of approach.
         begin: of the stage since first touch [s].
         stopping_time: of motors that brake [s].
@@ -221,23 +237,23 @@ def given_motion(
         The polynomials, and coefficients of 1, τ, τ² of the motors' deviation, P×3.
     """
     P, F = system.given, system.moving
-    deviation = np.zeros((len(P), 3))
+    position, rate = motion.position[..., P], motion.velocity[..., P]
+    deviation = np.zeros((*position.shape, 3))
     if law in PRESCRIBED:
-        position, rate = motion.position[P], motion.velocity[P]
-        bend = -(arrival_rate[P] + rate) / stopping_time if law == "braking" else 0 * rate
+        bend = -(arrival_rate[..., P] + rate) / stopping_time if law == "braking" else 0 * rate
         if law == "stopped":
-            rate = -arrival_rate[P]
-        deviation = np.column_stack([position, rate, bend / 2])
+            rate = 0 * rate - arrival_rate[..., P]
+        deviation = np.stack([position, rate, bend / 2], axis=-1)
     M, K, D, J = system.whole
-    FP = np.ix_(F, P)
-    zero = np.zeros(len(P))
-    bent = 2 * deviation[:, 2]
-    rates = np.column_stack([deviation[:, 1], bent, zero])
-    forces = -K[FP] @ deviation - D[FP] @ rates
-    forces[:, 0] -= M[FP] @ bent + system.drift[F] * begin
-    forces[:, 1] -= system.drift[F]
-    displacement = np.array([begin, 1.0, 0.0]) + J[P] @ deviation
-    return Given(found.basis.T @ forces, displacement), deviation
+    bent = 2 * deviation[..., 2]
+    rates = np.stack([deviation[..., 1], bent, 0 * bent], axis=-1)
+    forces = -_block(K, F, P) @ deviation - _block(D, F, P) @ rates
+    since = np.asarray(begin)
+    forces[..., 0] -= _on(_block(M, F, P), bent) + system.drift[..., F] * since[..., None]
+    forces[..., 1] -= system.drift[..., F]
+    ahead = np.stack([since, since**0, 0 * since], axis=-1)
+    displacement = ahead + (J[..., P, None] * deviation).sum(axis=-2)
+    return Given(_turned(found.basis) @ forces, displacement), deviation
 
 
 @lru_cache(maxsize=64)

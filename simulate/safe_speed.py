@@ -35,7 +35,7 @@ by SUNDIALS."""
 
 
 @dataclass(frozen=True)
-class Limits:
+class ForceLimits:
     """Forces that an impact must keep [N]; infinite where there is none.
 
     Attributes:
@@ -51,7 +51,7 @@ def largest_safe_speed(
     model: ImpactModel,
     approach: Approach,
     contact: Contact,
-    limit: float | Limits,
+    limit: float | ForceLimits,
     fidelity: Fidelity = "linearised",
     definition: PeakDefinition = "peak",
     *,
@@ -84,7 +84,7 @@ def largest_safe_speed(
         InvalidValue: a limit that is not positive, motors that are held, and as
             ``simulate_impact`` does.
     """
-    limits = limit if isinstance(limit, Limits) else Limits(limit)
+    limits = limit if isinstance(limit, ForceLimits) else ForceLimits(limit)
     for value in (limits.transient, limits.quasi_static):
         if not value > 0 or (value == inf and limits.transient == inf):
             raise InvalidValue("limit", f"must be finite and greater than 0 N, not {value}")
@@ -121,7 +121,9 @@ def largest_safe_speed(
     raise SimulationFailed("the peak force does not settle with speed")
 
 
-def share_of_limit(history: ImpactHistory, limits: Limits, definition: PeakDefinition) -> float:
+def share_of_limit(
+    history: ImpactHistory, limits: ForceLimits, definition: PeakDefinition
+) -> float:
     """Return the larger of peak and pressing force, each over its limit."""
     pressing = history.pressing or 0.0
     return max(history.force_of(definition) / limits.transient, pressing / limits.quasi_static)
@@ -131,7 +133,7 @@ def _slower_violation(
     model: ImpactModel,
     approach: Approach,
     contact: Contact,
-    limits: Limits,
+    limits: ForceLimits,
     definition: PeakDefinition,
     motors: Motors | None,
     horizon: float,

@@ -75,6 +75,8 @@ class Run:
         depth: δ = x_c − x_0 [m], negative when apart.
         closing: dδ/dt [m/s].
         force: f_c [N].
+        reading: force in the body's spring and damper [N], which is what a measuring device shows;
+            it differs from f_c where a plate has a mass.
     """
 
     time: Array
@@ -82,6 +84,7 @@ class Run:
     depth: Array
     closing: Array
     force: Array
+    reading: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,8 +142,8 @@ class Scene:
             flags = re.findall(r'returned "(\w+)"', str(error))
             raise SimulationFailed(flags[0] if flags else str(error)) from None
         states = np.array(ca.vertcat(end["xf"], end["zf"]))
-        depth, closing, force = (np.array(row).ravel() for row in simulator.observe(states, p))
-        return Run(start + np.linspace(0, span, NODES + 1), states, depth, closing, force)
+        seen = [np.array(row).ravel() for row in simulator.observe(states, p)]
+        return Run(start + np.linspace(0, span, NODES + 1), states, *seen)
 
 
 def one_stage(

@@ -41,7 +41,7 @@ class Simulator:
 
     Attributes:
         integrate: SUNDIALS; state and parameters → states at the nodes.
-        observe: state and parameters → depth, closing and force.
+        observe: state and parameters → depth, closing, force and reading.
         body_states: number of states of the body, which come last.
         differential: number of states that follow a differential equation; the others come last.
     """
@@ -84,7 +84,8 @@ def build_simulator(robot: Mechanism, kind: BodyKind, tolerance: float) -> Simul
         solver, dae = "idas", {"x": x[:-1], "z": x[-1], "p": p, "ode": rate[:-1], "alg": balance}
     options = {"reltol": tolerance, "abstol": tolerance, "max_num_steps": 100_000}
     integrate = ca.integrator("impact", solver, dae, 0, np.linspace(0, 1, NODES + 1), options)
-    seen = [scaled(e) for e in (pressed.depth, pressed.closing, pressed.force)]
+    shown = (pressed.depth, pressed.closing, pressed.force, pressed.reading)
+    seen = [scaled(e) for e in shown]
     size, bodies = int(state.numel()), int(body.state.numel())
     observe = ca.Function("observe", [x, p], seen)
     return Simulator(integrate, observe, bodies, size if kind.damped else size - 1)

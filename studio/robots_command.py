@@ -7,7 +7,7 @@ from .options import Json
 
 
 def robots(json: Json = False) -> None:
-    """List the built-in robots."""
+    """List the built-in robots; their frames are in --json."""
     from softimpact.robots import built_in_robots
     from softimpact.symbolic import load_robot
 
@@ -36,8 +36,8 @@ def robots(json: Json = False) -> None:
                 name,
                 str(robot.n),
                 robot.tip,
-                ", ".join(robot.frames),
-                ", ".join(robot.rotor_inertia_sets) or None,
+                str(len(robot.frames)),
+                "\n".join(robot.rotor_inertia_sets) or None,
                 path.name,
             )
             for name, (robot, path) in found.items()

@@ -78,6 +78,7 @@ from .loops.closure import (
     configuration_at_rest,
     require_closed_at,
 )
+from .loops.couplings import own_joints, whole_configuration
 from .loops.loop_equations import ClosedChain
 from .loops.loops import (
     closed_chain,
@@ -88,8 +89,10 @@ from .loops.loops import (
     loop_tangent,
 )
 from .matrices import Matrix, count_flops
+from .robot.arm import Arm, arm_of, with_load
+from .robot.constraints import Coupling, Loop, Tendon
 from .robot.loading import load_robot
-from .robot.robot import Frame, Joint, JointKind, Loop, Robot
+from .robot.robot import Frame, Joint, JointKind, Robot
 from .robot.welding import chain_to, lock_joints
 
 __all__ = [
@@ -97,12 +100,14 @@ __all__ = [
     "REGIONS",
     "STANDARD_GRAVITY",
     "Analysis",
+    "Arm",
     "BodyRegion",
     "Chain",
     "ChainNumbers",
     "ClosedChain",
     "Contact",
     "ContactMobility",
+    "Coupling",
     "Curve",
     "Drives",
     "Edge",
@@ -141,6 +146,7 @@ __all__ = [
     "SingularLoop",
     "SoftImpactError",
     "Sphere",
+    "Tendon",
     "TwoBody",
     "UnknownName",
     "UnsupportedModel",
@@ -148,6 +154,7 @@ __all__ = [
     "WrongLength",
     "analyse",
     "approach_velocity",
+    "arm_of",
     "bias_torques",
     "body_region",
     "chain",
@@ -201,6 +208,7 @@ __all__ = [
     "mass_matrix",
     "motor_angles_at_rest",
     "moving_mass",
+    "own_joints",
     "potential_energy",
     "reduce_to_two_masses",
     "reflected_mass",
@@ -211,4 +219,6 @@ __all__ = [
     "symmetric_eigen",
     "two_body",
     "unit_direction",
+    "whole_configuration",
+    "with_load",
 ]

@@ -12,10 +12,15 @@ from .regions import AREAS, REGIONS, BodyRegion
 BODIES = {**REGIONS, **AREAS, **DEVICES}
 """Regions and areas of the body, and measuring devices, by name."""
 
+NEAREST = 5
+"""Most names shown before the regions where a name is unknown."""
+
 
 def body_region(name: str) -> BodyRegion:
     """Return a region, area or device by name; raises UnknownName, the nearest names first."""
     if name not in BODIES:
-        nearest_first = dict.fromkeys([*get_close_matches(name, BODIES), *REGIONS])
+        holding = [known for known in BODIES if name and name in known]
+        near = [*holding, *get_close_matches(name, BODIES)]
+        nearest_first = dict.fromkeys([*near[:NEAREST], *REGIONS])
         raise UnknownName("body region", name, nearest_first)
     return BODIES[name]

@@ -50,9 +50,11 @@ class Contact:
         """k_f [N/m^1.5] of the whole, for consumers that know Hertz's law only.
 
         Raises:
-            InvalidValue: the law is another one.
+            InvalidValue: the law is another one, or the body has a plate.
         """
         law = self.law
+        if self.region.plate_mass:
+            raise InvalidValue("plate_mass", "must be 0 here: only simulations take a plate")
         if isinstance(law, PowerLaw) and law.exponent == HERTZ_EXPONENT:
             return law.stiffness
         raise InvalidValue(

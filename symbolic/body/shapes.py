@@ -12,11 +12,15 @@ solution of the layer. Covers are left out: they spread the force further.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 from ..errors import InvalidValue
 from .pads import HARDEST, Pad
+
+ENDS = 1.5
+"""How much higher than along its middle the pressure may be at the rounded ends of an edge."""
 
 CONSTRAINT = 4 / 3
 """E*/E = 1/(1 − ν²) of rubber, ν = 1/2."""
@@ -56,11 +60,11 @@ class Sphere:
 
 @dataclass(frozen=True)
 class Edge:
-    """A rounded edge that lies along the skin.
+    """A rounded edge that lies along the skin; its ends are balls of its radius.
 
     Attributes:
         radius: of its rounding [m].
-        length: that touches [m].
+        length: of the straight part that touches [m].
     """
 
     radius: float
@@ -72,15 +76,19 @@ class Edge:
     def pressure(self, force: float, pad: Pad = HARDEST) -> float:
         """Return a bound on the pressure [Pa] under a force [N], with f the force per length.
 
-        p_H = √(f E*/(πR)); p_T = 15f/(16a) with a⁵ = 15 R t³f/(2G). Never more than under a ball of
-        the same radius.
+        p_H = √(f E*/(πR)); p_T = 15f/(16a) with a⁵ = 15 R t³f/(2G); ``ENDS`` times as much at the
+        ends, but never more than under a ball of the same radius.
         """
-        E, R, t = pad.modulus, self.radius, pad.thickness
-        f = force / self.length
-        p_H = math.sqrt(f * CONSTRAINT * E / (math.pi * R))
-        half_width = (7.5 * R * t**3 * f / (E / 3)) ** 0.2
-        p_T = 15 * f / (16 * half_width) if force else 0.0
-        return min(p_H + p_T, Sphere(R).pressure(force, pad))
+        line = _under_a_line(force / self.length, self.radius, pad)
+        return min(ENDS * line, Sphere(self.radius).pressure(force, pad))
+
+
+def _under_a_line(f: float, R: float, pad: Pad) -> float:
+    """Return a bound on the pressure [Pa] under an edge without ends and f [N/m]."""
+    E, t = pad.modulus, pad.thickness
+    p_H = math.sqrt(f * CONSTRAINT * E / (math.pi * R))
+    half_width = (7.5 * R * t**3 * f / (E / 3)) ** 0.2
+    return p_H + (15 * f / (16 * half_width) if f else 0.0)
 
 
 @dataclass(frozen=True)
@@ -101,11 +109,40 @@ class Flat:
     def pressure(self, force: float, pad: Pad = HARDEST) -> float:
         """Return a bound on the pressure [Pa] under a force [N].
 
-        In the middle at most twice the mean (a round face on a thin layer), and at the rim at most
-        that of an edge that carries all; its length is that of a round face, the shortest.
+        In the middle at most twice the mean (a round face on a thin layer), at the rim at most that
+        of an edge that carries all; it is as long as that of a round face, the shortest. The sum is
+        up to five times too much, but holds for square faces, too.
         """
-        rim = Edge(self.rim_radius, 2 * math.sqrt(math.pi * self.area))
-        return 2 * force / self.area + rim.pressure(force, pad)
+        rim = 2 * math.sqrt(math.pi * self.area)
+        return 2 * force / self.area + _under_a_line(force / rim, self.rim_radius, pad)
+
+
+def shape_from(text: str) -> Shape:
+    """Return a shape by its name and lengths in m: ``sphere:R``, ``edge:R,L`` or ``flat:AREA,R``.
+
+    Raises:
+        InvalidValue: there is no such shape, or a number is missing or impossible.
+    """
+    name, _, numbers = text.partition(":")
+    if name not in SHAPES:
+        raise InvalidValue("shape", f"must be {', '.join(HOW.values())}, not '{text}'")
+    try:
+        values = [float(number) for number in numbers.split(",")]
+    except ValueError:
+        values = []
+    if len(values) != HOW[name].count(",") + 1:
+        raise InvalidValue("shape", f"must be {HOW[name]}, with numbers in m and m², not '{text}'")
+    try:
+        return SHAPES[name](*values)
+    except InvalidValue as error:
+        raise InvalidValue(f"shape.{error.field}", error.reason) from None
+
+
+SHAPES: dict[str, Callable[..., Shape]] = {"sphere": Sphere, "edge": Edge, "flat": Flat}
+"""Every shape by the name that the command line has for it."""
+
+HOW = {"sphere": "sphere:RADIUS", "edge": "edge:RADIUS,LENGTH", "flat": "flat:AREA,RIM_RADIUS"}
+"""How each is written."""
 
 
 def force_at_pressure(shape: Shape, pressure: float, pad: Pad = HARDEST) -> float:

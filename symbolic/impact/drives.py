@@ -87,7 +87,7 @@ def drives(
     """
     springs = np.full(robot.n, np.inf)
     if joint_stiffness is not None:
-        springs = per_joint(robot, "joint_stiffness", joint_stiffness)
+        springs = per_joint(robot, "joint_stiffness", joint_stiffness, np.inf)
         _require(springs > 0, "joint_stiffness", "must be greater than 0 N·m/rad", springs)
     rotors = _rotors(robot, rotor_inertia, gear_ratio)
     if position_gain is not None and computed_torque_gain is not None:
@@ -101,7 +101,10 @@ def drives(
         np.isfinite(damping) & (damping >= 0), "damping_gain", "must be finite and ≥ 0", damping
     )
     limits = per_joint(
-        robot, "torque_limit", robot.torque_limits if torque_limit is None else torque_limit
+        robot,
+        "torque_limit",
+        robot.torque_limits if torque_limit is None else torque_limit,
+        robot.torque_limits,
     )
     _require(limits > 0, "torque_limit", "must be greater than 0 N·m", limits)
     elastic = np.isfinite(springs)
@@ -113,21 +116,25 @@ def drives(
         computed_torque_gain,
         ca.DM(np.where(robot.actuated, damping, 0.0)),
         limits,
-        tuple(
-            bool(b) for b in (rotors > 0) | (rotor_inertia is not None) | ~np.array(robot.actuated)
-        ),
+        _known(robot, rotors, rotor_inertia is not None),
     )
+
+
+def _known(robot: Robot, rotors: Array, given: bool) -> tuple[bool, ...]:
+    """Return whether each joint's rotor inertia is known: stated, or there is no motor."""
+    known = (rotors > 0) | given | robot.rotors_stated | ~np.array(robot.actuated)
+    return tuple(bool(is_known) for is_known in known)
 
 
 def _rotors(robot: Robot, rotor_inertia: PerJoint | None, gear_ratio: PerJoint | None) -> Array:
     given = robot.armature if rotor_inertia is None else rotor_inertia
-    rotors = per_joint(robot, "rotor_inertia", given)
+    rotors = per_joint(robot, "rotor_inertia", given, robot.armature)
     _require(np.isfinite(rotors) & (rotors >= 0), "rotor_inertia", "must be finite and ≥ 0", rotors)
     if gear_ratio is None:
         return rotors
     if rotor_inertia is None:
         raise InvalidValue("gear_ratio", "needs rotor_inertia, the motors' own inertias")
-    ratio = per_joint(robot, "gear_ratio", gear_ratio)
+    ratio = per_joint(robot, "gear_ratio", gear_ratio, 1.0)
     _require(np.isfinite(ratio) & (ratio != 0), "gear_ratio", "must be finite and not 0", ratio)
     return np.asarray(rotors * ratio**2)
 
@@ -153,12 +160,31 @@ def require_rotors(drives: Drives, names: Sequence[str]) -> None:
             )
 
 
-def per_joint(robot: Robot, field: str, values: PerJoint | ArrayLike) -> Array:
-    """Return one number a joint from one number or a vector; raises WrongLength, InvalidValue."""
+def per_joint(
+    robot: Robot, field: str, values: PerJoint | ArrayLike, of_followers: float | Array = 0.0
+) -> Array:
+    """Return one number a joint from one number or a vector; raises WrongLength, InvalidValue.
+
+    Joints that follow others by a coupling have no drive of their own: one number is not theirs,
+    and a vector may leave them out.
+
+    Args:
+        robot: whose joints they are.
+        field: what the values are, for messages.
+        values: one number, or one for each joint, with or without those that follow.
+        of_followers: what joints that follow get.
+    """
     array = np.asarray(values, dtype=float)
     if np.isnan(array).any():
         raise InvalidValue(field, "must not be NaN")
-    return np.full(robot.n, float(array)) if array.ndim == 0 else robot.vector(field, array)
+    own = np.array([name not in robot.followers for name in robot.joint_names], dtype=bool)
+    if array.ndim == 1 and (own.all() or len(array) != own.sum()):
+        return robot.vector(field, array)
+    if array.ndim > 1:
+        return robot.vector(field, array)
+    found = np.broadcast_to(np.asarray(of_followers, dtype=float), robot.n).copy()
+    found[own] = array
+    return found
 
 
 def _require(holds: NDArray[np.bool_], field: str, reason: str, values: Array) -> None:

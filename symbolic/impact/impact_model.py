@@ -208,8 +208,7 @@ class ImpactModel:
         return gains + self.drives.computed_torque_gain * block
 
     def _potential(self, q: Matrix) -> Matrix:
-        has_springs = any(joint.stiffness for joint in self.robot.joints)
-        if not has_springs and not any(self.gravity):
+        if not self.robot.has_springs and not any(self.gravity):
             return ca.DM(len(self.independent), len(self.independent))
         if self.robot.loops:
             return constrained_stiffness(self.robot, q, self.gravity)

@@ -121,6 +121,7 @@ def test_slow_impacts_are_linear(panda: Robot, kind: int) -> None:
     assert errors[1] < 0.2 * errors[0]  # in proportion to speed
 
 
+@pytest.mark.slow
 def test_linearised_is_near_where_joints_need_not_rush(panda: Robot) -> None:
     errors = []
     for i, q in enumerate(configurations(panda, 20, seed=3)):

@@ -138,6 +138,7 @@ def moved_by_mujoco(robot: Robot, approach: Approach, until: float, *, driven: b
     gains = zip(robot.joint_names, GAINS, DAMPING_GAINS, SPRINGS, strict=True)
     for name, k_p, k_d, k_s in gains:
         joint = spec.joint(name)
+        joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE  # LIMIT is the servo's own
         spring = joint.parent.add_joint(name=f"{name}_spring", axis=joint.axis)
         spring.pos, spring.stiffness = joint.pos, [k_s, 0, 0]
         if driven:

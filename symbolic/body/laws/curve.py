@@ -8,16 +8,16 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
 
-import casadi as ca
 import numpy as np
 
 from ...errors import InvalidValue
 from ...matrices import Matrix
 from ...robot.rigid import Array
 from .law import Law
+from .points import Points
 
-SOLID = 1e3
-"""How many times the last slope a curve has beyond its last point: as good as solid."""
+SOLID = 1e8
+"""Stiffness [N/m] that is as good as solid: a hundred times that of skin under 500 N."""
 
 
 @dataclass(frozen=True)
@@ -52,10 +52,14 @@ class Curve(Law):
 
     def force(self, depth: Matrix) -> Matrix:
         """Return f(δ) [N]."""
-        slopes = monotone_slopes(np.array(self.depths), np.array(self.forces))
-        last = (self.forces[-1] - self.forces[-2]) / (self.depths[-1] - self.depths[-2])
-        beyond = SOLID * max(last, float(slopes[-1]))
-        return through_points(depth, self.depths, self.forces, slopes, beyond)
+        return self.points.force(depth)
+
+    @property
+    def points(self) -> Points:
+        """The points with their slopes."""
+        depth, force = np.array(self.depths), np.array(self.forces)
+        slopes = monotone_slopes(depth, force)
+        return Points(depth, force, slopes, slopes, max(SOLID, float(slopes[-1])))
 
     def check(self) -> None:
         """Raise InvalidValue if the points are not a law."""
@@ -90,24 +94,3 @@ def monotone_slopes(depth: Array, force: Array) -> Array:
     first = end(h[0], h[1], chord[0], chord[1])
     last = end(h[-1], h[-2], chord[-1], chord[-2])
     return np.array([first, *inner, last])
-
-
-def through_points(
-    depth: Matrix,
-    points: tuple[float, ...],
-    force: tuple[float, ...],
-    slopes: Array,
-    slope_beyond: float,
-) -> Matrix:
-    """Return the force [N] on a cubic through points, zero before them and straight after them.
-
-    A sum of what each interval adds, without branches, so that it is an expression of any kind and
-    shape; each interval's share stops at its ends.
-    """
-    total: Matrix = slope_beyond * ca.fmax(0, depth - points[-1])
-    for i, (a, b) in enumerate(pairwise(points)):
-        h, rise = b - a, force[i + 1] - force[i]
-        first, last = h * slopes[i], h * slopes[i + 1]
-        t = ca.fmin(ca.fmax(0, (depth - a) / h), 1)
-        total += t * (first + t * (3 * rise - 2 * first - last + t * (first + last - 2 * rise)))
-    return total

@@ -36,6 +36,7 @@ class Law(Protocol):
 
     def check(self) -> None:
         """Raise InvalidValue if a number of the law cannot be."""
+        return
 
 
 AnyLaw = TypeVar("AnyLaw", bound=Law)

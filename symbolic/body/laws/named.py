@@ -43,9 +43,7 @@ def law_from(entries: Mapping[str, Any]) -> Law:
         law = known[kind](**given)
         law.check()
     except TypeError:
-        raise InvalidValue(
-            kind, "takes numbers and lists of numbers where its class does"
-        ) from None
+        raise InvalidValue(kind, "one of its fields is no number, or no list") from None
     return law
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -12,8 +13,9 @@ import numpy as np
 from ...errors import InvalidValue
 from ...matrices import Matrix
 from ...robot.rigid import Array
-from .curve import through_points
+from .curve import Curve
 from .law import Law
+from .points import Points
 from .power import PowerLaw
 
 LEAST_FORCE = 1e-4
@@ -25,11 +27,17 @@ MOST_FORCE = 1e5
 SERIES_ERROR = 1e-5
 """Relative error that the force of a series may have above ``LEAST_FORCE``."""
 
-START = 4
+START = 8
 """Points in a decade of force before more are added where the error asks for it."""
 
-DEEPEST = 10.0
-"""Depth [m] by which a law must have reached ``MOST_FORCE``."""
+SHALLOWEST, DEEPEST = 1e-18, 10.0
+"""Depths [m] between which a law must reach every force up to twice ``MOST_FORCE``."""
+
+MOST_HALVINGS = 16
+"""How often an interval of forces may be halved."""
+
+BESIDE = 1e-6
+"""Relative step in force by which slopes are found."""
 
 
 @dataclass(frozen=True)
@@ -52,10 +60,7 @@ class Series(Law):
 
     def force(self, depth: Matrix) -> Matrix:
         """Return f(δ) [N]."""
-        points = _sampled(self.laws)
-        return through_points(
-            depth, tuple(points.depth), tuple(points.force), points.slope, points.slope[-1]
-        )
+        return _sampled(self.laws).force(depth)
 
     def check(self) -> None:
         """Raise InvalidValue if a number of one of the laws cannot be."""
@@ -90,54 +95,65 @@ def in_series(*laws: Law) -> Law:
     return parts[0] if len(parts) == 1 else Series(parts)
 
 
-@dataclass(frozen=True, eq=False)
-class _Points:
-    depth: Array
-    force: Array
-    slope: Array
+def points_of(law: Law) -> Points:
+    """Return the points through which a law goes: a curve's own, any other's sampled."""
+    if isinstance(law, Curve):
+        return law.points
+    return _sampled(law.laws if isinstance(law, Series) else (law,))
 
 
 @lru_cache(maxsize=64)
-def _sampled(laws: tuple[Law, ...]) -> _Points:
+def _sampled(laws: tuple[Law, ...]) -> Points:
     decades = np.log10(MOST_FORCE / LEAST_FORCE)
     forces = np.geomspace(LEAST_FORCE, MOST_FORCE, round(START * decades) + 1)
-    corners = [f for law in laws for f in getattr(law, "forces", ()) if f > LEAST_FORCE]
-    forces = np.unique([*forces, *(f for f in corners if f < MOST_FORCE)])
-    for _ in range(12):  # halves each interval at most so often
-        points = _exact(laws, forces)
-        between = np.sqrt(points.force[1:-1] * points.force[2:])
-        depth = _exact(laws, between).depth[1:]
-        found = through_points(
-            ca.DM(depth), tuple(points.depth), tuple(points.force), points.slope, points.slope[-1]
-        )
-        error = np.abs(np.array(found).ravel() / between - 1)
-        if (error <= SERIES_ERROR).all():
+    corners = [f for law in laws for f in getattr(law, "forces", ())]
+    forces = np.unique([*forces, *(f for f in corners if LEAST_FORCE < f < MOST_FORCE)])
+    for _ in range(MOST_HALVINGS):
+        between = np.sqrt(forces[:-1] * forces[1:])
+        sought = [forces, forces * (1 - BESIDE), forces * (1 + BESIDE), between]
+        sizes = np.cumsum([len(group) for group in sought[:-1]])
+        depth, less, more, middle = np.split(_depths(laws, np.concatenate(sought)), sizes)
+        step = BESIDE * forces
+        points = _rising(depth, forces, step / (depth - less), step / (more - depth))
+        rough = np.abs(points.evaluated(middle)[0] / between - 1) > SERIES_ERROR
+        if not rough.any():
             break
-        forces = np.unique([*forces, *between[error > SERIES_ERROR]])
+        forces = np.unique([*forces, *between[rough]])
     return points
 
 
-def _exact(laws: tuple[Law, ...], forces: Array) -> _Points:
-    """Return the series at 0 and at some forces: depths add up, and so do 1/slopes."""
-    depth, softness = np.zeros_like(forces), np.zeros_like(forces)
-    x = ca.SX.sym("x")
+def _rising(depth: Array, force: Array, before: Array, after: Array) -> Points:
+    """Return points with 0 in front, and slopes that keep a cubic through them rising."""
+    depth, force, before, after = (np.append(0.0, part) for part in (depth, force, before, after))
+    steepest = 3 * np.diff(force) / np.diff(depth)  # Fritsch and Carlson
+    before[1:] = np.minimum(before[1:], steepest)
+    after[:-1] = np.minimum(after[:-1], steepest)
+    return Points(depth, force, before, after, float(after[-1]))
+
+
+def _depths(laws: tuple[Law, ...], forces: Array) -> Array:
+    """Return the depth of a series at some forces: the sum of its laws' depths, by bisection."""
+    total = np.zeros_like(forces)
     for law in laws:
-        f = law.force(x)
-        both = ca.Function("law", [x], [f, ca.jacobian(f, x)]).map(len(forces))
-        low, high = np.full_like(forces, 1e-20), np.full_like(forces, DEEPEST)
-        if (np.array(both(high[None, :])[0]) < MOST_FORCE).any():
-            raise InvalidValue(
-                "law", f"gives less than {MOST_FORCE:g} N at a depth of {DEEPEST:g} m"
-            )
-        for _ in range(80):
+        if isinstance(law, PowerLaw):
+            total += (forces / law.stiffness) ** (1 / law.exponent)
+            continue
+        force = _evaluated(law)
+        low, high = np.full_like(forces, SHALLOWEST), np.full_like(forces, DEEPEST)
+        if force(high[:1])[0] < 2 * MOST_FORCE:
+            reason = f"gives less than {2 * MOST_FORCE:g} N at a depth of {DEEPEST:g} m"
+            raise InvalidValue("law", reason)
+        for _ in range(100):
             middle = np.sqrt(low * high)
-            above = np.array(both(middle[None, :])[0]).ravel() > forces
+            above = force(middle) > forces
             low, high = np.where(above, low, middle), np.where(above, middle, high)
-        depth += high
-        softness += 1 / np.array(both(high[None, :])[1]).ravel()
-    at_zero = [0.0]
-    return _Points(
-        np.concatenate([at_zero, depth]),
-        np.concatenate([at_zero, forces]),
-        np.concatenate([at_zero, 1 / softness]),
-    )
+        total += high
+    return total
+
+
+def _evaluated(law: Law) -> Callable[[Array], Array]:
+    """Return a law's force over depths as arrays."""
+    if isinstance(law, Curve):
+        points = law.points
+        return lambda depth: points.evaluated(depth)[0]
+    return lambda depth: np.array(law.force(ca.DM(depth)), dtype=float).ravel()

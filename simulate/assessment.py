@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether an impact keeps what the body may bear, under the worst that the motors may do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors
+from softimpact.symbolic.body.shapes import Shape
+from softimpact.symbolic.body.verdict import Limits, Verdict, judge, limits_of
+from softimpact.symbolic.impact.motors import KINDS, refuse_held
+from softimpact.symbolic.impact.two_body import TwoBody, moving_mass, two_body
+from softimpact.symbolic.robot.rigid import Array
+
+from .approach import Approach, arrival_of
+from .band import ImpactBand, impact_band
+from .controller import Controller
+from .history import HORIZON, Fidelity, ImpactHistory
+from .impact import simulate_impact
+from .safe_speed import ForceLimits, largest_safe_speed
+from .tolerances import Tolerances
+
+
+@dataclass(frozen=True, eq=False)
+class Assessment:
+    """One impact, held against every limit.
+
+    Attributes:
+        ends: what happens, by kind of motors: one where the kind is known, else the two ends of
+            the bracket {free, driven} that a servo lies between.
+        worst: kind of the end that counts.
+        limits: of what is hit.
+        verdict: on the worst end.
+        energy: that the region's spring takes up at the peak [J].
+        two_body: force [N] by the standard's formula, and the speed [m/s] that keeps its limit.
+        safe_speeds: largest speed that keeps every limit, by kind of motors; None if not asked for.
+        joint_velocity: at first touch, length n [rad/s, m/s].
+        joint_speed_limit_exceeded: names of joints that are then faster than they can be.
+        torque_limit_exceeded: names of joints on which a servo asks for more than its motor has,
+            in a linear model, which lets it have that.
+        band: of the impact for what is not known exactly; None if not asked for.
+        warnings: what was assumed for want of a number, a line each.
+    """
+
+    ends: Mapping[str, ImpactHistory]
+    worst: str
+    limits: Limits
+    verdict: Verdict
+    energy: float
+    two_body: Mapping[str, float]
+    safe_speeds: Mapping[str, float] | None
+    joint_velocity: Array
+    joint_speed_limit_exceeded: tuple[str, ...]
+    torque_limit_exceeded: tuple[str, ...]
+    band: ImpactBand | None
+    warnings: tuple[str, ...]
+
+    @property
+    def history(self) -> ImpactHistory:
+        """What happens at the worst end."""
+        return self.ends[self.worst]
+
+    @property
+    def safe_speed(self) -> float | None:
+        """Largest speed that keeps every limit at every end [m/s]."""
+        return None if self.safe_speeds is None else min(self.safe_speeds.values())
+
+
+def assess_impact(
+    model: ImpactModel,
+    approach: Approach,
+    contact: Contact,
+    fidelity: Fidelity = "linearised",
+    *,
+    motors: Motors | Controller | None = None,
+    reaction: Motors | None = None,
+    horizon: float = HORIZON,
+    shape: Shape | None = None,
+    payload: float = 0.0,
+    order: int = 3,
+    safe_speed: bool = False,
+    tolerances: Tolerances | None = None,
+    tolerance: float = 1e-10,
+) -> Assessment:
+    """Assess one impact.
+
+    Args:
+        model: the robot and its contact point.
+        approach: how it arrives.
+        contact: what it hits.
+        fidelity: as in ``simulate_impact``.
+        motors: what they do; None: a servo where the model has gains, else the bracket.
+        reaction: reaction time and what follows, where ``motors`` is None; default as ``Motors``.
+        horizon: up to which the largest force counts [s].
+        shape: of what touches; None: pressure is not judged.
+        payload: that the robot holds, for the standard's formula [kg]; the model has it already.
+        order: of a chain.
+        safe_speed: whether to find the largest safe speed.
+        tolerances: how far numbers may be from the truth, for the band; None leaves it out.
+        tolerance: as in ``simulate_impact``.
+
+    Raises:
+        InvalidValue: motors are free or a servo, and a rotor's inertia is unknown; a safe speed of
+            held motors; and as ``simulate_impact`` does.
+    """
+    arrival = arrival_of(model, approach)
+    if safe_speed and isinstance(motors, Motors):
+        refuse_held(motors, "a safe speed")
+    lumped = fidelity in ("one_mass", "two_mass")
+    ends, warnings = bracket(model, motors, reaction, lumped)
+    run = {"fidelity": fidelity, "horizon": horizon, "order": order, "tolerance": tolerance}
+    found = {
+        name: simulate_impact(model, approach, contact, motors=end, **run)  # type: ignore[arg-type]
+        for name, end in ends.items()
+    }
+    limits = limits_of(contact.region, contact.clamped, shape)
+    worst = max(found, key=lambda name: (_verdict(limits, found[name]).share, found[name].peak))
+    formula = two_body(contact.region, contact.clamped, moving_mass(model.robot) - payload, payload)
+    speeds = None
+    if safe_speed:
+        allowed = force_limits(limits)
+        speeds = {
+            name: largest_safe_speed(model, approach, contact, allowed, motors=end, **run)  # type: ignore[arg-type]
+            for name, end in ends.items()
+        }
+    return Assessment(
+        ends=found,
+        worst=worst,
+        limits=limits,
+        verdict=_verdict(limits, found[worst]),
+        energy=found[worst].peak ** 2 / (2 * contact.region.stiffness),
+        two_body=_by_formula(formula, arrival.speed, contact),
+        safe_speeds=speeds,
+        joint_velocity=arrival.speed * arrival.link_velocity,
+        joint_speed_limit_exceeded=_too_fast(model, arrival.speed * arrival.link_velocity),
+        torque_limit_exceeded=_too_strong(model, found[worst]),
+        band=_band(model, approach, contact, ends, limits, tolerances, horizon),
+        warnings=(*warnings, *_of_the_file(model, lumped)),
+    )
+
+
+def _band(
+    model: ImpactModel,
+    approach: Approach,
+    contact: Contact,
+    ends: Mapping[str, Motors | Controller | None],
+    limits: Limits,
+    tolerances: Tolerances | None,
+    horizon: float,
+) -> ImpactBand | None:
+    if tolerances is None:
+        return None
+    known = [end for end in ends.values() if isinstance(end, Motors)]
+    if len(known) < len(ends):
+        raise InvalidValue("band", "needs motors of a kind: a chain, linearised or full model")
+    return impact_band(
+        model, approach, contact, known, limits, tolerances=tolerances, horizon=horizon
+    )
+
+
+def bracket(
+    model: ImpactModel,
+    motors: Motors | Controller | None,
+    reaction: Motors | None = None,
+    lumped: bool = False,
+) -> tuple[dict[str, Motors | Controller | None], list[str]]:
+    """Return what motors may do, by kind, and what had to be assumed.
+
+    Args:
+        model: the robot.
+        motors: what they do, if that is known.
+        reaction: reaction time and what follows, if it is not.
+        lumped: whether the model of the robot has no motors.
+
+    Raises:
+        InvalidValue: motors are free or a servo, and a rotor's inertia is unknown.
+    """
+    if lumped:
+        return {"free": motors}, []
+    if isinstance(motors, Controller):
+        return {"controller": motors}, []
+    kind = motors.kind if motors else ("servo" if model.drives.has_gains else None)
+    how = motors or reaction or Motors()
+    unknown = unknown_rotors(model)
+    names = ", ".join(f"'{name}'" for name in unknown)
+    if unknown and kind in ("free", "servo", "held"):
+        raise InvalidValue(
+            "rotor_inertia",
+            f"of joint {names} is unknown, and zero would make the robot look safer than it is; "
+            f"give it (0 if there is no rotor), or choose driven motors, which need none",
+        )
+    if unknown:
+        line = (
+            f"rotor inertia of joint {names} is unknown: motors are taken to keep their speed, "
+            "without an end, as the worse case; give the rotor inertia"
+        )
+        return {"driven": replace(how, kind="driven", reaction_time=inf)}, [line]
+    if kind is None:
+        return {k: replace(how, kind=k) for k in KINDS if k in ("free", "driven")}, []
+    return {kind: replace(how, kind=kind)}, []
+
+
+def _of_the_file(model: ImpactModel, lumped: bool) -> Iterator[str]:
+    """Yield what of the file is used in a way to know of, or not used."""
+    robot = model.robot
+    if robot.damping.any() and not lumped:
+        yield (
+            "the joints' damping counts; motors are taken to go on with what it needed of them "
+            "before the impact, as the worse case"
+        )
+    rubbing = _names(model, np.array([robot.joints[i].friction > 0 for i in model.independent]))
+    if rubbing:
+        yield f"dry friction of joints {', '.join(rubbing)} is not used; it would lower the force"
+    if robot.position_gains.any() and not model.drives.has_gains:
+        yield "the file's servos are not used; 'servo' motors take their gains from it"
+
+
+def unknown_rotors(model: ImpactModel) -> list[str]:
+    """Return the names of joints with a motor whose rotor inertia nobody has stated."""
+    known = model.drives.rotors_known
+    if known is None:
+        return []
+    return [
+        joint.name
+        for joint, is_known in zip(model.robot.joints, known, strict=True)
+        if joint.actuated and not is_known
+    ]
+
+
+def force_limits(limits: Limits) -> ForceLimits:
+    """Return limits as the forces that reach them."""
+    pressing = inf if limits.quasi_static is None else limits.quasi_static.force
+    return ForceLimits(limits.transient.force, pressing)
+
+
+def _verdict(limits: Limits, history: ImpactHistory) -> Verdict:
+    return judge(limits, history.peak, history.pressing)
+
+
+def _by_formula(formula: TwoBody, speed: float, contact: Contact) -> dict[str, float]:
+    limit = contact.region.force_limit
+    return {"force": float(formula.force(speed)), "safe_speed": float(formula.safe_speed(limit))}
+
+
+def _too_fast(model: ImpactModel, velocity: Array) -> tuple[str, ...]:
+    limits = model.robot.speed_limits[list(model.independent)]
+    return _names(model, abs(velocity) > limits * (1 + 1e-9))
+
+
+def _too_strong(model: ImpactModel, history: ImpactHistory) -> tuple[str, ...]:
+    limits = model.drives.torque_limits
+    if history.largest_torque is None or limits is None:
+        return ()
+    return _names(model, history.largest_torque > limits[list(model.independent)])
+
+
+def _names(model: ImpactModel, chosen: NDArray[np.bool_]) -> tuple[str, ...]:
+    names = [model.robot.joint_names[i] for i in model.independent]
+    return tuple(name for name, is_chosen in zip(names, chosen, strict=True) if is_chosen)
