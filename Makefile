@@ -12,14 +12,26 @@ PYTEST ?=
 ROBOTS := $(notdir $(wildcard generated/*))
 # of make fuzz, a build: some 20 minutes for a robot with seven joints
 EXECUTIONS ?= 10000000
+# faults that make mutants puts into the sources, one at a time
+SAMPLE ?= 200
 
-.PHONY: demo test lint format bench bench-c fuzz generated clean
+.PHONY: demo install test coverage mutants lint format bench bench-c fuzz generated clean
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
 
+install: $(VENV)/installed-test
+
 test: $(VENV)/installed-test
-	$(BIN)/pytest -n auto $(PYTEST)
+	$(BIN)/pytest -n auto --dist worksteal $(PYTEST)
+
+# as test, with the lines that no test passes through, and which tests pass through the others
+coverage: $(VENV)/installed-test
+	$(BIN)/pytest -n auto --dist worksteal --cov --cov-context=test --cov-report=term:skip-covered $(PYTEST)
+
+# small faults in symbolic and codegen that no test notices; first make coverage
+mutants: $(VENV)/installed-test
+	$(BIN)/python tests/mutation/run.py symbolic codegen --sample $(SAMPLE)
 
 lint: $(VENV)/installed-test
 	$(BIN)/ruff check .

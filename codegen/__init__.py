@@ -2,15 +2,16 @@
 """CasADi expressions to portable C99 packages."""
 
 from .defaults import Payload
-from .errors import ForeignFiles, OutputNotWritable, UnsupportedOperation
+from .errors import UnsupportedOperation
+from .folder import FolderNotWritable, ForeignFolder
 from .manifest import FunctionRecord, Manifest
 from .package import generate_package
 
 __all__ = [
-    "ForeignFiles",
+    "FolderNotWritable",
+    "ForeignFolder",
     "FunctionRecord",
     "Manifest",
-    "OutputNotWritable",
     "Payload",
     "UnsupportedOperation",
     "generate_package",

@@ -17,6 +17,9 @@ from .evaluate import evaluate_exactly, evaluate_rounded
 from .exact import DIGITS
 from .samples import Sample, as_columns
 
+Inputs = Sequence[NDArray[np.float64]]
+"""All inputs of many samples, as ``as_columns`` returns them."""
+
 USUAL = 0.999
 """Share of configurations for which the stated errors hold."""
 
@@ -56,7 +59,7 @@ def _exact_unit(n: Sequence[float]) -> list[Decimal]:
 
 def is_regular(function: CFunction, samples: Sequence[Sample]) -> NDArray[np.bool_]:
     """Return for which samples the function answers instead of reporting a singularity."""
-    return _evaluate(function, samples, np.float64)[1]
+    return _evaluate(function, as_columns(samples), np.float64)[1]
 
 
 @dataclass(frozen=True)
@@ -80,10 +83,11 @@ def accuracy(function: CFunction, samples: Sequence[Sample]) -> Accuracy:
     Few configurations are so ill-conditioned that a bound over all of them would say nothing about
     the others. All numbers are rounded up to one digit.
     """
-    reference, regular = _evaluate(function, samples, np.float64)
-    narrow, still_regular = _evaluate(function, samples, np.float32)
+    inputs = as_columns(samples)
+    reference, regular = _evaluate(function, inputs, np.float64)
+    narrow, still_regular = _evaluate(function, inputs, np.float32)
     both = regular & still_regular
-    scales = _scales(function, samples, reference)
+    scales = _scales(function, inputs, reference)
     errors = [
         _error(got[:, both], wide[:, both], scale[both])
         for wide, got, scale in zip(reference, narrow, scales, strict=True)
@@ -108,21 +112,19 @@ def _error(
 
 
 def _scales(
-    function: CFunction, samples: Sequence[Sample], values: Sequence[NDArray[np.float64]]
+    function: CFunction, inputs: Inputs, values: Sequence[NDArray[np.float64]]
 ) -> list[NDArray[np.float64]]:
     """Return what the errors of each output are stated over, for each sample."""
-    own = iter(evaluate_rounded(function.scales, _arguments(samples, np.float64), np.float64))
+    own = iter(evaluate_rounded(function.scales, _arguments(inputs, np.float64), np.float64))
     return [
         abs(value).max(axis=0) if output.scale is None else next(own)[0]
         for output, value in zip(function.outputs, values, strict=True)
     ]
 
 
-def _arguments(
-    samples: Sequence[Sample], kind: type[np.floating[Any]]
-) -> list[NDArray[np.float64]]:
+def _arguments(inputs: Inputs, kind: type[np.floating[Any]]) -> list[NDArray[np.float64]]:
     """Return all inputs with unit directions as C computes them."""
-    q, n, *others = as_columns(samples)
+    q, n, *others = inputs
     return [q, rounded_unit(n, kind), *others]
 
 
@@ -133,11 +135,11 @@ def rounded_up(value: float) -> float:
 
 
 def _evaluate(
-    function: CFunction, samples: Sequence[Sample], kind: type[np.floating[Any]]
+    function: CFunction, inputs: Inputs, kind: type[np.floating[Any]]
 ) -> tuple[list[NDArray[Any]], NDArray[np.bool_]]:
     """Return all outputs, and for which samples all guards hold."""
-    values = evaluate_rounded(function.graph, _arguments(samples, kind), kind)
-    regular = np.ones(len(samples), dtype=bool)
+    values = evaluate_rounded(function.graph, _arguments(inputs, kind), kind)
+    regular = np.ones(inputs[0].shape[1], dtype=bool)
     outputs = len(function.outputs)
     for guard, (value,) in zip(function.guards, values[outputs:], strict=True):
         regular &= (value > guard.low) & (guard.high is None or value < guard.high)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from softimpact.symbolic import (
+    Loop,
     Robot,
     closed_chain,
     constrained_stiffness,
@@ -129,10 +130,11 @@ class Configuration:
 
 
 def has_configuration(robot: Robot) -> bool:
-    """Whether a robot's motors decide where its other joints rest."""
+    """Whether motors decide where other joints rest; couplings alone need no solver."""
     chain = closed_chain(robot)
     motors = {i for i, actuated in enumerate(robot.actuated) if actuated}
-    return bool(robot.loops) and motors <= set(chain.independent)
+    closed = any(isinstance(loop, Loop) for loop in robot.loops)
+    return closed and motors <= set(chain.independent)
 
 
 def golden_configuration(

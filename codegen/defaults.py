@@ -65,7 +65,9 @@ def defaults_of(
             "joint_stiffness": np.array(drives_.springs).ravel().tolist(),
             "rotor_inertia": np.array(drives_.rotors).ravel().tolist(),
             "position_gain": np.array(drives_.gains).ravel().tolist(),
-            "damping_gain": [0.0] * robot.n,
+            "damping_gain": [0.0] * robot.n
+            if drives_.damping_gains is None
+            else np.array(drives_.damping_gains).ravel().tolist(),
         }
     if payload is not None:
         _check(robot, payload)

@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writing a package as a whole or not at all."""
+"""Writing a package, and telling it from other folders."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import os
-import shutil
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from .errors import ForeignFiles, OutputNotWritable
+from .folder import ForeignFolder, refusals, replaced, require_replaceable
 from .manifest import GENERATOR, MANIFEST
 
 
@@ -21,41 +19,35 @@ def sha256(text: str) -> str:
 
 
 def replace_package(folder: Path, files: Mapping[str, str]) -> None:
-    """Write a package, replacing an older one.
-
-    The files are written beside the folder, which is then exchanged for them. Whatever interrupts
-    this, the older package stays whole: in its place, or as ``.NAME.previous`` beside it, from
-    where the next call brings it back.
+    """Write a package, replacing an older one as a whole.
 
     Args:
         folder: of the package.
         files: texts by path in it.
 
     Raises:
-        ForeignFiles: the folder holds files that the generator did not write.
-        OutputNotWritable: the operating system refuses.
+        ForeignFolder: it holds files that the generator did not write.
+        FolderNotWritable: the operating system refuses.
     """
     folder = Path(os.path.abspath(folder))
-    try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        _restore_interrupted(folder)
-        require_own(folder)
-        fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
-        try:
-            _write(fresh, files)
-            _exchange(folder, fresh)
-        finally:
-            shutil.rmtree(fresh, ignore_errors=True)
-    except OSError as error:
-        raise OutputNotWritable(folder, error.strerror or str(error)) from error
+    with replaced(folder, require_own) as fresh, refusals(folder):
+        for name, text in files.items():
+            path = fresh / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8", newline="\n")
+
+
+def require_place(folder: Path) -> None:
+    """Raise ForeignFolder or FolderNotWritable if a package could not be written."""
+    require_replaceable(Path(os.path.abspath(folder)), require_own)
 
 
 def require_own(folder: Path) -> None:
-    """Raise ForeignFiles if a folder holds anything but a package as it was generated."""
+    """Raise ForeignFolder if a folder holds anything but a package as it was generated."""
     if not folder.exists() and not folder.is_symlink():
         return
     if folder.is_symlink() or not folder.is_dir():
-        raise ForeignFiles(folder, [folder.name])
+        raise ForeignFolder(folder, "no package")
     written = _written_files(folder)
     files = (p for p in folder.rglob("*") if p.is_symlink() or not p.is_dir())
     found = {p.relative_to(folder).as_posix(): p for p in files}
@@ -67,7 +59,8 @@ def require_own(folder: Path) -> None:
         or written[name] != hashlib.sha256(path.read_bytes()).hexdigest()
     ]
     if foreign:
-        raise ForeignFiles(folder, foreign)
+        shown = ", ".join(foreign[:5]) + (", …" if len(foreign) > 5 else "")
+        raise ForeignFolder(folder, f"what was not generated or was edited since ({shown})")
 
 
 def _written_files(folder: Path) -> dict[str, str]:
@@ -81,40 +74,3 @@ def _written_files(folder: Path) -> dict[str, str]:
     if not isinstance(manifest, dict) or manifest.get("generator") != GENERATOR:
         return {}
     return {MANIFEST: sha256(text), **manifest.get("files", {})}
-
-
-def _write(folder: Path, files: Mapping[str, str]) -> None:
-    folder.chmod(0o755)  # temporary folders are private, packages are not
-    for name, text in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8", newline="\n")
-
-
-def _previous(folder: Path) -> Path:
-    return folder.with_name(f".{folder.name}.previous")
-
-
-def _restore_interrupted(folder: Path) -> None:
-    previous = _previous(folder)
-    if not previous.exists():
-        return
-    require_own(previous)
-    if folder.exists():
-        shutil.rmtree(previous)
-    else:
-        previous.rename(folder)
-
-
-def _exchange(folder: Path, fresh: Path) -> None:
-    previous = _previous(folder)
-    if folder.exists():
-        folder.rename(previous)
-    try:
-        fresh.rename(folder)
-    except BaseException:
-        if previous.exists():
-            previous.rename(folder)
-        raise
-    if previous.exists():
-        shutil.rmtree(previous)

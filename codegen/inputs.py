@@ -139,5 +139,5 @@ def is_elastic(robot: Robot) -> bool:
 
     A robot with passive joints, loops or springs of its own describes its compliance itself.
     """
-    plain = not robot.loops and not any(joint.stiffness for joint in robot.joints)
+    plain = not robot.loops and not robot.has_springs
     return plain and all(robot.actuated)

@@ -19,7 +19,7 @@ from .configuration_source import configuration_source
 from .costs import Costs
 from .defaults import Payload, defaults_of, frozen_parameters
 from .description import CFunction
-from .files import replace_package, require_own, sha256
+from .files import replace_package, require_place, sha256
 from .functions import coordinates_of, functions_of, symbols_of
 from .impact_source import impact_source
 from .inputs import parameters_of
@@ -97,11 +97,11 @@ def generate_package(
             be frozen whose numbers are not known.
         UnknownName: a parameter to be frozen that the package does not have.
         NoEquilibrium: a closed chain that rests nowhere near home.
-        ForeignFiles: the folder holds files that the generator did not write.
-        OutputNotWritable: the operating system refuses.
+        ForeignFolder: it holds files that the generator did not write.
+        FolderNotWritable: the operating system refuses.
     """
     folder = Path(out)
-    require_own(folder)
+    require_place(folder)
     frame = robot.frame(tip or robot.tip or "").name
     if gravity is None:
         gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS

@@ -5,14 +5,16 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, Reaction
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Vector3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
 
 
@@ -25,6 +27,7 @@ class RobotSection(_Section):
 
     model: str
     tip: str | None = None
+    hold_base: bool = False
     rotor_inertia: str | Finite | list[Finite] | None = None
     position_gain: Finite | list[Finite] | None = None
     computed_torque_gain: Finite | None = None
@@ -37,6 +40,47 @@ class ImpactSection(_Section):
     clamped: bool = True
     direction: Vector3
     speed: Positive
+
+
+class MotorsSection(_Section):
+    """What the motors do during an impact; without a kind the worse end of {free, driven}."""
+
+    kind: Literal["free", "servo", "driven", "held"] | None = None
+    position_gain: Finite | list[Finite] | None = None
+    damping_gain: Finite | list[Finite] | None = None
+    reaction_time: Annotated[float, Field(ge=0)] = REACTION_TIME
+    reaction: Reaction = "release"
+    stopping_time: Positive = STOPPING_TIME
+    horizon: Positive = 0.5
+
+
+class HardwareSection(_Section):
+    """Which variables of the hardware are sought: joint stiffness, each, equal or in groups."""
+
+    joint_stiffness: Literal["each", "equal"] | list[list[str]] = "each"
+
+
+class ScenariosSection(_Section):
+    """The product of what may happen; what is left out is the study's own."""
+
+    poses: Literal["all"] | Annotated[list[str], Field(min_length=1)] = "all"
+    posture: Literal["given", "free"] = "given"
+    directions: Annotated[list[Vector3], Field(min_length=1)] | None = None
+    points: Annotated[list[str], Field(min_length=1)] | None = None
+    regions: Annotated[list[str], Field(min_length=1)] | None = None
+    payloads: Annotated[list[NotNegative], Field(min_length=1)] | None = None
+    speeds: Annotated[list[Positive], Field(min_length=1)] | None = None
+
+
+class ScenarioSection(_Section):
+    """One of a list of scenarios; what is left out is the study's own."""
+
+    pose: str | None = None
+    direction: Vector3 | None = None
+    point: str | None = None
+    region: str | None = None
+    payload: NotNegative = 0.0
+    speed: Positive | None = None
 
 
 class StiffnessSection(_Section):
@@ -89,6 +133,11 @@ class StudyFile(_Section):
     title: str = ""
     robot: RobotSection
     impact: ImpactSection
+    motors: MotorsSection = MotorsSection()
+    hardware: HardwareSection = HardwareSection()
+    scenarios: ScenariosSection | Annotated[list[ScenarioSection], Field(min_length=1)] | None = (
+        None
+    )
     stiffness: StiffnessSection
     accuracy: AccuracySection
     pareto: ParetoSection = ParetoSection()
@@ -116,7 +165,7 @@ def read_study_file(source: Path, overrides: dict[str, dict[str, Any]]) -> Study
     Raises:
         InvalidValue: names file and field.
     """
-    content = _read(source)
+    content = read_toml(source)
     for section, fields in overrides.items():
         given = content.get(section, {})
         content[section] = {**given, **fields} if isinstance(given, dict) else given
@@ -126,9 +175,10 @@ def read_study_file(source: Path, overrides: dict[str, dict[str, Any]]) -> Study
         raise _first_problem(source, error) from None
 
 
-def _read(source: Path) -> dict[str, Any]:
+def read_toml(source: Path) -> dict[str, Any]:
+    """Read a TOML file; raises InvalidValue."""
     try:
-        return tomllib.loads(source.read_text(encoding="utf-8"))
+        return tomllib.loads(source.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise InvalidValue(str(source), "no such study file") from None
     except (OSError, UnicodeDecodeError) as error:

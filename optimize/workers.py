@@ -6,30 +6,75 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+import threading
+from collections.abc import Iterable, Iterator
+from concurrent import futures
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from multiprocessing.context import SpawnContext, SpawnProcess
+from typing import Any, TypeVar
+
+Result = TypeVar("Result")
+
+AWAKE = 0.5
+"""Time [s] that is waited without a look at whether Ctrl-C was pressed."""
+
+
+class WorkerLost(Exception):
+    """A worker process ended before its job, which no job of ours does by itself."""
+
+    exit_code = 3
+
+    def __init__(self) -> None:
+        super().__init__(
+            "a worker process was ended from outside, perhaps for want of memory; "
+            "close other programs or use fewer workers"
+        )
 
 
 @contextmanager
 def workers(jobs: int, given: Executor | None = None) -> Iterator[Executor]:
     """Return an executor to use with ``with``; one that was given stays open.
 
-    An interruption ends jobs that run and drops those that wait.
+    An exception, an interruption above all, ends jobs that run and drops those that wait.
 
     Args:
         jobs: most that will run at once.
         given: the caller's executor, None for a process for each core.
+
+    Raises:
+        WorkerLost: a worker process ended before its job.
     """
     if given is not None:
         yield given
         return
-    context = multiprocessing.get_context("spawn")
+    context = _Context()
     pool = ProcessPoolExecutor(min(jobs, _cores()), context, initializer=_prepare_worker)
     try:
         yield pool
+    except BaseException as error:
+        context.end_workers()
+        if isinstance(error, BrokenProcessPool):
+            raise WorkerLost from error
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def as_completed(jobs: Iterable[Future[Result]]) -> Iterator[Future[Result]]:
+    """Yield jobs as they end, like ``concurrent.futures.as_completed``, and hear every Ctrl-C.
+
+    Python sleeps through a signal that comes while it goes to sleep, on a busy machine often.
+    """
+    waiting = set(jobs)
+    while waiting:
+        try:
+            for job in futures.as_completed(waiting, timeout=AWAKE):
+                waiting.remove(job)
+                yield job
+        except TimeoutError:
+            continue
 
 
 def _cores() -> int:
@@ -39,12 +84,59 @@ def _cores() -> int:
     return os.cpu_count() or 1
 
 
+class _Worker(SpawnProcess):
+    """A process that does not hear Ctrl-C, which a terminal sends to all: its parent ends it.
+
+    If it died by itself, the parent might learn of the broken pool before the interruption.
+    """
+
+    def start(self) -> None:
+        # a process takes over what is blocked, from its first instruction on
+        if not hasattr(signal, "pthread_sigmask"):  # Windows: see _prepare_worker
+            super().start()
+            return
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+        try:
+            super().start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+class _Context(SpawnContext):
+    """What starts a pool's processes, and remembers them.
+
+    The pool does not know yet of a process whose start was interrupted.
+    """
+
+    def __init__(self) -> None:
+        self.started: list[_Worker] = []
+
+    def Process(self, *arguments: Any, **named: Any) -> _Worker:  # type: ignore[override]
+        worker = _Worker(*arguments, **named)
+        self.started.append(worker)
+        return worker
+
+    def end_workers(self) -> None:
+        """End all processes at once, whatever they do."""
+        for worker in self.started:
+            if worker.is_alive():
+                worker.terminate()
+
+
 def _prepare_worker() -> None:
-    """Keep a worker to one core, and let it die of Ctrl-C.
+    """Keep a worker to one core, deaf to Ctrl-C, and let it end with its parent.
 
     OpenMP reads the variable when Ipopt is loaded, at the worker's first search; the linear solver
-    would spin threads on the other workers' cores. CasADi takes Python's KeyboardInterrupt for the
-    end of one search, and would go on with the next.
+    would spin threads on the other workers' cores.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """End this process when its parent has: nobody else would tell a worker to stop waiting."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

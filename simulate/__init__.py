@@ -2,25 +2,36 @@
 """Time simulation of impacts: full nonlinear, linearised, chain, two masses, one mass."""
 
 from .approach import Approach
+from .assessment import Assessment, assess_impact
+from .bracket import bracket
 from .controller import Controller, Reference
 from .decoupling import Decoupling, decoupling_stiffness, is_isolated, scaled_springs
-from .history import Fidelity, ImpactHistory, PeakDefinition
+from .history import HORIZON, Fidelity, ImpactHistory, PeakDefinition
 from .impact import simulate_impact
-from .safe_speed import largest_safe_speed
+from .many import many_peaks
+from .safe_speed import ForceLimits, largest_safe_speed
 from .simulator import SimulationFailed
+from .stepping import ManyPeaks
 
 __all__ = [
+    "HORIZON",
     "Approach",
+    "Assessment",
     "Controller",
     "Decoupling",
     "Fidelity",
+    "ForceLimits",
     "ImpactHistory",
+    "ManyPeaks",
     "PeakDefinition",
     "Reference",
     "SimulationFailed",
+    "assess_impact",
+    "bracket",
     "decoupling_stiffness",
     "is_isolated",
     "largest_safe_speed",
+    "many_peaks",
     "scaled_springs",
     "simulate_impact",
 ]

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from softimpact.symbolic import (
-    Contact,
     ImpactModel,
     InvalidValue,
     approach_velocity,
@@ -87,21 +86,6 @@ def arrival_of(model: ImpactModel, approach: Approach) -> Arrival:
             "link_velocity", f"must move the contact point by 1 m/s along n, not by {reached:.6g}"
         )
     return Arrival(q, n, float(approach.speed), velocity)
-
-
-def check_contact(contact: Contact) -> None:
-    """Raise InvalidValue if a number of the body cannot be."""
-    region = contact.region
-    positive = {
-        "hertz_stiffness": contact.hertz_stiffness,
-        "region.stiffness": region.stiffness,
-        "region.effective_mass": region.effective_mass,
-    }
-    for field, value in positive.items():
-        if not 0 < value < np.inf:
-            raise InvalidValue(field, f"must be finite and greater than 0, not {value}")
-    if not 0 <= region.damping < np.inf:
-        raise InvalidValue("region.damping", f"must be finite and ≥ 0, not {region.damping}")
 
 
 def _finite(field: str, vector: Array) -> Array:

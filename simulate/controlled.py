@@ -7,6 +7,7 @@ too. What it adds to MSM Eq. 5 is the reference's motion, damping and the integr
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -28,7 +29,8 @@ from .approach import Arrival
 from .controller import Controller
 from .linear import chain_stiffness, check_order
 from .mechanism import BodyKind, Mechanism
-from .simulator import Scene, Simulator, Switch, build_simulator
+from .scene import Leg, Motion, Scene, Stage
+from .simulator import Simulator, build_simulator
 
 DEPENDENT = 1e-12
 """Share of a motion's energy that the motions before it may leave for it to be no new one."""
@@ -158,10 +160,23 @@ def controlled_scene(
         system.jacobian,
         [moving],
     ]
-    before = np.concatenate([*fixed, gains])
-    after = np.concatenate([*fixed, np.zeros(3)])
-    switch = Switch(controller.reaction_time, after)
-    return Scene(simulator, before, velocity, arrival.speed, contact, switch)
+
+    def stage(begin: float, gains: Sequence[float]) -> Stage:
+        def enter(motion: Motion) -> Leg:
+            memory = np.concatenate([[moving / arrival.speed * begin], np.zeros(size)])
+            return Leg(simulator, np.concatenate([*fixed, gains]), motion, memory, _same)
+
+        return Stage(begin, enter)
+
+    stages: tuple[Stage, ...] = (stage(0.0, gains),)
+    if np.isfinite(controller.reaction_time):
+        stages = (*stages, stage(controller.reaction_time, [0.0, 0.0, 0.0]))
+    still = Motion(np.zeros_like(velocity), velocity)
+    return Scene(stages, still, arrival.speed, contact)
+
+
+def _same(motion: Motion, elapsed: Array) -> Motion:
+    return motion
 
 
 @lru_cache(maxsize=32)

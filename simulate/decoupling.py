@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from softimpact.symbolic import Contact, ImpactModel, InvalidValue
+from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors
 from softimpact.symbolic.impact.chain import ChainEnd
 
 from .approach import Approach
@@ -64,7 +64,7 @@ def decoupling_stiffness(
     *,
     order: int = 3,
     end: ChainEnd | None = None,
-    controller: Controller | None = None,
+    motors: Motors | Controller | None = None,
     accuracy: float = 1e-4,
 ) -> Decoupling:
     """Return the largest joint stiffness that decouples the links from the motors (MSM §3.2.4).
@@ -79,7 +79,7 @@ def decoupling_stiffness(
         fidelity: as in ``simulate_impact``.
         order: as in ``simulate_impact``.
         end: as in ``simulate_impact``.
-        controller: as in ``simulate_impact``.
+        motors: as in ``simulate_impact``.
         accuracy: relative, of the k_s found, from 1e-12 to 1.
 
     Raises:
@@ -95,14 +95,21 @@ def decoupling_stiffness(
     def impact(stiffness: float) -> ImpactHistory:
         model, approach = case(stiffness)
         return simulate_impact(
-            model, approach, contact, fidelity, order=order, end=end, controller=controller
+            model,
+            approach,
+            contact,
+            fidelity,
+            order=order,
+            end=end,
+            motors=motors,
+            horizon=None,
         )
 
     def isolated(stiffness: float) -> bool:
         return is_isolated(impact(stiffness))
 
     def first_peak(stiffness: float) -> float:
-        return float(np.log(impact(stiffness).first_peak))
+        return float(np.log(impact(stiffness).force_of("first_peak")))
 
     steps = int(np.ceil(np.log(stiffest / softest) / np.log(STEP)))
     grid = [float(k) for k in np.geomspace(softest, stiffest, steps + 1)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run an impact until it is over, and find its peaks and its end to event accuracy.
+"""Run an impact up to a horizon, and find its peaks and the end of its first contact.
 
 The nodes of a run bracket each event; the bracket is simulated once more from its first node, with
 as many nodes, and what is left is interpolated.
@@ -11,17 +11,22 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from softimpact.symbolic import InvalidValue
-from softimpact.symbolic.body.contact import HERTZ_EXPONENT
+from softimpact.symbolic import Contact
 from softimpact.symbolic.robot.rigid import Array
 
-from .simulator import NODES, Run, Scene
+from .scene import Leg, Run, Scene
+from .simulator import NODES
 
-SPAN = 0.02
-"""Longest single run [s]."""
+SPAN, LATER_SPAN = 0.02, 0.05
+"""Longest single run [s]: while most contacts have their peaks, and later; a run to the end of the
+first contact goes on in short ones, as a robot may not get far beyond it."""
+
+EARLY = 0.1
+"""Until when runs are short [s]."""
 
 LONGEST = 2.0
 """When a contact that does not end is given up [s]."""
@@ -36,106 +41,156 @@ class Event:
 
 
 @dataclass(frozen=True, eq=False)
-class FirstContact:
-    """A run from first touch on, and what happened in it.
+class Piece:
+    """A run on one leg, of ``NODES`` intervals."""
+
+    leg: Leg
+    begin: float
+    run: Run
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """An impact from first touch on.
 
     Attributes:
-        run: at least until the first contact ends, unless it was cut short.
-        first_peak: first local maximum of the force.
-        highest: largest force until separation.
-        separation: end of the first contact [s], None if it is beyond the run.
+        scene: robot and body.
+        pieces: one after the other.
+        run: all of them; its states are left out, as they differ in length.
     """
 
+    scene: Scene
+    pieces: tuple[Piece, ...]
     run: Run
-    first_peak: Event
-    highest: Event
+
+    def peaks(self) -> list[int]:
+        """Return the nodes after which the force has a local maximum."""
+        return [int(i) for i in downward(self.run.closing) if self.run.force[i] > 0]
+
+    def peak_near(self, index: int) -> Event:
+        """Return the peak after a node, to event accuracy."""
+        near = self._bracket(index)
+        return vertex(near, _first(downward(near.closing)), self.scene.contact)
+
+    def end_near(self, index: int) -> float:
+        """Return when robot and body part after a node [s]."""
+        near = self._bracket(index)
+        i = _first(downward(near.depth))
+        share = near.depth[i] / (near.depth[i] - near.depth[i + 1])
+        return float(near.time[i] + share * (near.time[i + 1] - near.time[i]))
+
+    def _bracket(self, index: int) -> Run:
+        piece = self.pieces[min(index // NODES, len(self.pieces) - 1)]
+        local = index - NODES * self.pieces.index(piece)
+        start, end = (float(t) for t in piece.run.time[local : local + 2])
+        return self.scene.run(piece.leg, piece.run.state[:, local], end - start, start)
+
+
+@dataclass(frozen=True, eq=False)
+class Peaks:
+    """What happened in an impact.
+
+    Attributes:
+        first_peak: first local maximum of the force; None if there was none.
+        first_contact: largest force until separation.
+        peak: largest force of all, up to the horizon.
+        separation: end of the first contact [s], None if it is beyond what was simulated.
+    """
+
+    first_peak: Event | None
+    first_contact: Event
+    peak: Event
     separation: float | None
 
 
-def first_contact(scene: Scene, duration: float | None = None) -> FirstContact:
+def course_of(scene: Scene, until: float | None) -> Course:
     """Simulate an impact from first touch.
 
     Args:
         scene: robot and body, about to touch.
-        duration: how long [s]; None: until shortly after separation.
+        until: how long [s]; None: until the first contact has ended.
 
     Raises:
-        InvalidValue: the duration is not positive, or ends before the first peak.
         SimulationFailed: the integrator gave up.
     """
-    if duration is not None and not 0 < duration < np.inf:
-        raise InvalidValue("duration", f"must be finite and greater than 0 s, not {duration}")
-    run = _whole_run(scene, duration)
-    ends = _downward(run.depth)
-    last = int(ends[0]) if ends.size else len(run.time) - 1
-    peaks = [int(i) for i in _downward(run.closing) if i <= last]
-    if not peaks:
-        over = f"{duration or LONGEST:g} s end before the force has reached its first peak"
-        raise InvalidValue("duration", over)
-    top = max(peaks, key=lambda i: _vertex(run, i).force)
-    first_peak = _refined_peak(scene, run, peaks[0])
-    highest = first_peak if top == peaks[0] else _refined_peak(scene, run, top)
-    if not ends.size and run.force[-1] > highest.force:  # cut short while it rises again
-        highest = Event(float(run.time[-1]), float(run.force[-1]))
-    separation = _refined_end(scene, run, last) if ends.size else None
-    return FirstContact(run, first_peak, highest, separation)
+    pieces: list[Piece] = []
+    stages = [*scene.stages, None]
+    motion = scene.still
+    for stage, following in pairwise(stages):
+        assert stage is not None
+        end = until or LONGEST
+        end = end if following is None else min(end, following.begin)
+        if end <= stage.begin:
+            continue
+        leg = stage.enter(motion)
+        body = scene.body_of(pieces[-1].leg, pieces[-1].run.state[:, -1]) if pieces else None
+        state = scene.state_of(leg, scene.at_rest(leg) if body is None else body)
+        for start, stop in pairwise(_starts(stage.begin, end, LATER_SPAN if until else SPAN)):
+            run = scene.run(leg, state, stop - start, start)
+            pieces.append(Piece(leg, stage.begin, run))
+            state = run.state[:, -1]
+            if until is None and downward(run.depth).size:
+                return _joined(scene, pieces)
+        own = scene.own_motion(leg, state[:, None])
+        motion = leg.motion(own, np.array([end - stage.begin]))
+        motion = type(motion)(motion.position.reshape(-1), motion.velocity.reshape(-1))
+    return _joined(scene, pieces)
 
 
-def _whole_run(scene: Scene, duration: float | None) -> Run:
-    starts = _starts(scene, duration or LONGEST)
-    runs: list[Run] = []
-    for start, end in pairwise(starts):
-        state = runs[-1].state[:, -1] if runs else scene.touch
-        run = scene.run(state, end - start, start)
-        runs.append(_later(run, start) if runs else run)
-        if duration is None and _downward(run.depth).size:
-            break
-    return _joined(runs)
-
-
-def _starts(scene: Scene, duration: float) -> Array:
-    """Return when runs start and the last one ends: at most SPAN apart, and at the switch."""
-    marks = [0.0, duration]
-    if scene.switch is not None and scene.switch.time < duration:
-        marks.insert(1, scene.switch.time)
-    pieces = [
-        np.linspace(a, b, math.ceil((b - a) / SPAN), endpoint=False) for a, b in pairwise(marks)
+def _starts(begin: float, end: float, later: float) -> Array:
+    """Return when runs start and the last one ends."""
+    marks = [begin, *([EARLY] if begin < EARLY < end else []), end]
+    spans = [SPAN if a < EARLY else later for a in marks[:-1]]
+    parts = [
+        np.linspace(a, b, math.ceil((b - a) / span), endpoint=False)
+        for (a, b), span in zip(pairwise(marks), spans, strict=True)
     ]
-    return np.append(np.concatenate(pieces), duration)
+    return np.append(np.concatenate(parts), end)
 
 
-def _joined(runs: list[Run]) -> Run:
-    names = vars(runs[0])
-    return Run(**{n: np.concatenate([getattr(run, n) for run in runs], axis=-1) for n in names})
+def _joined(scene: Scene, pieces: list[Piece]) -> Course:
+    runs = [piece.run for piece in pieces]
+
+    def joined(name: str) -> Array:
+        first, *later = (getattr(run, name) for run in runs)
+        return np.concatenate([first, *(values[1:] for values in later)])
+
+    names = ("time", "depth", "closing", "force", "reading")
+    run = Run(state=np.zeros((0, 0)), **{name: joined(name) for name in names})
+    return Course(scene, tuple(pieces), run)
 
 
-def _later(run: Run, start: float) -> Run:
-    """Return a run without its first node, which the run before it holds, and shifted in time."""
-    tail = {name: values[..., 1:] for name, values in vars(run).items()}
-    return Run(**(tail | {"time": tail["time"] + start}))
+def peaks_of(course: Course, horizon: float | None) -> Peaks:
+    """Return what happened; the largest force of all is that up to a horizon [s], or the end."""
+    run = course.run
+    ends = downward(run.depth)
+    last = int(ends[0]) if ends.size else len(run.time) - 1
+    end = float(run.time[-1]) if horizon is None else min(horizon, float(run.time[-1]))
+    until = int(np.searchsorted(run.time, end, "right"))
+    found = course.peaks()
+    first = [i for i in found if i <= last]
+    return Peaks(
+        first_peak=course.peak_near(first[0]) if first else None,
+        first_contact=_largest(course, first, float(run.time[last])),
+        peak=_largest(course, [i for i in found if i < until - 1], end),
+        separation=course.end_near(last) if ends.size else None,
+    )
 
 
-def _downward(values: Array) -> NDArray[np.intp]:
+def _largest(course: Course, peaks: list[int], until: float) -> Event:
+    """Return the largest force up to a time: at a peak, or where it was cut short in a rise."""
+    run = course.run
+    cut = Event(until, float(np.interp(until, run.time, run.force)))
+    if not peaks:
+        return cut
+    heights = [vertex(run, i, course.scene.contact).force for i in peaks]
+    top = course.peak_near(peaks[int(np.argmax(heights))])
+    return max(top, cut, key=lambda event: event.force)
+
+
+def downward(values: Array) -> NDArray[np.intp]:
     """Indices of the nodes after which values go from above zero to zero or below."""
     return np.flatnonzero((values[:-1] > 0) & (values[1:] <= 0))
-
-
-def _refined_peak(scene: Scene, run: Run, index: int) -> Event:
-    near = _bracket(scene, run, index)
-    event = _vertex(near, _first(_downward(near.closing)))
-    return Event(float(run.time[index]) + event.time, event.force)
-
-
-def _refined_end(scene: Scene, run: Run, index: int) -> float:
-    near = _bracket(scene, run, index)
-    i = _first(_downward(near.depth))
-    share = near.depth[i] / (near.depth[i] - near.depth[i + 1])
-    return float(run.time[index] + near.time[i] + share * (near.time[i + 1] - near.time[i]))
-
-
-def _bracket(scene: Scene, run: Run, index: int) -> Run:
-    start, end = (float(t) for t in run.time[index : index + 2])
-    return scene.run(run.state[:, index], end - start, start)
 
 
 def _first(found: NDArray[np.intp]) -> int:
@@ -143,11 +198,9 @@ def _first(found: NDArray[np.intp]) -> int:
     return int(found[0]) if found.size else NODES - 1
 
 
-def _vertex(run: Run, index: int) -> Event:
+def vertex(run: Run, index: int, contact: Contact) -> Event:
     """Peak after a node: where δ̇, taken as linear between nodes, is zero."""
     before, after = run.closing[index], run.closing[index + 1]
     step = before / (before - after) * (run.time[index + 1] - run.time[index])
     depth = run.depth[index] + before * step / 2
-    known = int(np.argmax(run.depth))
-    force = run.force[known] * (depth / run.depth[known]) ** HERTZ_EXPONENT
-    return Event(float(run.time[index] + step), float(force))
+    return Event(float(run.time[index] + step), float(contact.force(ca.DM(depth))))

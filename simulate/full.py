@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The nonlinear robot over links and motors."""
+"""The nonlinear robot over links and motors, and the stages of its motors in an impact."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Callable
+from functools import partial
 
 import casadi as ca
 import numpy as np
@@ -13,35 +13,22 @@ from softimpact.symbolic import (
     Contact,
     ImpactModel,
     InvalidValue,
-    Robot,
-    bias_torques,
-    closed_chain,
-    direction_jacobian,
+    Motors,
     frame_pose,
     gravity_torques,
-    loop_acceleration,
-    loop_jacobian,
     loop_tangent,
-    mass_matrix,
 )
-from softimpact.symbolic.impact.impact_model import WEIGHTLESS
-from softimpact.symbolic.matrices import Factorisation, Matrix
+from softimpact.symbolic.impact.drives import require_rotors
+from softimpact.symbolic.impact.motors import MotorLaw
+from softimpact.symbolic.matrices import Matrix
 from softimpact.symbolic.robot.rigid import Array
 
 from .approach import Arrival
 from .controller import Controller
-from .mechanism import BodyKind, Mechanism
-from .motors import (
-    LawBuilder,
-    Motors,
-    after_reaction,
-    computed_torque,
-    controller_parameters,
-    held,
-)
-from .simulator import Scene, Simulator, Switch, build_simulator
-
-Gravity = tuple[float, float, float]
+from .full_mechanism import full_simulator
+from .mechanism import BodyKind
+from .motors import UNLIMITED, LawBuilder, computed_torque, free, held, prescribed, servo
+from .scene import Leg, Motion, Scene, Stage
 
 AT_REST = 1e-6
 """Torque [N·m, N] on a joint without a motor below which it counts as balanced."""
@@ -51,44 +38,137 @@ def full_scene(
     model: ImpactModel,
     arrival: Arrival,
     contact: Contact,
+    motors: Motors | Controller,
     tolerance: float,
-    controller: Controller | None = None,
 ) -> Scene:
     """Return the scene of the nonlinear robot's impact.
 
-    Without a controller, constant motor torques balance gravity at first touch, where the springs
-    hold the links at q; K_p holds the motors where they are then.
+    Motor torques balance gravity at first touch, where the springs hold the links at q; beyond
+    that, motors do what they are said to. Its motion is that of all links and of the elastic
+    joints' motors since first touch.
 
     Args:
         model: the robot.
         arrival: how it arrives.
         contact: with the body.
+        motors: what they do, with the gains of the model; or the papers' controller.
         tolerance: of the integrator.
-        controller: takes the place of the model's K_p.
 
     Raises:
-        InvalidValue: a joint without a motor is not in equilibrium.
+        InvalidValue: a joint without a motor is not in equilibrium, or an elastic joint has no
+            rotor.
     """
     robot, q, n = model.robot, arrival.q, arrival.direction
-    elastic, free = model.elastic, list(model.independent)
-    law = held if controller is None else computed_torque
+    free = list(model.independent)
     kind = BodyKind.of(contact)
-    simulator = _full_simulator(robot, model.tip, elastic, model.gravity, law, kind, tolerance)
     start = n @ _column(frame_pose(robot, model.tip, q).position)
     rotors, springs = _column(model.drives.rotors), _column(model.drives.springs)[free]
-    parameters = np.concatenate([q, n, [start], _balance(model, q), rotors, springs])
     rates = np.array(loop_tangent(robot, ca.DM(q))) @ arrival.link_velocity
-    velocity = np.concatenate([rates, arrival.link_velocity[list(elastic)]])
+    velocity = np.concatenate([rates, arrival.link_velocity[list(model.elastic)]])
+    damping = [robot.damping, arrival.speed * rates]
+    common = np.concatenate([q, n, [start], _balance(model, q), rotors, springs, *damping])
 
-    def scene(of_law: Array, switch: Switch | None = None) -> Scene:
-        everything = np.concatenate([parameters, of_law])
-        return Scene(simulator, everything, velocity, arrival.speed, contact, switch)
+    def stage(
+        begin: float, law: LawBuilder, numbers: Callable[[Motion], tuple[Array, Array]]
+    ) -> Stage:
+        if law is not prescribed:
+            require_rotors(model.drives, robot.joint_names)
+        simulator = full_simulator(
+            robot, model.tip, model.elastic, model.gravity, law, kind, tolerance
+        )
 
-    if controller is None:
-        return scene(_gains(model, q).ravel())
-    of_law = controller_parameters(arrival, model.actuated, controller)
-    reacting = np.concatenate([parameters, after_reaction(of_law)])
-    return scene(of_law, Switch(controller.reaction_time, reacting))
+        def enter(motion: Motion) -> Leg:
+            of_law, memory = numbers(motion)
+            return Leg(simulator, np.concatenate([common, of_law]), motion, memory, _same)
+
+        return Stage(begin, enter)
+
+    if isinstance(motors, Controller):
+        stages = _controlled(model, arrival, motors, stage)
+    else:
+        stages = tuple(
+            stage(begin, LAWS[law], partial(_numbers, model, arrival, motors, begin, law))
+            for begin, law in motors.laws
+        )
+    return Scene(stages, Motion(np.zeros_like(velocity), velocity), arrival.speed, contact)
+
+
+LAWS: dict[MotorLaw, LawBuilder] = {
+    "free": free,
+    "servo": servo,
+    "held": held,
+    "driven": prescribed,
+    "braking": prescribed,
+    "stopped": prescribed,
+}
+"""Expressions of each law."""
+
+
+def _same(motion: Motion, elapsed: Array) -> Motion:
+    return motion
+
+
+def _numbers(
+    model: ImpactModel,
+    arrival: Arrival,
+    motors: Motors,
+    begin: float,
+    law: MotorLaw,
+    motion: Motion,
+) -> tuple[Array, Array]:
+    """Return a law's parameters and memory when it begins."""
+    nothing, before = np.zeros(0), arrival.link_velocity
+    if law == "free":
+        return nothing, nothing
+    if law == "held":
+        return _gains(model, arrival.q).ravel(), nothing
+    if law == "servo":
+        free, drives = list(model.independent), model.drives
+        limits = (
+            np.full(model.robot.n, np.inf) if drives.torque_limits is None else drives.torque_limits
+        )
+        limits = np.minimum(limits, UNLIMITED)[free]
+        K_d = (
+            np.zeros(len(free))
+            if drives.damping_gains is None
+            else _column(drives.damping_gains)[free]
+        )
+        speed = arrival.speed * before * np.array(model.actuated)
+        return np.concatenate(
+            [_gains(model, arrival.q).ravel(), K_d, limits, speed]
+        ), before * begin
+    if law == "braking":
+        speeds = _motor_rows(model, motion.velocity)
+        return -arrival.speed * speeds / motors.stopping_time, nothing
+    return np.zeros_like(before), nothing
+
+
+def _motor_rows(model: ImpactModel, rates: Array) -> Array:
+    """Return the motors' part of links' and elastic motors' rates, one an independent joint."""
+    rows = rates[list(model.independent)].copy()
+    rows[list(model.elastic)] = rates[model.robot.n :]
+    return rows
+
+
+def _controlled(
+    model: ImpactModel,
+    arrival: Arrival,
+    controller: Controller,
+    stage: Callable[[float, LawBuilder, Callable[[Motion], tuple[Array, Array]]], Stage],
+) -> tuple[Stage, ...]:
+    """Return the stages of the papers' controller."""
+    A = list(model.actuated)
+    wanted = arrival.link_velocity[A] * (controller.reference == "moving")
+    gains = [controller.proportional, controller.derivative, controller.integral]
+
+    def numbers(follows: float, motion: Motion) -> tuple[Array, Array]:
+        parameters = np.concatenate([gains, [follows], arrival.speed * wanted])
+        return parameters, np.zeros(2 * len(wanted))
+
+    begin = stage(0.0, computed_torque, partial(numbers, 1.0))
+    if np.isinf(controller.reaction_time):
+        return (begin,)
+    return begin, stage(controller.reaction_time, computed_torque, partial(numbers, 0.0))
 
 
 def _column(vector: Matrix) -> Array:
@@ -112,108 +192,3 @@ def _balance(model: ImpactModel, q: Array) -> Array:
 def _gains(model: ImpactModel, q: Array) -> Array:
     """K_p over the independent joints."""
     return np.array(ca.densify(model.position_gains(q)))
-
-
-@lru_cache(maxsize=16)
-def _full_simulator(
-    robot: Robot,
-    tip: str,
-    elastic: tuple[bool, ...],
-    gravity: Gravity,
-    law: LawBuilder,
-    kind: BodyKind,
-    tolerance: float,
-) -> Simulator:
-    return build_simulator(_mechanism(robot, tip, elastic, gravity, law), kind, tolerance)
-
-
-def _mechanism(
-    robot: Robot, tip: str, elastic: tuple[bool, ...], gravity: Gravity, law: LawBuilder
-) -> Mechanism:
-    """Equations over the links' and the elastic joints' motors' motion since first touch.
-
-    GᵀM(q)(G q̈_ind + Ġ q̇_ind) + Gᵀh(q, q̇) = τ − GᵀJᵀ n f_c over the independent joints, with τ
-    from the spring (elastic joints, whose rotor follows B θ̈ = τ_m − τ) or the motor (rigid
-    joints, whose rotor turns with the link). All joints are integrated, so that the loops need
-    not be closed anew; without loops G = I.
-    """
-    free = list(closed_chain(robot).independent)
-    n, m, E = robot.n, len(free), [i for i, is_elastic in enumerate(elastic) if is_elastic]
-    position, velocity = ca.SX.sym("z", n + len(E)), ca.SX.sym("dz", n + len(E))
-    force = ca.SX.sym("f_c")
-    q0, direction, start = ca.SX.sym("q0", n), ca.SX.sym("n", 3), ca.SX.sym("p0")
-    balance, springs, rotors = ca.SX.sym("g0", m), ca.SX.sym("k_s", m), ca.SX.sym("B", n)
-
-    q, rate = q0 + position[:n], velocity[:n]
-    moved, motors, motor_rates = position[free], position[free], velocity[free]
-    motors[E], motor_rates[E] = position[n:], velocity[n:]
-
-    along = _Tangent.of(robot, q, rate)
-    M = mass_matrix(robot, q)
-    potential = along.forces(gravity_torques(robot, q, gravity))
-    coriolis = bias_torques(robot, q, rate, WEIGHTLESS)
-    whole = M + ca.diag(rotors)
-    driven = law(
-        Motors(
-            active=[k for k, i in enumerate(free) if robot.joints[i].actuated],
-            moved=motors,
-            speed=motor_rates,
-            inertia=along.inertia(whole),
-            coriolis=along.forces(coriolis + ca.mtimes(whole, along.bend)),
-            potential=potential,
-        ),
-        balance,
-    )
-    spring = springs * (motors - moved)
-    torque, carried = ca.SX(driven.torque), ca.SX(rotors)
-    torque[E], carried[[free[k] for k in E]] = spring[E], 0
-    links = M + ca.diag(carried)
-    bias = along.forces(coriolis + ca.mtimes(links, along.bend)) + potential - balance
-    push = along.forces(direction_jacobian(robot, tip, q, direction).T * force)
-    acceleration = Factorisation(along.inertia(links)).solve(torque - bias - push)
-    own = rotors[[free[k] for k in E]]
-    return Mechanism(
-        position=position,
-        velocity=velocity,
-        force=force,
-        parameters=ca.vertcat(q0, direction, start, balance, rotors, springs, driven.parameters),
-        acceleration=ca.vertcat(along.motion(acceleration), (driven.torque[E] - spring[E]) / own),
-        displacement=ca.dot(direction, frame_pose(robot, tip, q).position) - start,
-        memory=driven.memory,
-        memory_rate=driven.memory_rate,
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _Tangent:
-    """How joints move with the independent ones: q̈ = G q̈_ind + Ġ q̇_ind; G is None for G = I.
-
-    Attributes:
-        G: ∂q/∂q_ind, n×m.
-        bend: Ġ q̇_ind, length n.
-    """
-
-    G: Matrix | None
-    bend: Matrix
-
-    @staticmethod
-    def of(robot: Robot, q: Matrix, rate: Matrix) -> _Tangent:
-        bend = ca.SX(robot.n, 1)
-        if not robot.loops:
-            return _Tangent(None, bend)
-        bound = list(closed_chain(robot).dependent)
-        jacobian = loop_jacobian(robot, q)[:, bound]
-        bend[bound] = -ca.solve(jacobian, loop_acceleration(robot, q, rate))
-        return _Tangent(loop_tangent(robot, q), bend)
-
-    def inertia(self, matrix: Matrix) -> Matrix:
-        """GᵀXG."""
-        return matrix if self.G is None else ca.mtimes([self.G.T, matrix, self.G])
-
-    def forces(self, vector: Matrix) -> Matrix:
-        """Gᵀx."""
-        return vector if self.G is None else ca.mtimes(self.G.T, vector)
-
-    def motion(self, independent: Matrix) -> Matrix:
-        """Accelerations of all joints."""
-        return independent if self.G is None else ca.mtimes(self.G, independent) + self.bend

@@ -6,45 +6,76 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from softimpact.symbolic import UnknownName
+from softimpact.symbolic import InvalidValue, Motors, UnknownName
 from softimpact.symbolic.robot.rigid import Array
 
 Fidelity = Literal["one_mass", "two_mass", "chain", "linearised", "full"]
 """Models of the robot, from the simplest to the most faithful."""
 
-PeakDefinition = Literal["first_contact", "first_peak"]
-"""Maximum until separation, or first local maximum (MSM's)."""
+PeakDefinition = Literal["peak", "first_contact", "first_peak"]
+"""Maximum over all contacts, maximum until separation, or first local maximum (MSM's)."""
+
+HORIZON = 0.5
+"""How long the transient limit counts after first touch [s] (ISO/TS 15066, 5.5.4)."""
+
+PRESSED_UNTIL = 0.6
+"""Until when the force is followed that a clamped body still bears after ``HORIZON`` [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class ImpactHistory:
     """The contact force of an impact.
 
-    The two peaks part where a light mass at the contact point bounces before what is behind it
-    arrives.
+    The peaks part where a light mass at the contact point bounces before what is behind it
+    arrives, and where the robot hits again.
 
     Attributes:
         fidelity: of the robot's model.
+        motors: what they did; None for the papers' controller and for lone masses.
         time: since first touch [s], length K.
         force: f_c at these times [N].
+        reading: of a measuring device at these times [N]: the force in the body's spring, which is
+            f_c but for the inertia of a plate.
+        peak: largest force over all contacts up to the horizon [N].
+        time_of_peak: [s].
         first_contact: largest force until separation [N].
-        first_peak: first local maximum [N].
+        first_peak: first local maximum [N]; None where the force rises to the end.
         time_of_first_contact_peak: [s].
         time_of_first_peak: [s].
         separation: when the first contact ends [s]; None if it outlasts the simulation.
+        pressing: largest force on a clamped body from ``HORIZON`` to ``PRESSED_UNTIL`` [N]; zero
+            on a free one; None where the simulation ends before.
+        largest_torque: that a servo added to each motor's [N·m], length n; None without a servo.
     """
 
     fidelity: Fidelity
+    motors: Motors | None
     time: Array
     force: Array
+    reading: Array
+    peak: float
+    time_of_peak: float
     first_contact: float
-    first_peak: float
+    first_peak: float | None
     time_of_first_contact_peak: float
-    time_of_first_peak: float
+    time_of_first_peak: float | None
     separation: float | None
+    pressing: float | None
+    largest_torque: Array | None = None
 
-    def peak(self, definition: PeakDefinition = "first_contact") -> float:
-        """Return the peak force [N] of a definition; raises UnknownName."""
+    def force_of(self, definition: PeakDefinition = "peak") -> float:
+        """Return the peak force [N] of a definition.
+
+        Raises:
+            UnknownName: there is no such definition.
+            InvalidValue: the force has no local maximum.
+        """
         if definition not in get_args(PeakDefinition):
             raise UnknownName("peak definition", definition, get_args(PeakDefinition))
-        return self.first_peak if definition == "first_peak" else self.first_contact
+        if definition == "peak":
+            return self.peak
+        if definition == "first_contact":
+            return self.first_contact
+        if self.first_peak is None:
+            raise InvalidValue("first_peak", "does not exist: the force rises to the end")
+        return self.first_peak

@@ -3,27 +3,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from typing import get_args
 
-from softimpact.symbolic import Contact, ImpactModel, InvalidValue, UnknownName
-from softimpact.symbolic.impact.chain import ChainEnd
+import numpy as np
 
-from .approach import Approach, Arrival, arrival_of, check_contact
+from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors, UnknownName
+from softimpact.symbolic.impact.chain import ChainEnd
+from softimpact.symbolic.impact.motors import check_motors
+from softimpact.symbolic.robot.rigid import Array
+
+from .approach import Approach, Arrival, arrival_of
 from .controlled import controlled, controlled_scene
 from .controller import Controller, check_controller
-from .events import first_contact
+from .events import Course, course_of, peaks_of
 from .full import full_scene
-from .history import Fidelity, ImpactHistory
-from .linear import (
-    LinearSystem,
-    chain_of_masses,
-    linearised,
-    modal_scene,
-    one_mass,
-    two_mass,
-)
+from .history import HORIZON, PRESSED_UNTIL, Fidelity, ImpactHistory
+from .linear_stages import linear_scene, one_mass_scene, two_mass_scene
+from .scene import Scene
 
 
 def simulate_impact(
@@ -32,10 +28,10 @@ def simulate_impact(
     contact: Contact,
     fidelity: Fidelity = "linearised",
     *,
+    motors: Motors | Controller | None = None,
+    horizon: float | None = HORIZON,
     order: int = 3,
     end: ChainEnd | None = None,
-    controller: Controller | None = None,
-    duration: float | None = None,
     tolerance: float = 1e-10,
 ) -> ImpactHistory:
     """Simulate a robot's impact on a body region with SUNDIALS.
@@ -44,19 +40,22 @@ def simulate_impact(
         model: the robot and its contact point.
         approach: how it arrives.
         contact: what it hits.
-        fidelity: ``one_mass`` (m_c), ``two_mass`` (m_c, k_r, m_a), ``chain``, ``linearised``
-            (MSM Eq. 5) or ``full`` (nonlinear).
+        fidelity: ``one_mass`` (m_c), ``two_mass`` (m_c, k_r, m_a), ``chain``, ``linearised`` or
+            ``full`` (nonlinear).
+        motors: what they do; None is a servo where the model has gains, else free motors. The
+            papers' ``Controller`` takes the place of the model's gains. The two simplest models
+            have none.
+        horizon: up to which the largest force counts [s]; a clamped body is followed to
+            ``PRESSED_UNTIL`` at least. None: until the first contact ends.
         order: number of the chain's masses.
-        end: of the chain; None keeps its spring to ground where a controller holds the motors. A
-            chain much shorter than the robot is then nearer with a free end.
-        controller: of the motors in place of the model's K_p (full, linearised and grounded
-            chain); None holds them by K_p, without a reaction.
-        duration: how long to simulate from first touch [s]; None: until shortly after separation.
+        end: of the chain; None keeps its last spring, to a ground that moves as the motors do,
+            unless they are free. A chain much shorter than the robot may be nearer with a free
+            end.
         tolerance: of the integrator, relative and absolute for an approach of 1 m/s.
 
     Raises:
         InvalidValue: a number outside what it means; WrongLength for vectors.
-        UnknownName: no such fidelity.
+        UnknownName: no such fidelity, or no such motors.
         SingularDirection: the contact point cannot move along the direction.
         SimulationFailed: the integrator gave up.
     """
@@ -64,44 +63,83 @@ def simulate_impact(
         raise UnknownName("fidelity", fidelity, get_args(Fidelity))
     if not 1e-14 <= tolerance <= 1e-2:
         raise InvalidValue("tolerance", f"must be from 1e-14 to 1e-2, not {tolerance:g}")
-    check_contact(contact)
-    if controller is not None:
-        check_controller(controller)
-        if fidelity in ("one_mass", "two_mass") or end == "free":
-            reason = "needs motors: a chain with its ground spring, or the linearised or full model"
-            raise InvalidValue("controller", reason)
+    if horizon is not None and not 0 < horizon < np.inf:
+        raise InvalidValue("horizon", f"must be finite and greater than 0 s, not {horizon:g}")
+    contact.check()
     arrival = arrival_of(model, approach)
-    if fidelity == "full":
-        scene = full_scene(model, arrival, contact, tolerance, controller)
-    elif controller is not None:
-        masses = order if fidelity == "chain" else None
-        system = controlled(model, arrival, controller, masses)
-        scene = controlled_scene(system, arrival, controller, contact, tolerance)
-    else:
-        linear = _linear_system(model, arrival, fidelity, order, end)
-        scene = modal_scene(linear, arrival.speed, contact, tolerance)
-    found = first_contact(scene, duration)
+    what = Motors("servo" if model.drives.has_gains else "free") if motors is None else motors
+    scene = _scene(model, arrival, contact, fidelity, what, order, end, tolerance)
+    follows = contact.clamped and horizon is not None
+    course = course_of(scene, max(horizon, PRESSED_UNTIL) if follows and horizon else horizon)
+    found, run = peaks_of(course, horizon), course.run
     return ImpactHistory(
         fidelity=fidelity,
-        time=found.run.time,
-        force=found.run.force,
-        first_contact=found.highest.force,
-        first_peak=found.first_peak.force,
-        time_of_first_contact_peak=found.highest.time,
-        time_of_first_peak=found.first_peak.time,
+        motors=what if isinstance(what, Motors) and not _is_lumped(fidelity) else None,
+        time=run.time,
+        force=run.force,
+        reading=run.reading,
+        peak=found.peak.force,
+        time_of_peak=found.peak.time,
+        first_contact=found.first_contact.force,
+        first_peak=found.first_peak.force if found.first_peak else None,
+        time_of_first_contact_peak=found.first_contact.time,
+        time_of_first_peak=found.first_peak.time if found.first_peak else None,
         separation=found.separation,
+        pressing=_pressing(course, contact, follows),
+        largest_torque=largest_torque(course),
     )
 
 
-def _linear_system(
-    model: ImpactModel, arrival: Arrival, fidelity: Fidelity, order: int, end: ChainEnd | None
-) -> LinearSystem:
-    at = (model, arrival.q, arrival.direction)
-    velocity = arrival.link_velocity
-    build: dict[str, Callable[[], LinearSystem]] = {
-        "one_mass": partial(one_mass, *at),
-        "two_mass": partial(two_mass, *at),
-        "chain": partial(chain_of_masses, *at, velocity, order, end),
-        "linearised": partial(linearised, *at, velocity),
-    }
-    return build[fidelity]()
+def _is_lumped(fidelity: Fidelity) -> bool:
+    return fidelity in ("one_mass", "two_mass")
+
+
+def _scene(
+    model: ImpactModel,
+    arrival: Arrival,
+    contact: Contact,
+    fidelity: Fidelity,
+    motors: Motors | Controller,
+    order: int,
+    end: ChainEnd | None,
+    tolerance: float,
+) -> Scene:
+    if _is_lumped(fidelity):
+        if motors != Motors("free") and not (isinstance(motors, Motors) and model.drives.has_gains):
+            field = "controller" if isinstance(motors, Controller) else "motors"
+            raise InvalidValue(field, "needs motors: a chain, or the linearised or full model")
+        build = one_mass_scene if fidelity == "one_mass" else two_mass_scene
+        return build(model, arrival, contact, tolerance)
+    if isinstance(motors, Controller):
+        check_controller(motors)
+        if end == "free":
+            raise InvalidValue("end", "a chain with a controller keeps its spring to ground")
+        if fidelity != "full":
+            masses = order if fidelity == "chain" else None
+            system = controlled(model, arrival, motors, masses)
+            return controlled_scene(system, arrival, motors, contact, tolerance)
+    else:
+        check_motors(motors)
+    if fidelity == "full":
+        return full_scene(model, arrival, contact, motors, tolerance)
+    assert isinstance(motors, Motors)
+    masses = order if fidelity == "chain" else None
+    return linear_scene(model, arrival, contact, motors, tolerance, masses, end)
+
+
+def _pressing(course: Course, contact: Contact, follows: bool) -> float | None:
+    if not contact.clamped:
+        return 0.0
+    late = course.run.time >= HORIZON
+    return float(course.run.force[late].max()) if follows and late.any() else None
+
+
+def largest_torque(course: Course) -> Array | None:
+    """Return the largest torque that a servo added to each motor's [N·m]; None without one."""
+    found = []
+    for piece in course.pieces:
+        if piece.leg.torque is not None:
+            own = course.scene.own_motion(piece.leg, piece.run.state)
+            torque = piece.leg.torque(own, piece.run.time - piece.begin)
+            found.append(course.scene.speed * abs(torque).max(axis=1))
+    return np.max(found, axis=0) if found else None

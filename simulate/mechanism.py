@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from softimpact.symbolic.body.contact import Contact, hertz_force
+from softimpact.symbolic import Contact, Law
+from softimpact.symbolic.body.laws.law import form_of, numbers_of, with_numbers
 from softimpact.symbolic.matrices import Matrix
 
 
@@ -54,48 +55,78 @@ class BodyKind:
 
     Attributes:
         clamped: whether the region is held; else it moves with its effective mass.
-        damped: whether its spring has a damper; without one x_0 follows from statics.
+        damped: whether its spring has a damper; without one x_0 follows from statics, unless a
+            plate is there.
+        plate: whether there is a mass between skin and spring.
+        law: form of the law of contact.
     """
 
     clamped: bool
     damped: bool
+    plate: bool
+    law: Law
 
     @staticmethod
     def of(contact: Contact) -> BodyKind:
         """Return the kind of a contact's body."""
-        return BodyKind(contact.clamped, contact.region.damping > 0)
+        region = contact.region
+        plate = region.plate_mass > 0
+        return BodyKind(contact.clamped, plate or region.damping > 0, plate, form_of(contact.law))
 
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A body region and the skin in front of it, as symbols (MSM §3.1).
+    """A body region and the law of contact in front of it, as symbols (MSM §3.1).
 
     Attributes:
-        hertz_stiffness: k_f of the skin [N/m^1.5].
+        law: of contact, with symbols for its parameters.
         stiffness: k_h [N/m].
         damping: c_h [N·s/m].
         mass: m_h [kg].
-        node: x_0 [m], between skin and spring.
+        plate_mass: at x_0 [kg].
+        node: x_0 [m], between law and spring.
         moved: x_h [m] and ẋ_h [m/s] of the region; nothing when it is clamped.
+        plate_velocity: ẋ_0 [m/s]; nothing without a plate.
+        law_parameters: symbols in the law.
     """
 
-    hertz_stiffness: Matrix
+    law: Law
     stiffness: Matrix
     damping: Matrix
     mass: Matrix
+    plate_mass: Matrix
     node: Matrix
     moved: Matrix
+    plate_velocity: Matrix
+    law_parameters: Matrix
 
     @staticmethod
     def symbols(kind: BodyKind) -> Body:
         """Return a body of fresh symbols."""
-        k_f, k_h, c_h, m_h, x_0 = (ca.SX.sym(name) for name in ("k_f", "k_h", "c_h", "m_h", "x_0"))
-        return Body(k_f, k_h, c_h, m_h, x_0, ca.SX.sym("h", 0 if kind.clamped else 2))
+        k_h, c_h, m_h, m_p, x_0 = (ca.SX.sym(name) for name in ("k_h", "c_h", "m_h", "m_p", "x_0"))
+        numbers = ca.SX.sym("law", len(kind.law.parameters))
+        return Body(
+            with_numbers(kind.law, ca.vertsplit(numbers)),
+            k_h,
+            c_h,
+            m_h,
+            m_p,
+            x_0,
+            ca.SX.sym("h", 0 if kind.clamped else 2),
+            ca.SX.sym("dx_0", 1 if kind.plate else 0),
+            numbers,
+        )
 
     @property
     def parameters(self) -> Matrix:
         """The constants in the order of ``body_parameters``."""
-        return ca.vertcat(self.hertz_stiffness, self.stiffness, self.damping, self.mass)
+        numbers = (self.stiffness, self.damping, self.mass, self.plate_mass)
+        return ca.vertcat(*numbers, self.law_parameters)
+
+    @property
+    def state(self) -> Matrix:
+        """What the body adds to the state, x_0 last."""
+        return ca.vertcat(self.moved, self.plate_velocity, self.node)
 
     @property
     def position(self) -> Matrix:
@@ -108,10 +139,16 @@ class Body:
         return self.moved[1] if self.moved.numel() else 0
 
 
+def body_units(kind: BodyKind, time: float) -> list[float]:
+    """Return units of the body's state per 1 m/s: ``time`` [s] for positions, 1 for velocities."""
+    return [*([] if kind.clamped else [time, 1.0]), *([1.0] if kind.plate else []), time]
+
+
 def body_parameters(contact: Contact) -> list[float]:
-    """Return k_f, k_h, c_h and m_h of a contact."""
+    """Return k_h, c_h, m_h, the plate's mass and the law's parameters of a contact."""
     region = contact.region
-    return [contact.hertz_stiffness, region.stiffness, region.damping, region.effective_mass]
+    spring = [region.stiffness, region.damping, region.effective_mass, region.plate_mass]
+    return spring + numbers_of(contact.law)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,24 +159,39 @@ class Press:
         depth: δ = x_c − x_0 [m].
         closing: dδ/dt [m/s].
         force: f_c [N].
-        imbalance: f_c − k_h(x_0 − x_h) [N], which the damper carries.
+        reading: of spring and damper [N], which is what a measuring device shows; f_c but for the
+            inertia of a plate.
+        imbalance: f_c − k_h(x_0 − x_h) [N], which damper and plate carry.
+        rate: of the body's state.
     """
 
     depth: Matrix
     closing: Matrix
     force: Matrix
+    reading: Matrix
     imbalance: Matrix
+    rate: Matrix
 
 
 def press(robot: Mechanism, body: Body, kind: BodyKind) -> Press:
-    """Return how a robot presses on a body (MSM §3.1)."""
+    """Return how a robot presses on a body: a law, a plate if any, spring and damper, a mass."""
     depth = robot.displacement - body.node
-    force = hertz_force(body.hertz_stiffness, depth)
-    imbalance = force - body.stiffness * (body.node - body.position)
+    force = body.law.force(depth)
+    squeezed = body.stiffness * (body.node - body.position)
+    imbalance = force - squeezed
     approach = robot.speed - body.velocity
-    if kind.damped:  # c_h(ẋ_0 − ẋ_h) = f_c − k_h(x_0 − x_h)
+    reading, rate = force, []
+    if kind.plate:  # m_p ẍ_0 = f_c − k_h(x_0 − x_h) − c_h(ẋ_0 − ẋ_h)
+        closing = robot.speed - body.plate_velocity
+        reading = squeezed + body.damping * (body.plate_velocity - body.velocity)
+        rate = [(force - reading) / body.plate_mass]
+    elif kind.damped:  # c_h(ẋ_0 − ẋ_h) = f_c − k_h(x_0 − x_h)
         closing = approach - imbalance / body.damping
     else:  # f_c = k_h(x_0 − x_h), hence f_c' δ̇ = k_h(ẋ_c − δ̇ − ẋ_h)
         tangent = -ca.jacobian(force, body.node)
         closing = body.stiffness * approach / (body.stiffness + tangent)
-    return Press(depth, closing, force, imbalance)
+    if not kind.clamped:
+        rate = [body.velocity, reading / body.mass, *rate]
+    return Press(
+        depth, closing, force, reading, imbalance, ca.vertcat(*rate, robot.speed - closing)
+    )

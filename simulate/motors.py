@@ -1,23 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the motors do during an impact: hold their angles, or follow a controller."""
+"""Laws of the motors of the nonlinear robot, as expressions."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import casadi as ca
-import numpy as np
 
 from softimpact.symbolic.matrices import Matrix
-from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Arrival
-from .controller import Controller
+UNLIMITED = 1e30
+"""Torque [N·m] that stands for no limit in expressions, where an infinite one gives NaN."""
 
 
 @dataclass(frozen=True, eq=False)
-class Motors:
+class MotorSide:
     """A robot's motors as a law sees them (SX); vectors have one entry an independent joint.
 
     Attributes:
@@ -38,36 +36,67 @@ class Motors:
 
 
 @dataclass(frozen=True, eq=False)
-class MotorLaw:
-    """Motor torques as expressions (SX).
+class Law:
+    """What motors do (SX).
 
     Attributes:
         torque: beyond those that hold the robot at first touch, length n.
         parameters: symbols.
+        acceleration: of the motors where their motion is given, length n; None where torques are.
         memory: of the controller, as in ``Mechanism``.
         memory_rate: its rate.
     """
 
     torque: Matrix
     parameters: Matrix
+    acceleration: Matrix | None = None
     memory: Matrix = field(default_factory=lambda: ca.SX(0, 1))
     memory_rate: Matrix = field(default_factory=lambda: ca.SX(0, 1))
 
 
-LawBuilder = Callable[[Motors, Matrix], MotorLaw]
+LawBuilder = Callable[[MotorSide, Matrix], Law]
 """From the motors and the torques at first touch to a law."""
 
 
-def held(motors: Motors, at_touch: Matrix) -> MotorLaw:
+def free(motors: MotorSide, at_touch: Matrix) -> Law:
+    """No torque changes."""
+    return Law(0 * motors.moved, ca.SX(0, 1))
+
+
+def held(motors: MotorSide, at_touch: Matrix) -> Law:
     """Constant K_p hold the motors where they were at first touch; parameters are its entries."""
     gains = ca.SX.sym("K_p", *motors.inertia.shape)
-    return MotorLaw(-ca.mtimes(gains, motors.moved), ca.vec(gains))
+    return Law(-ca.mtimes(gains, motors.moved), ca.vec(gains))
 
 
-def computed_torque(motors: Motors, at_touch: Matrix) -> MotorLaw:
+def servo(motors: MotorSide, at_touch: Matrix) -> Law:
+    """K_p and K_d on the deviation from a reference that moves on; torques saturate.
+
+    Parameters are K_p (n×n), K_d, the limits and the reference's speed.
+    """
+    n = int(motors.moved.numel())
+    gains = ca.SX.sym("K_p", n, n)
+    damping, limit, wanted_speed = (ca.SX.sym(name, n) for name in ("K_d", "limit", "dw"))
+    wanted = ca.SX.sym("w", n)
+    asked = ca.mtimes(gains, wanted - motors.moved) + damping * (wanted_speed - motors.speed)
+    return Law(
+        torque=ca.fmax(ca.fmin(asked, limit), -limit),
+        parameters=ca.vertcat(ca.vec(gains), damping, limit, wanted_speed),
+        memory=wanted,
+        memory_rate=wanted_speed,
+    )
+
+
+def prescribed(motors: MotorSide, at_touch: Matrix) -> Law:
+    """The motors' accelerations are parameters: zero if they are driven or have stopped."""
+    acceleration = ca.SX.sym("a", int(motors.moved.numel()))
+    return Law(0 * motors.moved, acceleration, acceleration)
+
+
+def computed_torque(motors: MotorSide, at_touch: Matrix) -> Law:
     """Computed torque with PID in the active space (MSM §3.1.3); see ``Controller``.
 
-    Parameters are those of ``controller_parameters``.
+    Parameters are k_p, k_d, k_i, whether the robot has not reacted yet, and the reference's speed.
     """
     A = motors.active
     k_p, k_d, k_i, follows = (ca.SX.sym(name) for name in ("k_p", "k_d", "k_i", "on"))
@@ -77,27 +106,9 @@ def computed_torque(motors: Motors, at_touch: Matrix) -> MotorLaw:
     pid = ca.mtimes(motors.inertia[A, A], acceleration)
     torque = ca.SX(-at_touch)
     torque[A] += motors.potential[A] + follows * (pid + motors.coriolis[A])
-    return MotorLaw(
+    return Law(
         torque=torque,
         parameters=ca.vertcat(k_p, k_d, k_i, follows, wanted_speed),
         memory=ca.vertcat(wanted, summed),
         memory_rate=ca.vertcat(wanted_speed, behind),
     )
-
-
-def controller_parameters(
-    arrival: Arrival, active: Sequence[bool], controller: Controller
-) -> Array:
-    """Return the parameters of ``computed_torque`` from first touch on."""
-    wanted_speed = arrival.speed * arrival.link_velocity[list(active)]
-    if controller.reference == "held":
-        wanted_speed = np.zeros_like(wanted_speed)
-    gains = [controller.proportional, controller.derivative, controller.integral]
-    return np.array([*gains, 1.0, *wanted_speed])
-
-
-def after_reaction(parameters: Array) -> Array:
-    """Return the parameters of ``computed_torque`` once the robot has reacted."""
-    changed = parameters.copy()
-    changed[3] = 0.0
-    return changed

@@ -16,6 +16,12 @@ def analyze(
     q: o.Configuration,
     direction: o.Direction,
     tip: o.Tip = None,
+    end: o.End = None,
+    lock: o.Lock = None,
+    hold_base: o.HoldBase = False,
+    payload: o.Payload = None,
+    tool: o.Tool = None,
+    motors: o.Motors = None,
     joint_stiffness: o.JointStiffness = None,
     rotor_inertia: o.RotorInertia = None,
     position_gain: o.PositionGain = None,
@@ -29,18 +35,25 @@ def analyze(
     """Print what an impact meets: m_c, k_r, m_a, the chain and the impact factors."""
     from softimpact.symbolic import analyse
 
-    from .output import print_json
-    from .situation import Typed, TypedDrives, situation
+    from .output import print_json, print_warnings
+    from .situation import Typed, TypedArm, TypedDrives, situation, unknown_rotors
+    from .typed_motors import TypedMotors, motors_of
 
     given = TypedDrives(
         joint_stiffness, rotor_inertia, position_gain, computed_torque_gain, gear_ratio
     )
-    scene = situation(Typed(model, tip, q, direction, given, gravity, motor_angles))
-    result = analyse(scene.model, scene.q, scene.direction, order)
+    known, _ = motors_of(TypedMotors(motors), given)
+    arm = TypedArm(model, tip, end, lock, payload, tool, hold_base)
+    scene = situation(Typed(arm, q, direction, given, gravity, motor_angles))
+    law = None if known is None else known.kind
+    result = analyse(scene.model, scene.q, scene.direction, order, law)
+    warnings = [*scene.warnings, *unknown_rotors(scene.model)]
+    print_warnings(warnings)
     if json:
         robot = scene.model.robot
         about = {"robot": robot.name, "joints": robot.joint_names, "tip": scene.model.tip}
-        print_json({**about, "q": scene.q, "direction": scene.direction, **vars(result)})
+        numbers = {"q": scene.q, "direction": scene.direction, **vars(result)}
+        print_json({**about, **numbers, "warnings": warnings})
         return
     _print_tables(result)
 

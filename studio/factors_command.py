@@ -18,6 +18,11 @@ def factors(
     q: o.Configuration,
     direction: o.Direction,
     tip: o.Tip = None,
+    end: o.End = None,
+    lock: o.Lock = None,
+    hold_base: o.HoldBase = False,
+    payload: o.Payload = None,
+    tool: o.Tool = None,
     floating: Annotated[
         bool,
         typer.Option(
@@ -45,13 +50,22 @@ def factors(
     json: o.Json = False,
 ) -> None:
     """Print impact factors: GIAF and its kin, IMF, dynamic impact measure, joint impulses."""
-    from softimpact.symbolic import impact_factors
+    from softimpact.symbolic import InvalidValue, impact_factors
 
-    from .output import print_json
-    from .situation import Typed, TypedDrives, free_situation, situation
+    from .output import print_json, print_warnings
+    from .situation import (
+        Typed,
+        TypedArm,
+        TypedDrives,
+        free_situation,
+        situation,
+        unknown_rotors,
+    )
 
     given = TypedDrives(rotor_inertia=rotor_inertia, gear_ratio=gear_ratio)
-    typed = Typed(model, tip, q, direction, given)
+    typed = Typed(TypedArm(model, tip, end, lock, payload, tool, hold_base), q, direction, given)
+    if floating and hold_base:
+        raise InvalidValue("hold_base", "excludes floating; give one of them")
     scene = free_situation(typed) if floating else situation(typed)
     found = impact_factors(
         scene.model,
@@ -74,7 +88,9 @@ def factors(
         "restitution": restitution,
         "other_mass": other_mass,
         **flat(found),
+        "warnings": [*scene.warnings, *unknown_rotors(scene.model)],
     }
+    print_warnings(result["warnings"])
     if json:
         print_json(result)
     else:

@@ -24,6 +24,7 @@ def generate(
     model: o.Model,
     out: o.Out,
     tip: o.Tip = None,
+    hold_base: o.HoldBase = False,
     real: Real = "double",
     name: Name = None,
     joint_stiffness: o.JointStiffness = None,
@@ -84,14 +85,26 @@ def generate(
     """Write a C99 package; the drives given are the defaults of its parameters."""
     from softimpact.codegen import generate_package
     from softimpact.codegen.manifest import Real
+    from softimpact.symbolic import InvalidValue
 
-    from .output import print_json
+    from .output import print_json, print_warnings
     from .pose_table import pose_table
-    from .situation import TypedDrives, drives_of, gravity_of, robot_to_tip, whole_robot
+    from .situation import (
+        TypedArm,
+        TypedDrives,
+        drives_of,
+        gravity_of,
+        loaded_arm,
+        whole_robot,
+    )
     from .values import one_of
 
     number: Real = one_of("number type", real, Real)
-    robot = whole_robot(model, tip) if floating else robot_to_tip(model, tip)
+    if floating and hold_base:
+        raise InvalidValue("hold_base", "excludes floating; give one of them")
+    typed = TypedArm(model, tip, hold_base=hold_base)
+    robot = whole_robot(model, tip) if floating else loaded_arm(typed).robot
+    print_warnings(robot.warnings)
     given = TypedDrives(joint_stiffness, rotor_inertia, position_gain, None, gear_ratio)
     manifest = generate_package(
         robot,

@@ -1,101 +1,126 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One impact, simulated from what a user typed and held against the region's force limit."""
+"""One impact, simulated from what a user typed and held against every limit of the body."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from softimpact.simulate import (
+    HORIZON,
     Approach,
+    Assessment,
     Controller,
     Fidelity,
     PeakDefinition,
-    largest_safe_speed,
-    simulate_impact,
+    assess_impact,
 )
 from softimpact.simulate.controller import Reference
+from softimpact.simulate.tolerances import Tolerances
 from softimpact.symbolic import Contact, InvalidValue, body_region
+from softimpact.symbolic.body.body_file import load_body, load_cover
+from softimpact.symbolic.body.shapes import shape_from
 from softimpact.symbolic.robot.rigid import Array
 
 from . import values
-from .output import print_table
 from .situation import Situation, Typed, situation
+from .typed_motors import NOTHING_SAID, TypedMotors, motors_of
+
+
+@dataclass(frozen=True)
+class TypedBody:
+    """The options that say what is hit, as typed."""
+
+    region: str | None
+    file: str | None = None
+    cover: str | None = None
+    clamped: bool = True
+    shape: str | None = None
 
 
 @dataclass(frozen=True)
 class TypedImpact:
     """The options that make up an impact, as typed; see ``simulate_command``."""
 
-    region: str
-    speed: float
+    body: TypedBody
+    speed: float | None
     fidelity: str = "linearised"
-    clamped: bool = True
     joint_velocity: str | None = None
-    peak: str = "first_contact"
+    peak: str = "peak"
+    motors: TypedMotors = NOTHING_SAID
+    horizon: float | None = None
     safe_speed: bool = False
+    band: bool = False
     order: int = 3
     pid: str | None = None
-    reference: str = "moving"
+    reference: str | None = None
 
 
-def impact(where: Typed, how: TypedImpact) -> dict[str, Any]:
-    """Simulate an impact; return its inputs, force over time, peaks and verdict.
+def contact_of(typed: TypedBody) -> Contact:
+    """Return what is hit; raises SoftImpactError."""
+    if (typed.region is None) == (typed.file is None):
+        raise InvalidValue("region", "give either --region or --body")
+    region = body_region(typed.region) if typed.region else load_body(typed.file or "")
+    cover = None if typed.cover is None else load_cover(typed.cover)
+    return Contact(region, typed.clamped, cover=cover)
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What became of an impact, and of what it was asked.
+
+    Attributes:
+        scene: the arm, how it stands and where it is hit.
+        contact: what it hits.
+        how: the options.
+        speed: of the contact point [m/s].
+        horizon: up to which forces count [s].
+        definition: of the peak that was asked for.
+        found: the assessment.
+    """
+
+    scene: Situation
+    contact: Contact
+    how: TypedImpact
+    speed: float
+    horizon: float
+    definition: PeakDefinition
+    found: Assessment
+
+
+def impact(where: Typed, how: TypedImpact) -> Answer:
+    """Simulate an impact and assess it.
 
     Raises:
         SoftImpactError: an option is wrong or the simulation failed.
     """
     fidelity: Fidelity = values.one_of("impact model", how.fidelity, Fidelity)
     definition: PeakDefinition = values.one_of("peak definition", how.peak, PeakDefinition)
-    contact = Contact(body_region(how.region), how.clamped)
+    contact = contact_of(how.body)
+    motors, reaction = motors_of(how.motors, where.drives)
     scene = situation(where)
-    velocity = None if how.joint_velocity is None else _per_speed(scene, how.joint_velocity)
-    approach = Approach(scene.q, scene.direction, how.speed, velocity)
-    limit, safe_speed = contact.region.force_limit, None
+    speed, velocity = _speed(scene, how)
+    horizon = HORIZON if how.horizon is None else how.horizon
+    shape = None if how.body.shape is None else shape_from(how.body.shape)
     with _naming_options():
-        controller = _controller(how)
-        history = simulate_impact(
-            scene.model, approach, contact, fidelity, order=how.order, controller=controller
+        found = assess_impact(
+            scene.model,
+            Approach(scene.q, scene.direction, speed, velocity),
+            contact,
+            fidelity,
+            motors=controller_of(how) or motors,
+            reaction=reaction,
+            horizon=horizon,
+            shape=shape,
+            payload=scene.payload,
+            order=how.order,
+            safe_speed=how.safe_speed,
+            tolerances=Tolerances() if how.band else None,
         )
-        if how.safe_speed:
-            safe_speed = largest_safe_speed(
-                scene.model,
-                approach,
-                contact,
-                limit,
-                fidelity,
-                definition,
-                order=how.order,
-                controller=controller,
-            )
-    peak = history.peak(definition)
-    return {
-        "robot": scene.model.robot.name,
-        "tip": scene.model.tip,
-        "q": scene.q,
-        "direction": scene.direction,
-        "model": fidelity,
-        "controller": controller,
-        "region": how.region,
-        "clamped": how.clamped,
-        "speed": how.speed,
-        "peak_force": peak,
-        "peak_definition": definition,
-        "first_contact": history.first_contact,
-        "time_of_first_contact_peak": history.time_of_first_contact_peak,
-        "first_peak": history.first_peak,
-        "time_of_first_peak": history.time_of_first_peak,
-        "separation": history.separation,
-        "limit": limit,
-        "within_limit": peak <= limit,
-        "safe_speed": safe_speed,
-        "time": history.time,
-        "force": history.force,
-    }
+    return Answer(scene, contact, how, speed, horizon, definition, found)
 
 
 OPTIONS = {
@@ -117,43 +142,34 @@ def _naming_options() -> Iterator[None]:
         raise InvalidValue(OPTIONS.get(error.field, error.field), error.reason) from None
 
 
-def _controller(how: TypedImpact) -> Controller | None:
-    reference: Reference = values.one_of("reference of the motors", how.reference, Reference)
+def controller_of(how: TypedImpact) -> Controller | None:
+    """Return the papers' controller, if it was asked for; raises InvalidValue."""
     if how.pid is None:
+        if how.reference is not None:
+            raise InvalidValue("reference", "is of the controller that --pid gives; give that too")
         return None
+    if how.motors != NOTHING_SAID:
+        raise InvalidValue("pid", "excludes --motors and its reaction")
+    reference: Reference = values.one_of(
+        "reference of the motors", how.reference or "moving", Reference
+    )
     proportional, derivative, integral = values.vector("pid", how.pid, 3)
     return Controller(proportional, derivative, integral, reference)
 
 
-def print_impact(result: Mapping[str, Any]) -> None:
-    """Print what ``impact`` returned as a table."""
-    separation = result["separation"]
-    held = "held" if result["clamped"] else "free to give way"
-    verdict = "kept" if result["within_limit"] else "exceeded"
-    print_table(
-        f"{result['robot']} on {result['region']} ({held}) at {result['speed']:g} m/s, "
-        f"model {result['model']}",
-        ("quantity", "value", "unit"),
-        [
-            (f"peak force, {result['peak_definition']}", result["peak_force"], "N"),
-            ("largest force until separation", result["first_contact"], "N"),
-            ("  after", 1e3 * result["time_of_first_contact_peak"], "ms"),
-            ("first local maximum", result["first_peak"], "N"),
-            ("  after", 1e3 * result["time_of_first_peak"], "ms"),
-            ("separation after", None if separation is None else 1e3 * separation, "ms"),
-            (f"limit of the region, {verdict}", result["limit"], "N"),
-            ("largest safe speed (--safe-speed)", result["safe_speed"], "m/s"),
-        ],
+def _speed(scene: Situation, how: TypedImpact) -> tuple[float, Array | None]:
+    """Return the speed of the contact point, and the joint velocities for 1 m/s of it."""
+    if how.joint_velocity is None:
+        if how.speed is None:
+            raise InvalidValue("speed", "is missing; give --speed, or --joint-velocity")
+        return how.speed, None
+    velocity = scene.model.vector(
+        "joint_velocity", values.vector("joint_velocity", how.joint_velocity)
     )
-
-
-def _per_speed(scene: Situation, text: str) -> Array:
-    """Return typed joint velocities scaled to move the contact point by 1 m/s along n."""
-    velocity = scene.model.vector("joint_velocity", values.vector("joint_velocity", text))
     along = float(scene.direction @ np.array(scene.model.jacobian(scene.q)) @ velocity)
     if not along > 0:
         raise InvalidValue(
             "joint_velocity",
             f"must move the contact point along the direction, but moves it by {along:.3g} m/s",
         )
-    return np.asarray(velocity / along)
+    return along if how.speed is None else how.speed, np.asarray(velocity / along)

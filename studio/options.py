@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 DRIVES = "Drives (a number for all joints, or a JSON list)"
+MOTORS = "What the motors do"
 
 Model = Annotated[
     str,
@@ -31,7 +32,7 @@ Configuration = Annotated[
     typer.Option(
         "--q",
         metavar="LIST",
-        help="Link angles of the chain to the tip, in the file's joint order (rad, m).",
+        help="Link angles of the arm up to its end, in the file's joint order (rad, m).",
     ),
 ]
 MotorAngles = Annotated[
@@ -83,6 +84,77 @@ GearRatio = Annotated[
         help="N; --rotor-inertia is then the motors' own and counts N² times.",
         rich_help_panel=DRIVES,
     ),
+]
+DampingGain = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LIST|X",
+        help="Diagonal of K_d (N·m·s/rad) of a servo; default zero.",
+        rich_help_panel=DRIVES,
+    ),
+]
+TorqueLimit = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LIST|X",
+        help="Largest torque that a servo adds (N·m); default the file's.",
+        rich_help_panel=DRIVES,
+    ),
+]
+Motors = Annotated[
+    str | None,
+    typer.Option(
+        "--motors",
+        metavar="KIND",
+        help="free, servo, driven, or held (the papers' only). Default: servo where gains are "
+        "given, else both ends of the bracket, free and driven, of which the worse counts.",
+        rich_help_panel=MOTORS,
+    ),
+]
+ReactionTime = Annotated[
+    float | None,
+    typer.Option(
+        metavar="S",
+        help="From first touch until the motors are released (s), inf: never; default 0.02.",
+        rich_help_panel=MOTORS,
+    ),
+]
+StoppingTime = Annotated[
+    float | None,
+    typer.Option(
+        metavar="S",
+        help="The motors come to rest in that time (s) instead of being released.",
+        rich_help_panel=MOTORS,
+    ),
+]
+End = Annotated[
+    str | None,
+    typer.Option(
+        "--end",
+        metavar="FRAME",
+        help="End of the arm: all joints on the way to it stay, also beyond the contact point.",
+    ),
+]
+Lock = Annotated[
+    str | None,
+    typer.Option(metavar="JOINT=X,...", help="Joints to weld, and where; others off the way at 0."),
+]
+HoldBase = Annotated[
+    bool,
+    typer.Option(
+        "--hold-base", help="Hold the base of a robot that floats or stands, where its file has it."
+    ),
+]
+Payload = Annotated[
+    str | None,
+    typer.Option(
+        metavar="MASS[@x,y,z]",
+        help="What the end holds (kg), and its centre in the end's axes (m).",
+    ),
+]
+Tool = Annotated[
+    str | None,
+    typer.Option(metavar="FILE", help="Tool at the end: TOML with mass, com and inertia."),
 ]
 Gravity = Annotated[
     str | None,

@@ -30,10 +30,16 @@ def plain(value: Any) -> Any:
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
+    if hasattr(value, "full"):  # a CasADi matrix of numbers
+        value = value.full().ravel() if 1 in value.shape else value.full()
     if isinstance(value, (np.ndarray, np.generic)):
         return plain(value.tolist())
     if isinstance(value, (list, tuple)):
         return [plain(item) for item in value]
+    return _scalar(value)
+
+
+def _scalar(value: Any) -> Any:
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return str(value) if isinstance(value, Path) else value
@@ -44,13 +50,24 @@ def print_json(result: Mapping[str, Any]) -> None:
     typer.echo(json.dumps(plain(result), allow_nan=False))
 
 
+def print_warnings(lines: Iterable[str]) -> None:
+    """Print what was ignored or assumed to stderr, one line each."""
+    for line in lines:
+        typer.echo(f"warning: {' '.join(line.split())}", err=True)
+
+
 @contextmanager
 def failures_as_json(wanted: bool) -> Iterator[None]:
     """Print what a failed solver found best as one JSON object, too, if that is wanted."""
-    from softimpact.optimize import SolverFailure
+    from softimpact.optimize import Infeasible, SolverFailure
 
     try:
         yield
+    except Infeasible as failure:
+        if wanted:
+            least = vars(failure.least)
+            print_json({"error": str(failure), "conflicts": failure.conflicts, "least": least})
+        raise
     except SolverFailure as failure:
         if wanted:
             best = {**vars(failure.best), "feasible": failure.feasible}
@@ -66,13 +83,7 @@ def write_json(path: Path, result: Any) -> None:
 
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     """Print a table to stdout; numbers to four digits, what does not apply as a dash."""
-    table = Table(
-        title=Text(title),
-        title_justify="left",
-        box=SIMPLE_HEAD,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-    )
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for column in columns:
         table.add_column(Text(column), overflow="fold")
     for row in rows:
@@ -81,6 +92,7 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell
     if not console.is_terminal:  # a file or a pipe has no width to fold into
         unbounded = console.options.update(max_width=ENDLESS)
         console.width = max(console.width, console.measure(table, options=unbounded).maximum)
+    console.print(Text(title, style="table.title"), soft_wrap=True)
     console.print(table)
 
 

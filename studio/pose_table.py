@@ -25,7 +25,7 @@ def pose_table(path: Path, robot: Robot) -> dict[str, Sequence[float]]:
     if path.suffix == ".toml":
         return _of_study(path, robot)
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError) as error:
         raise InvalidValue("poses", f"cannot read {path}: {error}") from error
     if isinstance(found, list):

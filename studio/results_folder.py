@@ -1,56 +1,46 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A folder of results that is replaced as a whole or not at all."""
+"""A folder of results, which the next run of the same command replaces."""
 
 from __future__ import annotations
 
 import json
-import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
-from softimpact.symbolic import SoftImpactError
+from softimpact.codegen import ForeignFolder
+from softimpact.codegen import folder as place
 
 RESULTS = "results.json"
 
 
-class ForeignFolder(SoftImpactError):
-    """The output folder holds files that an earlier run of the same command did not write."""
+@contextmanager
+def replaced_folder(folder: Path, generator: str) -> Iterator[Path]:
+    """Give a fresh folder to fill; on success it takes the place of an older one.
 
-    def __init__(self, folder: Path, generator: str) -> None:
-        self.folder, self.generator = folder, generator
-        super().__init__(
-            f"{folder}: exists and holds no earlier results of '{generator}'; choose another --out"
-        )
+    Args:
+        folder: where the results belong; of a link, the folder that it leads to is replaced.
+        generator: that marks the results of earlier runs.
 
-
-class FolderNotWritable(SoftImpactError):
-    """The operating system refuses the output folder."""
-
-    def __init__(self, folder: Path, reason: str) -> None:
-        self.folder, self.reason = folder, reason
-        super().__init__(f"{folder}: cannot be written ({reason}); choose another --out")
+    Raises:
+        ForeignFolder: it holds what an earlier run of the same command did not write.
+        FolderNotWritable: the operating system refuses.
+    """
+    with place.replaced(folder.resolve(), partial(_require_own, generator)) as fresh:
+        yield fresh
 
 
 def require_replaceable(folder: Path, generator: str) -> None:
-    """Raise ForeignFolder or FolderNotWritable if results could not be written.
+    """Raise ForeignFolder or FolderNotWritable if results could not be written."""
+    place.require_replaceable(folder.resolve(), partial(_require_own, generator))
 
-    Called before long work, so that it is not lost for want of a place.
-    """
-    place = folder.resolve()
-    if place.is_mount() or Path.cwd().is_relative_to(place):
-        raise FolderNotWritable(folder, "a folder in use cannot be replaced: name one in it")
-    try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=f".{place.name}.", dir=place.parent):
-            pass
-    except OSError as error:
-        raise FolderNotWritable(folder, error.strerror or str(error)) from error
-    if not folder.exists():
-        return
-    if not folder.is_dir() or (any(folder.iterdir()) and not _is_ours(folder, generator)):
-        raise ForeignFolder(folder, generator)
+
+def _require_own(generator: str, folder: Path) -> None:
+    if folder.exists() and not folder.is_dir():
+        raise ForeignFolder(folder, "no results")
+    if folder.exists() and any(folder.iterdir()) and not _is_ours(folder, generator):
+        raise ForeignFolder(folder, f"no earlier results of '{generator}'")
 
 
 def _is_ours(folder: Path, generator: str) -> bool:
@@ -59,28 +49,3 @@ def _is_ours(folder: Path, generator: str) -> bool:
     except (OSError, ValueError):
         return False
     return isinstance(record, dict) and record.get("generator") == generator
-
-
-@contextmanager
-def replaced_folder(folder: Path, generator: str) -> Iterator[Path]:
-    """Give a fresh folder to fill; on success it takes the place of an older one.
-
-    Args:
-        folder: where the results belong.
-        generator: that marks the results of earlier runs.
-    """
-    require_replaceable(folder, generator)
-    place = folder.resolve()  # of a link, the folder that it leads to
-    fresh = Path(tempfile.mkdtemp(prefix=f".{place.name}.", dir=place.parent))
-    old = fresh.with_name(f"{fresh.name}.old")
-    try:
-        yield fresh
-        fresh.chmod(0o755)
-        if place.exists():
-            place.rename(old)
-        fresh.rename(place)
-    finally:
-        if old.exists() and not place.exists():
-            old.rename(place)
-        for left in (fresh, old):
-            shutil.rmtree(left, ignore_errors=True)

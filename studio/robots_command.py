@@ -7,7 +7,7 @@ from .options import Json
 
 
 def robots(json: Json = False) -> None:
-    """List the built-in robots."""
+    """List the built-in robots; their frames are in --json."""
     from softimpact.robots import built_in_robots
     from softimpact.symbolic import load_robot
 
@@ -30,14 +30,13 @@ def robots(json: Json = False) -> None:
         return
     print_table(
         "Built-in robots",
-        ("name", "joints", "tip", "frames", "rotor inertia sets", "source"),
+        ("name", "joints", "tip", "rotor inertia sets", "source"),
         [
             (
                 name,
                 str(robot.n),
                 robot.tip,
-                ", ".join(robot.frames),
-                ", ".join(robot.rotor_inertia_sets) or None,
+                "\n".join(robot.rotor_inertia_sets) or None,
                 path.name,
             )
             for name, (robot, path) in found.items()

@@ -1,44 +1,106 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``softimpact simulate``: the contact force of one impact over time."""
+"""``softimpact simulate``: the contact force of one impact over time, and the verdict on it."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from . import options as o
 
-Region = Annotated[str, typer.Option(metavar="NAME", help="Region of the body: head, chest, ...")]
+BODY = "What is hit"
+
+Region = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME", help="Region or area of the body: chest, hand, ...", rich_help_panel=BODY
+    ),
+]
+Body = Annotated[
+    str | None,
+    typer.Option(metavar="FILE", help="A body of your own (TOML).", rich_help_panel=BODY),
+]
+Cover = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE", help="What the robot wears at the contact (TOML).", rich_help_panel=BODY
+    ),
+]
+Shape = Annotated[
+    str | None,
+    typer.Option(
+        metavar="SHAPE",
+        help="What of the robot touches, so that pressure is judged, too: sphere:RADIUS, "
+        "edge:RADIUS,LENGTH or flat:AREA,RIM_RADIUS (m, m²).",
+        rich_help_panel=BODY,
+    ),
+]
+Clamped = Annotated[
+    bool,
+    typer.Option(
+        "--clamped/--free",
+        help="Whether the region is held or can give way.",
+        rich_help_panel=BODY,
+    ),
+]
 Speed = Annotated[
-    float, typer.Option(metavar="V", help="Speed of the contact point along the direction (m/s).")
+    float | None,
+    typer.Option(
+        metavar="V",
+        help="Speed of the contact point along the direction (m/s); default that of "
+        "--joint-velocity.",
+    ),
 ]
 JointVelocity = Annotated[
     str | None,
     typer.Option(
         metavar="LIST",
-        help="Joint velocities before the impact, scaled to --speed; default those of least norm.",
+        help="Joint velocities before the impact, scaled to --speed if both are given; default "
+        "those of least norm.",
     ),
 ]
-Clamped = Annotated[
-    bool, typer.Option("--clamped/--free", help="Whether the region is held or can give way.")
-]
 Peak = Annotated[
-    str, typer.Option(help="first_contact (largest force until separation) or first_peak.")
+    str,
+    typer.Option(
+        help="Which one peak_force is: peak (largest of all contacts), first_contact or "
+        "first_peak; verdict and safe speed are by peak."
+    ),
 ]
 Pid = Annotated[
     str | None,
     typer.Option(
         metavar="LIST",
-        help="k_p, k_d, k_i of MSM's computed-torque controller (rad/s², rad/s, rad/s³), which "
-        "reacts after 20 ms; for chain, linearised and full.",
+        help="k_p, k_d, k_i of MSM's computed-torque controller (rad/s², rad/s, rad/s³); for "
+        "chain, linearised and full.",
+        rich_help_panel=o.MOTORS,
     ),
 ]
 Reference = Annotated[
-    str, typer.Option(help="Of the controller after first touch: moving (on) or held.")
+    str | None,
+    typer.Option(
+        help="Of that controller after first touch: moving (on, the default) or held.",
+        rich_help_panel=o.MOTORS,
+    ),
+]
+Horizon = Annotated[
+    float | None,
+    typer.Option(metavar="S", help="How long contacts count (s); default 0.5."),
+]
+Band = Annotated[
+    bool,
+    typer.Option(
+        "--band", help="Where 95 of 100 cases lie, for what is not known exactly (tolerances)."
+    ),
+]
+Report = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Write a report to file: one HTML page that opens offline."),
 ]
 SafeSpeed = Annotated[
-    bool, typer.Option("--safe-speed", help="Find the largest speed within the region's limit.")
+    bool,
+    typer.Option("--safe-speed", help="Find the largest speed up to which every limit is kept."),
 ]
 
 
@@ -46,19 +108,35 @@ def simulate(
     model: o.Model,
     q: o.Configuration,
     direction: o.Direction,
-    region: Region,
-    speed: Speed,
+    region: Region = None,
+    speed: Speed = None,
     tip: o.Tip = None,
+    end: o.End = None,
+    lock: o.Lock = None,
+    hold_base: o.HoldBase = False,
+    payload: o.Payload = None,
+    tool: o.Tool = None,
     fidelity: o.Fidelity = "linearised",
+    body: Body = None,
+    cover: Cover = None,
+    shape: Shape = None,
     clamped: Clamped = True,
     joint_velocity: JointVelocity = None,
-    peak: Peak = "first_contact",
+    peak: Peak = "peak",
+    motors: o.Motors = None,
+    reaction_time: o.ReactionTime = None,
+    stopping_time: o.StoppingTime = None,
+    horizon: Horizon = None,
     pid: Pid = None,
-    reference: Reference = "moving",
+    reference: Reference = None,
     safe_speed: SafeSpeed = False,
+    band: Band = False,
+    report: Report = None,
     joint_stiffness: o.JointStiffness = None,
     rotor_inertia: o.RotorInertia = None,
     position_gain: o.PositionGain = None,
+    damping_gain: o.DampingGain = None,
+    torque_limit: o.TorqueLimit = None,
     computed_torque_gain: o.ComputedTorqueGain = None,
     gear_ratio: o.GearRatio = None,
     gravity: o.Gravity = None,
@@ -66,19 +144,46 @@ def simulate(
     order: o.Order = 3,
     json: o.Json = False,
 ) -> None:
-    """Simulate an impact on a body region and hold it against the region's force limit."""
-    from .impact import TypedImpact, impact, print_impact
-    from .output import print_json
-    from .situation import Typed, TypedDrives
+    """Simulate an impact and hold it against what the body may bear."""
+    from .impact import TypedBody, TypedImpact, impact
+    from .impact_record import print_impact, record_of
+    from .output import print_json, print_warnings
+    from .situation import Typed, TypedArm, TypedDrives
+    from .typed_motors import TypedMotors
 
     given = TypedDrives(
-        joint_stiffness, rotor_inertia, position_gain, computed_torque_gain, gear_ratio
+        joint_stiffness,
+        rotor_inertia,
+        position_gain,
+        computed_torque_gain,
+        gear_ratio,
+        damping_gain,
+        torque_limit,
+        servo=motors == "servo",
     )
-    where = Typed(model, tip, q, direction, given, gravity, motor_angles)
+    arm = TypedArm(model, tip, end, lock, payload, tool, hold_base)
+    where = Typed(arm, q, direction, given, gravity, motor_angles)
     how = TypedImpact(
-        region, speed, fidelity, clamped, joint_velocity, peak, safe_speed, order, pid, reference
+        body=TypedBody(region, body, cover, clamped, shape),
+        speed=speed,
+        fidelity=fidelity,
+        joint_velocity=joint_velocity,
+        peak=peak,
+        motors=TypedMotors(motors, reaction_time, stopping_time),
+        horizon=horizon,
+        safe_speed=safe_speed,
+        band=band,
+        order=order,
+        pid=pid,
+        reference=reference,
     )
-    result = impact(where, how)
+    answer = impact(where, how)
+    result = record_of(answer)
+    print_warnings(result["warnings"])
+    if report is not None:
+        from .report.impact_report import write_impact_report
+
+        write_impact_report(answer, result, report)
     if json:
         print_json(result)
     else:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,8 +11,9 @@ from softimpact.symbolic import (
     Drives,
     ImpactModel,
     InvalidValue,
+    JointKind,
     Robot,
-    chain_to,
+    arm_of,
     configuration_at_rest,
     drives,
     floating_model,
@@ -22,6 +23,8 @@ from softimpact.symbolic import (
     load_robot,
     lock_joints,
     unit_direction,
+    whole_configuration,
+    with_load,
 )
 from softimpact.symbolic.impact.drives import PerJoint
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
@@ -32,21 +35,45 @@ from . import values
 
 @dataclass(frozen=True)
 class TypedDrives:
-    """The options that make up drives, as typed; see ``options``."""
+    """The options that make up drives, as typed; see ``options``.
+
+    With ``servo`` they are to have gains: the file's where none are given.
+    """
 
     joint_stiffness: str | None = None
     rotor_inertia: str | None = None
     position_gain: str | None = None
     computed_torque_gain: float | None = None
     gear_ratio: str | None = None
+    damping_gain: str | None = None
+    torque_limit: str | None = None
+    servo: bool = False
+
+    @property
+    def has_gains(self) -> bool:
+        """Whether gains were given."""
+        gains = (self.position_gain, self.computed_torque_gain, self.damping_gain)
+        return any(gain is not None for gain in gains)
+
+
+@dataclass(frozen=True)
+class TypedArm:
+    """The options that make up an arm, as typed; see ``options``."""
+
+    model: str
+    tip: str | None = None
+    end: str | None = None
+    lock: str | None = None
+    payload: str | None = None
+    tool: str | None = None
+    hold_base: bool = False
 
 
 @dataclass(frozen=True)
 class Typed:
     """The options that make up a situation, as typed; see ``options``."""
 
-    model: str
-    tip: str | None
+    arm: TypedArm
     q: str
     direction: str
     drives: TypedDrives = TypedDrives()
@@ -62,34 +89,114 @@ class Situation:
         model: the chain to the contact point with its drives.
         q: link angles, length n.
         direction: unit vector in the base's axes.
+        payload: mass of what the arm holds [kg].
+        warnings: what of the file was ignored, and what was assumed, a line each.
     """
 
     model: ImpactModel
     q: Array
     direction: Array
+    payload: float = 0.0
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedArm:
+    """An arm with its load, as typed.
+
+    Attributes:
+        robot: its tip is the contact point.
+        load: mass of what its end holds [kg].
+        warnings: a line each.
+    """
+
+    robot: Robot
+    load: float
+    warnings: tuple[str, ...]
+
+
+def loaded_arm(typed: TypedArm) -> LoadedArm:
+    """Return the arm that the options describe; raises SoftImpactError."""
+    locked = {} if typed.lock is None else values.named_numbers("lock", typed.lock)
+    robot = load_robot(typed.model, hold_base=typed.hold_base, toward=typed.end or typed.tip)
+    arm = arm_of(robot, typed.tip, typed.end, locked)
+    loads = []
+    if typed.payload is not None:
+        loads.append(values.payload(typed.payload))
+    if typed.tool is not None:
+        loads.append(values.tool(typed.tool))
+    loaded = arm.robot
+    for mass, com, inertia in loads:
+        loaded = with_load(loaded, arm.end, mass, com, inertia)
+    warnings = (*arm.robot.warnings, *arm.warnings)
+    return LoadedArm(loaded, sum(load[0] for load in loads), warnings)
 
 
 def situation(typed: Typed) -> Situation:
     """Return the situation that the options describe; raises SoftImpactError."""
-    robot = robot_to_tip(typed.model, typed.tip)
+    arm = loaded_arm(typed.arm)
+    robot = arm.robot
     q = values.vector("q", typed.q)
     direction = unit_direction(values.vector("direction", typed.direction, 3))
     model = impact_model(
         robot, drives_=drives_of(robot, typed.drives), gravity=gravity_of(typed.gravity)
     )
-    if typed.motor_angles:
-        return Situation(model, link_angles(model, np.array(q)), direction)
-    return Situation(model, robot.vector("q", q), direction)
+    angles = (
+        link_angles(model, np.array(q)) if typed.motor_angles else whole_configuration(robot, q)
+    )
+    return Situation(
+        model, angles, direction, arm.load, (*arm.warnings, *beyond_limits(robot, angles))
+    )
+
+
+def unknown_rotors(model: ImpactModel) -> list[str]:
+    """Return a line if rotors of which nothing is known count as zero in masses and factors."""
+    from softimpact.simulate.bracket import unknown_rotors
+
+    names = ", ".join(f"'{name}'" for name in unknown_rotors(model))
+    line = (
+        f"rotor inertia of joint {names} is unknown and counts as zero in what depends on rotors "
+        "(masses with rigid joints, GIAF); give the rotor inertia"
+    )
+    return [line] if names else []
+
+
+DEGREES = 10.0
+"""Angle [rad] from which on a list of angles is surely in degrees: beyond one and a half turns."""
+
+
+def beyond_limits(robot: Robot, q: Array) -> list[str]:
+    """Return a line for each joint beyond its limits.
+
+    Raises:
+        InvalidValue: they are so far beyond that they must be in degrees.
+    """
+    hinges = np.array([joint.kind is JointKind.HINGE for joint in robot.joints])
+    lower, upper = robot.limits
+    outside = (q < lower - AT_LIMIT) | (q > upper + AT_LIMIT)
+    if np.any(hinges & outside & (abs(q) > DEGREES)):
+        raise InvalidValue("q", "holds angles far beyond the joints' limits; it takes radians")
+    return [
+        f"joint '{joint.name}' is beyond its limits, {joint.lower:g} to {joint.upper:g}: {value:g}"
+        for joint, value, is_outside in zip(robot.joints, q, outside, strict=True)
+        if is_outside
+    ]
+
+
+AT_LIMIT = 1e-6
+"""How far beyond a limit [rad, m] rounded numbers may be."""
 
 
 def free_situation(typed: Typed) -> Situation:
     """Return the situation of a robot on a free base; its q begins with the base's six zeros."""
-    robot = whole_robot(typed.model, typed.tip)
+    robot = whole_robot(typed.arm.model, typed.arm.tip)
     free = floating_robot(robot)
-    q = robot.vector("q", values.vector("q", typed.q))
+    q = whole_configuration(robot, values.vector("q", typed.q))
     direction = unit_direction(values.vector("direction", typed.direction, 3))
     model = floating_model(free, drives_=drives_of(robot, typed.drives))
-    return Situation(model, np.array(free.coordinates(q)).ravel(), direction)
+    angles = np.array(free.coordinates(q)).ravel()
+    warnings = (*robot.warnings, *beyond_limits(robot, q))
+    return Situation(model, angles, direction, warnings=warnings)
 
 
 def whole_robot(name: str, tip: str | None) -> Robot:
@@ -98,27 +205,6 @@ def whole_robot(name: str, tip: str | None) -> Robot:
     if robot.tip is None:
         raise _no_tip(name, robot)
     return robot
-
-
-def robot_to_tip(name: str, tip: str | None) -> Robot:
-    """Return the chain of a robot to its contact point.
-
-    Args:
-        name: of a built-in robot, or path of a file.
-        tip: contact frame; default the robot's own.
-
-    Raises:
-        SoftImpactError: the robot cannot be read, or no contact frame that moves is named.
-    """
-    robot = load_robot(name, tip)
-    if robot.tip is None:
-        raise _no_tip(name, robot)
-    chain = chain_to(robot, robot.tip)
-    if chain.n == 0:
-        raise InvalidValue(
-            "tip", f"frame '{robot.tip}' is fixed to the base; choose one that moves"
-        )
-    return chain
 
 
 def _no_tip(name: str, robot: Robot) -> InvalidValue:
@@ -156,6 +242,8 @@ def drives_of(robot: Robot, typed: TypedDrives) -> Drives:
         return None if text is None else values.per_joint(field, text)
 
     rotors = typed.rotor_inertia
+    if typed.servo and not typed.has_gains:
+        return _file_servo(robot, typed)
     return drives(
         robot,
         joint_stiffness=given("joint_stiffness", typed.joint_stiffness),
@@ -163,7 +251,17 @@ def drives_of(robot: Robot, typed: TypedDrives) -> Drives:
         position_gain=given("position_gain", typed.position_gain),
         computed_torque_gain=typed.computed_torque_gain,
         gear_ratio=given("gear_ratio", typed.gear_ratio),
+        damping_gain=given("damping_gain", typed.damping_gain),
+        torque_limit=given("torque_limit", typed.torque_limit),
     )
+
+
+def _file_servo(robot: Robot, typed: TypedDrives) -> Drives:
+    """Return drives with the gains of the file's servos."""
+    if not robot.position_gains.any():
+        raise InvalidValue("motors", "'servo' needs position_gain: the file has no servo either")
+    position, damping = (str(x.tolist()) for x in (robot.position_gains, robot.velocity_gains))
+    return drives_of(robot, replace(typed, position_gain=position, damping_gain=damping))
 
 
 def gravity_of(text: str | None) -> tuple[float, float, float]:

@@ -6,6 +6,8 @@ from __future__ import annotations
 import json
 import math
 import re
+import tomllib
+from pathlib import Path
 from typing import Any, get_args
 
 from softimpact.symbolic import InvalidValue, Robot, UnknownName
@@ -45,6 +47,55 @@ def rotor_inertia(robot: Robot, text: str) -> PerJoint:
     if text.strip().replace("-", "_").isidentifier() and not _is_number(text):
         return robot.rotor_inertia_set(text.strip())
     return per_joint("rotor_inertia", text)
+
+
+Load = tuple[float, list[float], list[float] | None]
+"""Mass [kg], centre [m] and inertia xx, yy, zz, xy, xz, yz about it [kg m²] (None: a point)."""
+
+
+def payload(text: str) -> Load:
+    """Return a payload typed as ``MASS`` or ``MASS@x,y,z``; raises InvalidValue."""
+    mass, at, place = text.partition("@")
+    if not _is_number(mass):
+        raise InvalidValue("payload", f"needs MASS or MASS@x,y,z (kg, m), not '{text}'")
+    return float(mass), vector("payload", f"[{place}]", 3) if at else [0.0, 0.0, 0.0], None
+
+
+def tool(path: str) -> Load:
+    """Return a tool from a TOML file: ``mass``, ``com``, ``inertia``; raises InvalidValue."""
+    try:
+        entries = tomllib.loads(Path(path).read_text("utf-8-sig"))
+    except tomllib.TOMLDecodeError as error:
+        raise InvalidValue(f"tool: {path}", str(error)) from None
+    unknown = sorted(set(entries) - {"mass", "com", "inertia"})
+    if unknown:
+        raise InvalidValue(f"tool: {path}: {unknown[0]}", "is unknown; mass, com, inertia are not")
+    if "mass" not in entries:
+        raise InvalidValue(f"tool: {path}", "has no mass; write mass = ... (kg)")
+    mass = _number(f"tool: {path}: mass", entries["mass"], "the value")
+    com = entries.get("com", [0.0, 0.0, 0.0])
+    inertia = entries.get("inertia")
+    for field, value, size in (("com", com, 3), ("inertia", inertia, 6)):
+        if value is not None and (not isinstance(value, list) or len(value) != size):
+            raise InvalidValue(f"tool: {path}: {field}", f"needs a list of {size} numbers")
+
+    def numbers(field: str, value: list[object]) -> list[float]:
+        return [_number(f"tool: {path}: {field}", x, f"entry {i + 1}") for i, x in enumerate(value)]
+
+    return mass, numbers("com", com), None if inertia is None else numbers("inertia", inertia)
+
+
+def named_numbers(field: str, text: str) -> dict[str, float]:
+    """Return numbers typed as ``NAME=X,NAME=Y``; raises InvalidValue."""
+    found: dict[str, float] = {}
+    for part in text.split(","):
+        name, is_given, number = part.strip().rpartition("=")
+        if not is_given or not _is_number(number):
+            raise InvalidValue(field, f"needs NAME=X,NAME=Y, not '{text}'")
+        if name in found:
+            raise InvalidValue(field, f"names '{name}' twice")
+        found[name] = float(number)
+    return found
 
 
 def one_of(what: str, name: str, names: Any) -> Any:

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The physics as CasADi expressions: robot, dynamics, compliance, reduction, impact factors."""
 
+from .body.bodies import body_region
 from .body.contact import Contact
-from .body.regions import REGIONS, BodyRegion, body_region
+from .body.laws import Curve, Law, PowerLaw, in_series
+from .body.regions import AREAS, REGIONS, BodyRegion
+from .body.shapes import Edge, Flat, Sphere
+from .body.verdict import Limits, Verdict, judge, limits_of
 from .dynamics.equations_of_motion import (
     STANDARD_GRAVITY,
     bias_torques,
@@ -65,13 +69,16 @@ from .impact.drives import Drives, drives
 from .impact.elastic import LinearModel
 from .impact.floating import FloatingRobot, floating_model, floating_robot
 from .impact.impact_model import ImpactModel, impact_model
+from .impact.motors import MotorKind, Motors
 from .impact.reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
+from .impact.two_body import TwoBody, moving_mass, two_body
 from .loops.closure import (
     close_loops,
     closed_near,
     configuration_at_rest,
     require_closed_at,
 )
+from .loops.couplings import own_joints, whole_configuration
 from .loops.loop_equations import ClosedChain
 from .loops.loops import (
     closed_chain,
@@ -82,24 +89,32 @@ from .loops.loops import (
     loop_tangent,
 )
 from .matrices import Matrix, count_flops
+from .robot.arm import Arm, arm_of, with_load
+from .robot.constraints import Coupling, Loop, Tendon
 from .robot.loading import load_robot
-from .robot.robot import Frame, Joint, JointKind, Loop, Robot
+from .robot.robot import Frame, Joint, JointKind, Robot
 from .robot.welding import chain_to, lock_joints
 
 __all__ = [
+    "AREAS",
     "REGIONS",
     "STANDARD_GRAVITY",
     "Analysis",
+    "Arm",
     "BodyRegion",
     "Chain",
     "ChainNumbers",
     "ClosedChain",
     "Contact",
     "ContactMobility",
+    "Coupling",
+    "Curve",
     "Drives",
+    "Edge",
     "Eigen",
     "Ellipsoid",
     "Extremes",
+    "Flat",
     "FloatingRobot",
     "Frame",
     "FrameNotFound",
@@ -111,6 +126,8 @@ __all__ = [
     "Joint",
     "JointImpulse",
     "JointKind",
+    "Law",
+    "Limits",
     "LinearModel",
     "Loop",
     "LoopCannotClose",
@@ -118,18 +135,26 @@ __all__ = [
     "MasslessBase",
     "Matrix",
     "ModelFileError",
+    "MotorKind",
+    "Motors",
     "NoEquilibrium",
+    "PowerLaw",
     "ReducedModel",
     "RedundantLoop",
     "Robot",
     "SingularDirection",
     "SingularLoop",
     "SoftImpactError",
+    "Sphere",
+    "Tendon",
+    "TwoBody",
     "UnknownName",
     "UnsupportedModel",
+    "Verdict",
     "WrongLength",
     "analyse",
     "approach_velocity",
+    "arm_of",
     "bias_torques",
     "body_region",
     "chain",
@@ -165,8 +190,11 @@ __all__ = [
     "impact_factors",
     "impact_mitigation",
     "impact_model",
+    "in_series",
     "joint_impulse",
+    "judge",
     "least_velocity",
+    "limits_of",
     "link_angles_at_rest",
     "load_robot",
     "lock_joints",
@@ -179,6 +207,8 @@ __all__ = [
     "manipulability_ellipsoid",
     "mass_matrix",
     "motor_angles_at_rest",
+    "moving_mass",
+    "own_joints",
     "potential_energy",
     "reduce_to_two_masses",
     "reflected_mass",
@@ -187,5 +217,8 @@ __all__ = [
     "static_stiffness",
     "stiffness_of_potential",
     "symmetric_eigen",
+    "two_body",
     "unit_direction",
+    "whole_configuration",
+    "with_load",
 ]

@@ -30,9 +30,12 @@ def run(*arguments: object) -> Outcome:
 
 
 def run_json(*arguments: object) -> dict[str, Any]:
-    """Run a command with ``--json``; return its one object. NaN and Infinity are not JSON."""
+    """Run a command with ``--json``; return its one object. NaN and Infinity are not JSON.
+
+    What stderr says stands in the object's warnings.
+    """
     outcome = run(*arguments, "--json")
-    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.code == 0, outcome
     assert outcome.out.count("\n") == 1
 
     def not_json(constant: str) -> None:
@@ -40,6 +43,8 @@ def run_json(*arguments: object) -> dict[str, Any]:
 
     result = json.loads(outcome.out, parse_constant=not_json)
     assert isinstance(result, dict)
+    warned = [f"warning: {line}\n" for line in result.get("warnings", [])]
+    assert outcome.err == "".join(warned)
     return result
 
 

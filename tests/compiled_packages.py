@@ -7,13 +7,15 @@ import ctypes
 import os
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from sharing import once
 
 from softimpact.codegen.description import CFunction
 from softimpact.codegen.functions import functions_of, symbols_of
@@ -33,7 +35,21 @@ WARNINGS = [
 COMMITTED = sorted(path.name for path in (Path(__file__).parents[1] / "generated").iterdir())
 """Names of the built-in robots whose packages are in the repository."""
 
+QUICK = ("panda", "rr", "gantry", "rmin")
+"""Robots with whose packages the fast tests are content; the others' are slow."""
+
 KINDS = {"double": (ctypes.c_double, np.float64), "float": (ctypes.c_float, np.float32)}
+
+
+def mostly_slow(cases: Iterable[Any], quick: Collection[Any] = QUICK) -> list[Any]:
+    """Return cases for ``parametrize``, marked slow but for the quick ones."""
+    slow = pytest.mark.slow
+    return [
+        pytest.param(
+            *(case if isinstance(case, tuple) else (case,)), marks=() if case in quick else slow
+        )
+        for case in cases
+    ]
 
 
 def candidate_poses(name: str, robot: Robot) -> dict[str, Sequence[float]]:
@@ -101,9 +117,9 @@ class Generated:
     def load(self, real: str) -> Library:
         """Compile the package to a shared library beside it, once, and open it."""
         out = self.folder.with_suffix(f".{real}.so")
-        if not out.exists():
-            flags = [*self.flags(real), "-shared", "-fPIC"]
-            run(tool("gcc"), *flags, *self.folder.glob("src/*.c"), "-o", out, "-lm")
+        flags = [*self.flags(real), "-shared", "-fPIC"]
+        files = self.folder.glob("src/*.c")
+        once(out, lambda path: run(tool("gcc"), *flags, *files, "-o", path, "-lm"))
         return Library(self, ctypes.CDLL(str(out)), real)
 
 

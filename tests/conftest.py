@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
+from pathlib import Path
 
 import mujoco
 import pytest
@@ -44,6 +46,23 @@ def _no_log_file() -> Iterator[None]:
     mujoco.set_mju_user_warning(lambda _: None)
     yield
     mujoco.set_mju_user_warning(None)
+
+
+@pytest.fixture(scope="session")
+def shared_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that all processes of a test run share; ``sharing.once`` fills it."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "shared"
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _compiled_functions(shared_folder: Path) -> Iterator[None]:
+    """Keep the optimiser's machine code for this run alone, so that none is an older version's."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOFTIMPACT_CACHE", str(shared_folder / "cache"))
+        yield
 
 
 @pytest.fixture(scope="session")

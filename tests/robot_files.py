@@ -52,3 +52,77 @@ def arm(**changes: str) -> str:
     """Return a one-joint MJCF with some of its parts replaced."""
     empty = dict.fromkeys(("custom", "asset", "joint", "inside", "after"), "")
     return ARM.format(**empty | PLAIN | changes)
+
+
+TWO_LINKS = """
+<mujoco model="two">
+  <compiler angle="radian" {compiler}/>
+  {before}
+  <worldbody>
+    {beside}
+    <body name="upper" {upper}>
+      <joint name="j1" axis="0 0 1" {j1}/>
+      <inertial pos="0.2 0 0" mass="2" diaginertia="0.01 0.02 0.02"/>
+      {on_upper}
+      <body name="fore" pos="0.4 0 0">
+        <joint name="j2" axis="0 0 1" {j2}/>
+        {inertial}
+        {on_fore}
+        <site name="tool" pos="0.3 0 0"/>
+      </body>
+    </body>
+  </worldbody>
+  {after}
+</mujoco>
+"""
+FORE = '<inertial pos="0.15 0 0" mass="1" diaginertia="0.005 0.01 0.01"/>'
+
+TWO_LINKS_URDF = """<?xml version="1.0"?>
+<robot name="two" {top}>
+  {before}
+  <link name="base">{base}</link>
+  <link name="upper">{upper}</link>
+  <link name="fore">{fore}</link>
+  <link name="tool">{tool}</link>
+  <joint name="j1" type="{type1}"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+    {limit}{on_j1}</joint>
+  <joint name="{second}" type="revolute"><parent link="upper"/><child link="fore"/>
+    <origin xyz="0.4 0 0"/><axis xyz="0 0 1"/>{limit2}{on_j2}</joint>
+  <joint name="jt" type="fixed"><parent link="fore"/><child link="tool"/>
+    <origin xyz="0.3 0 0"/></joint>
+  {after}
+</robot>
+"""
+
+
+def urdf_inertial(
+    mass: str, x: str, ixx: str = "0.01", iyy: str = "0.02", izz: str = "0.02"
+) -> str:
+    """Return a URDF inertial element on the x axis."""
+    return (
+        f'<inertial><origin xyz="{x} 0 0"/><mass value="{mass}"/>'
+        f'<inertia ixx="{ixx}" iyy="{iyy}" izz="{izz}" ixy="0" ixz="0" iyz="0"/></inertial>'
+    )
+
+
+URDF_LIMIT = '<limit lower="-3" upper="3" effort="50" velocity="2"/>'
+
+
+def two_links(**changes: str) -> str:
+    """Return a planar arm of two links as MJCF, with some of its parts replaced."""
+    parts = ("compiler", "before", "beside", "upper", "j1", "on_upper", "j2", "on_fore", "after")
+    return TWO_LINKS.format(**dict.fromkeys(parts, "") | {"inertial": FORE} | changes)
+
+
+def two_links_urdf(**changes: str) -> str:
+    """Return a planar arm of two links as URDF, with some of its parts replaced."""
+    empty = ("top", "before", "base", "tool", "on_j1", "on_j2", "after")
+    plain = {
+        "upper": urdf_inertial("2", "0.2"),
+        "fore": urdf_inertial("1", "0.15"),
+        "limit": URDF_LIMIT,
+        "limit2": URDF_LIMIT,
+        "second": "j2",
+        "type1": "revolute",
+    }
+    return TWO_LINKS_URDF.format(**dict.fromkeys(empty, "") | plain | changes)

@@ -16,7 +16,7 @@ from .symbols import Symbols, function_over
 
 def has_potential(s: Symbols) -> bool:
     """Whether gravity or springs of the model file pull on the links."""
-    return any(joint.stiffness for joint in s.robot.joints) or any(s.model.gravity)
+    return s.robot.has_springs or any(s.model.gravity)
 
 
 def links_of(s: Symbols, points: tuple[str, ...]) -> CFunction:

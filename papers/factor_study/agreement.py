@@ -103,7 +103,7 @@ def _force(study: Study, rotors: Array, q: Array, n: Array, region: str, stiffne
         model = replace(model, drives=replace(model.drives, rotors=ca.DM(rotors)))
     contact = Contact(body_region(region), study.contact.clamped)
     approach = Approach(q, n, study.speed)
-    return simulate_impact(model, approach, contact, "linearised").first_contact
+    return simulate_impact(model, approach, contact, "linearised", horizon=None).first_contact
 
 
 def spearman(first: Array, second: Array) -> float:

@@ -5,18 +5,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, as_completed
+from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
-from softimpact.optimize.workers import workers
-from softimpact.simulate import Decoupling, PeakDefinition, decoupling_stiffness
+from softimpact.optimize.workers import as_completed, workers
+from softimpact.simulate import Decoupling, decoupling_stiffness
 from softimpact.symbolic import Contact, InvalidValue, body_region, static_stiffness
 from softimpact.symbolic.robot.rigid import Array
 
-from .ladder import LADDER, REGIONS, impact_at
+from .ladder import DEFINITIONS, LADDER, REGIONS, impact_at, motors_of
 from .scenarios import SCENARIOS, Scenario
 
 BETWEEN = 1
@@ -98,7 +98,7 @@ def point(name: str, stiffness: float) -> Point:
     for region in REGIONS:
         for rung in LADDER:
             history = impact_at(scenario, rung, stiffness, region)
-            peaks[region][rung] = {d: history.peak(d) for d in get_args(PeakDefinition)}
+            peaks[region][rung] = {d: history.force_of(d) for d in DEFINITIONS}
     return _parameters(scenario, stiffness, peaks)
 
 
@@ -114,7 +114,7 @@ def at_speed(name: str, speed: float) -> dict[str, float]:
     """Return the first peaks on the head at a speed."""
     scenario = SCENARIOS[name]
     return {
-        rung: impact_at(scenario, rung, SPEED_STIFFNESS, "head", speed).first_peak
+        rung: impact_at(scenario, rung, SPEED_STIFFNESS, "head", speed).force_of("first_peak")
         for rung in COMPARED
     }
 
@@ -123,7 +123,7 @@ def trace(name: str, stiffness: float) -> dict[str, Trace]:
     """Return force over time on the head."""
     found = {}
     for rung in COMPARED:
-        history = impact_at(SCENARIOS[name], rung, stiffness, "head", duration=SHOWN_DURATION)
+        history = impact_at(SCENARIOS[name], rung, stiffness, "head", horizon=SHOWN_DURATION)
         found[rung] = Trace(history.time, history.force)
     return found
 
@@ -138,7 +138,7 @@ def decoupled(name: str, region: str, rung: str) -> Decoupling | None:
             Contact(body_region(region)),
             (SOFTER * arm.softest, arm.stiffest),
             step.fidelity,
-            controller=None if step.reference is None else arm.controller(step.reference),
+            motors=motors_of(scenario, step),
             accuracy=1e-3,
         )
     except InvalidValue:

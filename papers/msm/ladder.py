@@ -6,17 +6,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from softimpact.simulate import (
+    Controller,
     Fidelity,
     ImpactHistory,
+    PeakDefinition,
     Reference,
     simulate_impact,
 )
-from softimpact.symbolic import Contact, body_region
+from softimpact.symbolic import Contact, Motors, body_region
 
 from .scenarios import Scenario
 
 REGIONS = ("head", "chest")
 CHAIN_ORDER = 3
+
+DEFINITIONS: tuple[PeakDefinition, ...] = ("first_contact", "first_peak")
+"""Peaks that the paper may mean."""
 
 
 @dataclass(frozen=True)
@@ -48,13 +53,20 @@ LADDER = {
 """All models by name; the last is what the others are held against."""
 
 
+def motors_of(scenario: Scenario, step: Rung) -> Motors | Controller | None:
+    """Return what the motors do on a rung; K_p holds them where the paper's Eq. 5 does."""
+    if step.reference is not None:
+        return scenario.arm.controller(step.reference)
+    return None if step.fidelity in ("one_mass", "two_mass") else Motors("held")
+
+
 def impact_at(
     scenario: Scenario,
     rung: str,
     stiffness: float,
     region: str,
     speed: float = 1.0,
-    duration: float | None = None,
+    horizon: float | None = None,
 ) -> ImpactHistory:
     """Simulate a scenario with a model of the ladder.
 
@@ -64,17 +76,16 @@ def impact_at(
         stiffness: k_s [N·m/rad].
         region: of the body.
         speed: of the contact point [m/s].
-        duration: as in ``simulate_impact``.
+        horizon: as in ``simulate_impact``; None ends with the first contact.
     """
     step = LADDER[rung]
     model, approach = scenario.at(stiffness, speed)
-    controller = None if step.reference is None else scenario.arm.controller(step.reference)
     return simulate_impact(
         model,
         approach,
         Contact(body_region(region)),
         step.fidelity,
         order=CHAIN_ORDER,
-        controller=controller,
-        duration=duration,
+        motors=motors_of(scenario, step),
+        horizon=horizon,
     )

@@ -7,12 +7,12 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import get_args
 
-from softimpact.simulate import Decoupling, PeakDefinition
+from softimpact.simulate import Decoupling
 from softimpact.studio.output import shown
 
 from .compare import Comparison, Verdict, mean_error
 from .compute import DECOUPLED, Results
-from .ladder import LADDER, REGIONS
+from .ladder import DEFINITIONS, LADDER, REGIONS
 from .scenarios import SCENARIOS
 
 READINGS = """\
@@ -129,7 +129,7 @@ def _ladder(results: Results) -> list[str]:
     parts = ["## The ladder", LADDER_NOTE]
     against = {"full": [r for r in LADDER if r != "full"], "linearised": ["chain", "two_mass"]}
     for reference, rungs in against.items():
-        for definition in get_args(PeakDefinition):
+        for definition in DEFINITIONS:
             rows = [
                 (
                     LADDER[rung].title,

@@ -1,4 +1,76 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""softimpact: design compliant robots whose impacts do not hurt."""
+"""Design compliant robots whose impacts do not hurt.
 
-__version__ = "0.1.0"
+The names that most people need are here; each is of one of the packages ``symbolic``, ``simulate``,
+``optimize`` and ``codegen``, which have the rest. They are imported when they are first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .codegen import generate_package
+    from .optimize import design, load_study
+    from .simulate import Approach, assess_impact, simulate_impact
+    from .symbolic import (
+        Contact,
+        Motors,
+        analyse,
+        arm_of,
+        body_region,
+        drives,
+        impact_model,
+        load_robot,
+        with_load,
+    )
+
+__version__ = version("softimpact")
+
+_HOMES = {
+    "symbolic": (
+        "Contact",
+        "Motors",
+        "analyse",
+        "arm_of",
+        "body_region",
+        "drives",
+        "impact_model",
+        "load_robot",
+        "with_load",
+    ),
+    "simulate": ("Approach", "assess_impact", "simulate_impact"),
+    "optimize": ("design", "load_study"),
+    "codegen": ("generate_package",),
+}
+
+__all__ = [
+    "Approach",
+    "Contact",
+    "Motors",
+    "analyse",
+    "arm_of",
+    "assess_impact",
+    "body_region",
+    "design",
+    "drives",
+    "generate_package",
+    "impact_model",
+    "load_robot",
+    "load_study",
+    "simulate_impact",
+    "with_load",
+]
+
+
+def __getattr__(name: str) -> Any:
+    for package, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{package}"), name)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]

@@ -13,27 +13,37 @@ from typing import Annotated
 
 import typer
 
+from .console import accept_any_console
+from .interruption import INTERRUPTED, interruptible, report
+from .papers.factors_study_command import factors_study
+from .papers.reproduce_command import reproduce
 from .studio.analyze_command import analyze
+from .studio.check_command import check
 from .studio.design_command import design
 from .studio.factors_command import factors
-from .papers.factors_study_command import factors_study
 from .studio.generate_command import generate
+from .studio.init_command import init
+from .studio.inspect_command import inspect
 from .studio.pareto_command import pareto
-from .papers.reproduce_command import reproduce
+from .studio.program_command import SeveralValues, program
 from .studio.robots_command import robots
 from .studio.select_command import select
 from .studio.simulate_command import simulate
 
-USER_ERROR, INTERRUPTED = 2, 130
-"""Exit codes; a failed solver's is 3 and comes with its exception."""
+USER_ERROR = 2
+"""Exit code; a failed solver's is 3 and comes with its exception."""
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer(pretty_exceptions_enable=False)
 
 app.command()(robots)
+app.command()(inspect)
+app.command()(init)
+app.command()(check)
 app.command()(analyze)
 app.command()(factors)
 app.command()(factors_study)
 app.command()(simulate)
+app.command(cls=SeveralValues)(program)
 app.command()(select)
 app.command()(design)
 app.command()(pareto)
@@ -61,17 +71,43 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: default the process's own.
     """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    accept_any_console()
     try:
-        code = app(args=arguments, prog_name="softimpact", standalone_mode=False)
+        _refuse_repeated(words)
+        with interruptible():
+            code = app(args=words, prog_name="softimpact", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
-        return INTERRUPTED
+        code = INTERRUPTED
     except Exception as error:
         declared = _exit_code(error)
         if declared is None:
             raise
         print(f"error: {_one_line(error)}", file=sys.stderr)
         return declared
+    if code == INTERRUPTED:  # newer typer returns it
+        report()
     return code if isinstance(code, int) else 0
+
+
+def _refuse_repeated(words: Sequence[str]) -> None:
+    """Raise a usage error if an option that takes one value is given twice: the first is lost."""
+    group = typer.main.get_command(app)
+    command = getattr(group, "commands", {}).get(words[0]) if words else None
+    if command is None:
+        return
+    once = {
+        name: parameter.opts[0]
+        for parameter in command.params
+        if not parameter.multiple and parameter.nargs == 1
+        for name in (*parameter.opts, *parameter.secondary_opts)
+    }
+    given = [once[word.partition("=")[0]] for word in words if word.partition("=")[0] in once]
+    twice = [name for name in given if given.count(name) > 1]
+    if twice:
+        raise typer.BadParameter(
+            "is given twice; only one of them could count", param_hint=twice[0]
+        )
 
 
 def _exit_code(error: Exception) -> int | None:

@@ -1,34 +1,46 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Regions of the human body as an impact meets them: springs, effective masses, force limits.
+"""Regions and areas of the human body as an impact meets them (ISO/TS 15066, Annex A).
 
-Stiffnesses, effective masses and quasi-static force limits are those of ISO/TS 15066:2016,
-Annex A (Tables A.2 and A.3), from public transcriptions that agree with each other. Transient
-limits are twice the quasi-static ones, except for the skull, the forehead and the face, for which
-the specification gives none.
+The numbers and their sources are in ``data/regions.csv`` and ``data/areas.csv``; a new one is a new
+line there.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ..errors import UnknownName
+from .laws import Law
+from .tables import number, rows
 
 TISSUE_DAMPING = 10.0
 """Damping of the body's spring [N·s/m] (MSM §3.1.1, whose printed unit is a slip)."""
 
+NEWTON_PER_CM2 = 1e4
+"""In Pa."""
+
 
 @dataclass(frozen=True)
 class BodyRegion:
-    """A region of the human body.
+    """What the robot hits: a region or area of the human body, or something in its place.
 
     Attributes:
         name: as used in study files and on the command line.
         title: as in ISO/TS 15066.
         stiffness: k_h [N/m].
-        effective_mass: that moves with the region when it is not clamped [kg].
+        effective_mass: m_h, which moves with the region when it is not clamped [kg].
         quasi_static_limit: force limit when pressed or clamped [N].
         transient_limit: force limit of a short free impact [N], None where none is given.
         damping: c_h [N·s/m].
+        permitted: False where contact is not to be designed for, whatever the force; the
+            quasi-static limit is then for reference alone.
+        quasi_static_pressure: limit [Pa]; of a region, that of its most sensitive area; None where
+            none is given.
+        transient_pressure: limit [Pa], None where none is given.
+        energy_limit: of the energy that the impact leaves in the region [J], None where none was
+            found.
+        region: name of the region that an area belongs to.
+        skin: law of contact of its own; None: the ``Contact``'s Hertz stiffness.
+        plate_mass: of a plate between skin and spring, as measuring devices have [kg].
     """
 
     name: str
@@ -38,6 +50,13 @@ class BodyRegion:
     quasi_static_limit: float
     transient_limit: float | None
     damping: float = TISSUE_DAMPING
+    permitted: bool = True
+    quasi_static_pressure: float | None = None
+    transient_pressure: float | None = None
+    energy_limit: float | None = None
+    region: str = ""
+    skin: Law | None = None
+    plate_mass: float = 0.0
 
     @property
     def force_limit(self) -> float:
@@ -45,34 +64,54 @@ class BodyRegion:
         return self.quasi_static_limit if self.transient_limit is None else self.transient_limit
 
 
-def _region(
-    name: str, title: str, n_per_mm: float, mass: float, limit: float, transient: bool = True
-) -> BodyRegion:
-    return BodyRegion(name, title, 1e3 * n_per_mm, mass, limit, 2 * limit if transient else None)
+def read_regions() -> dict[str, BodyRegion]:
+    """Return the regions of the table by name, without pressures."""
+    return {
+        row["name"]: BodyRegion(
+            name=row["name"],
+            title=row["title"],
+            stiffness=1e3 * float(row["stiffness"]),
+            effective_mass=float(row["effective_mass"]),
+            quasi_static_limit=float(row["force_quasi_static"]),
+            transient_limit=number(row["force_transient"]),
+            permitted=row["permitted"] == "yes",
+            energy_limit=number(row["energy"]),
+            region=row["name"],
+        )
+        for row in rows("regions.csv")
+    }
 
 
-REGIONS = {
-    region.name: region
-    for region in (
-        _region("head", "Skull and forehead", 150, 4.4, 130, transient=False),
-        _region("face", "Face", 75, 4.4, 65, transient=False),
-        _region("neck", "Neck", 50, 1.2, 150),
-        _region("back", "Back and shoulders", 35, 40, 210),
-        _region("chest", "Chest", 25, 40, 140),
-        _region("abdomen", "Abdomen", 10, 40, 110),
-        _region("pelvis", "Pelvis", 25, 40, 180),
-        _region("upper_arm", "Upper arms and elbow joints", 30, 3, 150),
-        _region("lower_arm", "Lower arms and wrist joints", 40, 2, 160),
-        _region("hand", "Hands and fingers", 75, 0.6, 140),
-        _region("thigh", "Thighs and knees", 50, 75, 220),
-        _region("lower_leg", "Lower legs", 60, 75, 130),
+def read_areas(regions: dict[str, BodyRegion]) -> dict[str, BodyRegion]:
+    """Return the areas of the table by name, each on its region."""
+    return {
+        row["name"]: replace(
+            regions[row["region"]],
+            name=row["name"],
+            title=row["title"],
+            quasi_static_pressure=number(row["pressure_quasi_static"], NEWTON_PER_CM2),
+            transient_pressure=number(row["pressure_transient"], NEWTON_PER_CM2),
+        )
+        for row in rows("areas.csv")
+    }
+
+
+def _with_least_pressure(region: BodyRegion) -> BodyRegion:
+    inside = [area for area in AREAS.values() if area.region == region.name]
+
+    def least(field: str) -> float | None:
+        known = [value for area in inside if (value := getattr(area, field)) is not None]
+        return min(known, default=None)
+
+    return replace(
+        region,
+        quasi_static_pressure=least("quasi_static_pressure"),
+        transient_pressure=least("transient_pressure"),
     )
-}
-"""Every region by name."""
 
 
-def body_region(name: str) -> BodyRegion:
-    """Return a region by name; raises UnknownName, which lists the regions there are."""
-    if name not in REGIONS:
-        raise UnknownName("body region", name, REGIONS)
-    return REGIONS[name]
+AREAS = read_areas(read_regions())
+"""The 29 areas by name, each with its region's spring, mass and force limits."""
+
+REGIONS = {name: _with_least_pressure(region) for name, region in read_regions().items()}
+"""The 12 regions by name."""

@@ -8,6 +8,7 @@ fold and whatever no output needs is never computed.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
 import casadi as ca
 
@@ -48,7 +49,7 @@ def _felt_by(joint: Joint, force: Matrix, moment: Matrix) -> Matrix:
 
 
 def mass_matrix(robot: Robot, q: Matrix) -> Matrix:
-    """Return the links' mass matrix M(q), n×n, without rotors.
+    """Return the links' mass matrix M(q), n×n, without rotors; tendons' inertias count as links.
 
     Composite rigid bodies (Featherstone, Rigid Body Dynamics Algorithms, ch. 6) over base
     parameters.
@@ -74,6 +75,10 @@ def _mass_matrix(robot: Robot, q: Matrix) -> Matrix:
                 break
             force = move.to_parent(force)
             moment = move.to_parent(moment) + cross(move.translation, force)
+    place = {name: i for i, name in enumerate(robot.joint_names)}
+    for tendon in robot.tendons if any(t.armature for t in robot.tendons) else ():
+        for (first, a), (second, b) in product(tendon.terms, repeat=2):
+            M[place[first], place[second]] += tendon.armature * (a * b)
     return ca.densify(M)
 
 
@@ -104,6 +109,11 @@ def _potential_energy(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> Ma
             moments[joint.parent] += in_parent
         if joint.stiffness:
             energy += 0.5 * joint.stiffness * (q[i] - joint.spring_reference) ** 2
+    place = {name: i for i, name in enumerate(robot.joint_names)}
+    for tendon in robot.tendons:
+        if tendon.stiffness:
+            length = sum(c * q[place[name]] for name, c in tendon.terms)
+            energy += 0.5 * tendon.stiffness * (length - tendon.rest) ** 2
     return energy
 
 

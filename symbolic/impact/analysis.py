@@ -17,6 +17,7 @@ from .approach import unit_direction
 from .chain import chain
 from .elastic import LinearModel
 from .impact_model import ImpactModel
+from .motors import MotorLaw
 from .reduction import contact_mode, reduce_to_two_masses, static_stiffness
 
 IMMOBILE = 1e-6
@@ -74,7 +75,13 @@ class Analysis:
     jacobian: Array
 
 
-def analyse(model: ImpactModel, q: ArrayLike, direction: ArrayLike, order: int = 3) -> Analysis:
+def analyse(
+    model: ImpactModel,
+    q: ArrayLike,
+    direction: ArrayLike,
+    order: int = 3,
+    law: MotorLaw | None = None,
+) -> Analysis:
     """Return all figures of an impact at rest at q along a direction.
 
     Args:
@@ -82,6 +89,7 @@ def analyse(model: ImpactModel, q: ArrayLike, direction: ArrayLike, order: int =
         q: link angles, length n.
         direction: of the impact in the base's axes, length 3, of any length but zero.
         order: of the chain, at least 1.
+        law: of the motors; None takes the gains of the drives into K0.
 
     Raises:
         WrongLength: q does not fit the robot.
@@ -100,15 +108,17 @@ def analyse(model: ImpactModel, q: ArrayLike, direction: ArrayLike, order: int =
     still = IMMOBILE * reach(model)
     if np.linalg.norm(np.array(J).T @ n) <= still:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")
-    linear = model.linear(angles, n)
+    if not model.moving(law):
+        raise InvalidValue("motors", "leave nothing to give way: all joints are rigid and driven")
+    linear = model.linear(angles, n, law)
     k_r, m_a = _spring_and_far_mass(linear)
     free, real = model.free_mobility(angles), model.mobility(angles)
     moves_everywhere = bool(np.linalg.matrix_rank(np.array(J), tol=still) == 3)
     return Analysis(
-        m_c=float(model.reflected_mass(angles, n)),
+        m_c=float(contact_mode(linear).m_c),
         k_r=k_r,
         m_a=m_a,
-        chain=_chain(linear, min(order, model.size)),
+        chain=_chain(linear, min(order, len(model.moving(law)))),
         static_stiffness=_held_stiffness(linear),
         giaf=float(giaf(free, real)) if moves_everywhere else None,
         giif=float(giif(free, real)) if moves_everywhere else None,

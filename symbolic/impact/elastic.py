@@ -84,17 +84,19 @@ class ElasticMass:
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """The robot around rest: M0 q̈ + K0 Δq = J_cᵀ f_c (MSM Eq. 5).
+    """The robot around its motion before the impact: M0 z̈ + D ż + K0 z = −J_cᵀ f_c (MSM Eq. 5).
 
     Attributes:
         mass: M0, N×N [kg m², kg].
         stiffness: K0, N×N [N·m/rad, N/m].
         jacobian: J_c, 1×N.
+        damping: D, N×N [N·m·s/rad, N·s/m]; None where nothing damps.
     """
 
     mass: MassOperator
     stiffness: Matrix
     jacobian: Matrix
+    damping: Matrix | None = None
 
 
 def elastic_mass(links: Matrix, rotors: Matrix, elastic: Sequence[bool]) -> MassOperator:

@@ -20,8 +20,9 @@ from numpy.typing import ArrayLike
 
 from ..dynamics.equations_of_motion import STANDARD_GRAVITY, Gravity, bias_torques, mass_matrix
 from ..dynamics.kinematics import Pose, cross, frame_jacobian, frame_pose
-from ..errors import MasslessBase
+from ..errors import InvalidInertia, MasslessBase
 from ..matrices import Matrix
+from ..robot.plausibility import require_sound_masses
 from ..robot.rigid import Inertia, Placement
 from ..robot.robot import Joint, JointKind, Robot
 from .drives import Drives, drives
@@ -145,7 +146,10 @@ def floating_robot(robot: Robot, base_inertia: Inertia | None = None) -> Floatin
     Raises:
         MasslessBase: the base has no mass, so that it could move without any effort.
     """
+    require_sound_masses(robot)
     inertia = robot.base_inertia if base_inertia is None else base_inertia
+    if inertia.missing:
+        raise InvalidInertia(robot.source or robot.name, "base", "; ".join(inertia.missing))
     if not inertia.mass > 0:
         raise MasslessBase(robot.name)
     shift = BASE_COORDINATES

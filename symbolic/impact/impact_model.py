@@ -19,8 +19,9 @@ from ..matrices import Matrix, symmetric
 from ..robot.rigid import Array, three_numbers
 from ..robot.robot import BASE, Robot, vector_of
 from .chain import Chain, ChainEnd, chain
-from .drives import Drives, drives
+from .drives import Drives, drives, require_rotors
 from .elastic import (
+    DenseMass,
     ElasticMass,
     LinearModel,
     MassOperator,
@@ -28,6 +29,7 @@ from .elastic import (
     elastic_mass,
     elastic_stiffness,
 )
+from .motors import PRESCRIBED, MotorLaw
 from .reduction import ReducedModel, reduce_to_two_masses, reflected_mass
 
 WEIGHTLESS = (0.0, 0.0, 0.0)
@@ -104,17 +106,55 @@ class ImpactModel:
             springs, self.position_gains(q), self.potential_stiffness(q), self.elastic
         )
 
+    def generalised_damping(self, q: Matrix) -> Matrix | None:
+        """Return D over motors and deflections: K_d on the motors, the joints' own on the links.
+
+        None where nothing damps.
+        """
+        gains, own = self.drives.damping_gains, self.robot.damping
+        is_symbol = gains is not None and not isinstance(gains, ca.DM)
+        if not own.any() and not is_symbol and (gains is None or not np.any(np.array(gains))):
+            return None
+        n = self.robot.n
+        links = self._congruent(q, ca.sparsify(ca.diag(ca.DM(own))))
+        motors = self._congruent(q, ca.diag(ca.DM.zeros(n) if gains is None else gains))
+        return elastic_stiffness(ca.DM.zeros(len(self.elastic)), motors, links, self.elastic)
+
     def contact_jacobian(self, q: Matrix, direction: Matrix) -> Matrix:
         """Return J_c over motors and deflections, 1×N (MSM Eq. 4)."""
         return elastic_jacobian(self._direction_row(q, direction), self.elastic)
 
-    def linear(self, q: Matrix, direction: Matrix) -> LinearModel:
-        """Return M0, K0 and J_c around rest at q, hit along the unit vector ``direction``."""
-        return LinearModel(
-            self.generalised_mass(q),
-            self.generalised_stiffness(q),
-            self.contact_jacobian(q, direction),
-        )
+    def linear(self, q: Matrix, direction: Matrix, law: MotorLaw | None = None) -> LinearModel:
+        """Return M0, K0, D and J_c at q, hit along the unit vector ``direction``.
+
+        Args:
+            q: link angles, length n.
+            direction: unit vector n.
+            law: of the motors; None is a servo with the gains of the drives. Where it prescribes
+                the motors' motion, the model is over ``moving(law)`` alone, and springs take the
+                place of rotors and gains: M ẍ + k_s x = −Jᵀ f_c.
+        """
+        if law == "free":
+            return self.with_drives(self.drives.without_gains()).linear(q, direction)
+        if law == "held":
+            return self.with_drives(replace(self.drives, damping_gains=None)).linear(q, direction)
+        F = self.moving(law)
+        stiffness, damping = self.generalised_stiffness(q), self.generalised_damping(q)
+        jacobian = self.contact_jacobian(q, direction)
+        if law not in PRESCRIBED:
+            require_rotors(self.drives, self.robot.joint_names)
+            return LinearModel(self.generalised_mass(q), stiffness, jacobian, damping)
+        if damping is not None:
+            damping = damping[F, F]
+        mass = DenseMass(self.generalised_mass(q).matrix[F, F])
+        return LinearModel(mass, stiffness[F, F], jacobian[:, F], damping)
+
+    def moving(self, law: MotorLaw | None) -> list[int]:
+        """Return the indices of the generalised coordinates that an impact moves under a law."""
+        if law not in PRESCRIBED:
+            return list(range(self.size))
+        n = len(self.elastic)
+        return [i for i in range(self.size) if i >= n or not self.actuated[i]]
 
     def reflected_mass(self, q: Matrix, direction: Matrix) -> Matrix:
         """Return m_c [kg] (MSM Eq. 36); rotors behind springs do not count."""
@@ -155,6 +195,10 @@ class ImpactModel:
         """Return the model with other joint stiffnesses k_s, length n, numbers or symbols."""
         return replace(self, drives=replace(self.drives, springs=springs))
 
+    def with_drives(self, drives: Drives) -> ImpactModel:
+        """Return the model with other drives of the same robot."""
+        return replace(self, drives=drives)
+
     def position_gains(self, q: Matrix) -> Matrix:
         """Return K_p = diag(gains) + k_p M_θθ over the motors, n×n, sparse where it is zero."""
         gains = ca.diag(self.drives.gains)
@@ -167,8 +211,7 @@ class ImpactModel:
 
     def potential_stiffness(self, q: Matrix) -> Matrix:
         """Return the curvature of gravity and of the model's own springs over the links, n×n."""
-        has_springs = any(joint.stiffness for joint in self.robot.joints)
-        if not has_springs and not any(self.gravity):
+        if not self.robot.has_springs and not any(self.gravity):
             return ca.DM(len(self.independent), len(self.independent))
         if self.robot.loops:
             return constrained_stiffness(self.robot, q, self.gravity)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The equations of a closed chain: gaps of its loops, their derivatives, and what follows.
 
-Every loop asks that two points coincide, φ(q) = 0. The coordinates of independent joints then
+Every loop asks that two points coincide, every coupling that one coordinate follows from others:
+φ(q) = 0. The coordinates of independent joints then
 decide the others': q̇ = G q̇_ind. An open chain has no φ, and G = I.
 """
 
@@ -14,6 +15,7 @@ import casadi as ca
 from ..dynamics.equations_of_motion import potential_energy, stiffness_of_potential
 from ..dynamics.kinematics import motions, poses
 from ..matrices import Matrix, on_scalars
+from ..robot.constraints import Coupling, Loop
 from ..robot.joint_frames import customised
 from ..robot.rigid import Array
 from ..robot.robot import Robot
@@ -29,7 +31,8 @@ class ClosedChain:
     Attributes:
         robot: any robot.
         axes: for each loop the k×3 directions along which its ends could part; the others, such
-            as the normal of a planar loop, are left out.
+            as the normal of a planar loop, are left out. A coupling's single equation has a row of
+            one number.
         home: a configuration at which all loops are closed, length n.
         independent: indices of the joints that describe the chain: motors first, then springs.
         dependent: indices of the joints that follow, one for each equation.
@@ -43,7 +46,10 @@ class ClosedChain:
 
 
 def gaps(chain: ClosedChain, q: Matrix) -> Matrix:
-    """Return φ(q), how far apart the loops' ends are along the chain's axes [m], length r."""
+    """Return φ(q), how far apart the loops' ends are along the chain's axes [m], length r.
+
+    Of a coupling, how far off its driven joints are [rad, m].
+    """
     return on_scalars(_gaps, (chain,), q)
 
 
@@ -72,8 +78,13 @@ def stiffness_along(chain: ClosedChain, gravity: tuple[float, ...], q: Matrix) -
 def _gaps(chain: ClosedChain, q: Matrix) -> Matrix:
     robot = customised(chain.robot)
     known = poses(robot, motions(robot, q))
+    place = {name: i for i, name in enumerate(robot.joint_names)}
     rows = []
     for loop, axes in zip(robot.loops, chain.axes, strict=True):
+        if isinstance(loop, Coupling):
+            rows.append(ca.SX(loop.gap(lambda name: q[place[name]])))
+            continue
+        assert isinstance(loop, Loop)  # others are refused before
         ends = []
         for name in (loop.first, loop.second):
             frame = robot.frame(name)

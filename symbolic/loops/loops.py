@@ -11,10 +11,18 @@ import casadi as ca
 import numpy as np
 
 from ..dynamics.equations_of_motion import STANDARD_GRAVITY, Gravity
-from ..errors import InvalidValue, LoopCannotClose, RedundantLoop, SingularLoop, UnknownName
+from ..errors import (
+    InvalidValue,
+    LoopCannotClose,
+    RedundantLoop,
+    SingularLoop,
+    UnknownName,
+)
 from ..matrices import Matrix
+from ..robot.constraints import Constraint, Loop
 from ..robot.rigid import Array
-from ..robot.robot import Loop, Robot
+from ..robot.robot import Robot
+from ..robot.welding import require_modelled
 from .loop_equations import (
     ClosedChain,
     gap_acceleration,
@@ -47,10 +55,12 @@ def closed_chain(robot: Robot) -> ClosedChain:
     Raises:
         LoopCannotClose: no closed configuration was found near home.
         RedundantLoop: a loop's equations follow from the others'.
+        UnsupportedModel: it has ball joints, or bodies that its file welds together.
         UnknownName: ``robot.independent`` names a joint that there is not.
         InvalidValue: it does not name one joint for each degree of freedom, or leaves out a motor.
         SingularLoop: the others do not follow from those it names.
     """
+    require_modelled(robot)
     axes = tuple(_free_axes(robot, loop) for loop in robot.loops)
     chain = ClosedChain(robot, axes, np.zeros(robot.n), tuple(range(robot.n)), ())
     if not robot.loops:
@@ -107,8 +117,10 @@ def constrained_stiffness(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_G
     return stiffness_along(closed_chain(robot), tuple(gravity), q)
 
 
-def _free_axes(robot: Robot, loop: Loop) -> Array:
+def _free_axes(robot: Robot, loop: Constraint) -> Array:
     """Directions along which a loop's ends can part, as sparse orthonormal rows."""
+    if not isinstance(loop, Loop):
+        return np.ones((1, 1))
     size = _size(robot)
     random = np.random.default_rng(0)
     alone = replace(robot, loops=(loop,))
@@ -147,7 +159,8 @@ def _shown(direction: Array) -> str:
 
 def _size(robot: Robot) -> float:
     """Length of all links together [m]."""
-    ends = [robot.frame(end) for loop in robot.loops for end in (loop.first, loop.second)]
+    loops = [loop for loop in robot.loops if isinstance(loop, Loop)]
+    ends = [robot.frame(end) for loop in loops for end in (loop.first, loop.second)]
     places = [joint.placement for joint in robot.joints] + [end.placement for end in ends]
     return float(sum(np.linalg.norm(place.translation) for place in places))
 

@@ -97,11 +97,13 @@ class Inertia:
     """Mass [kg], first moment m·c [kg m] and inertia about the frame's origin [kg m²].
 
     These ten numbers are linear in the mass distribution, so inertias of one frame simply add.
+    ``missing`` says, a line each, which parts are not known and therefore not in the numbers.
     """
 
     mass: float
     first_moment: Array
     about_origin: Array
+    missing: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "first_moment", _frozen(self.first_moment, (3,)))
@@ -124,6 +126,7 @@ class Inertia:
             self.mass + other.mass,
             self.first_moment + other.first_moment,
             self.about_origin + other.about_origin,
+            self.missing + other.missing,
         )
 
     def __sub__(self, other: Inertia) -> Inertia:
@@ -131,6 +134,7 @@ class Inertia:
             self.mass - other.mass,
             self.first_moment - other.first_moment,
             self.about_origin - other.about_origin,
+            self.missing,
         )
 
     def seen_from(self, placement: Placement) -> Inertia:
@@ -140,4 +144,4 @@ class Inertia:
         shift = (2 * product(p, h) + self.mass * product(p, p)) * np.eye(3)
         turned = product(product(R, self.about_origin), R.T)
         shift -= np.outer(p, h) + np.outer(h, p) + self.mass * np.outer(p, p)
-        return Inertia(self.mass, h + self.mass * p, turned + shift)
+        return Inertia(self.mass, h + self.mass * p, turned + shift, self.missing)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import FrameNotFound, InvalidValue, UnknownName, WrongLength
 from ..matrices import Matrix
+from .constraints import Ball, Constraint, Coupling, Loop, Tendon
 from .rigid import Array, Inertia, Placement, rotation_about_z, three_numbers
 
 BASE = -1
@@ -43,6 +44,12 @@ class Joint:
         stiffness: of a spring in parallel with the joint [N·m/rad, N/m].
         spring_reference: coordinate at which that spring is unloaded.
         actuated: whether a motor drives the joint; passive joints have none.
+        damping: of a damper in parallel with the joint [N·m·s/rad, N·s/m].
+        friction: dry friction of the joint [N·m, N].
+        position_gain: K_p of the file's servo on the joint [N·m/rad, N/m]; 0 where it has none.
+        velocity_gain: K_d of that servo [N·m·s/rad, N·s/m].
+        torque_limit: largest torque of the motor on the joint [N·m, N]; inf where unknown.
+        speed_limit: largest speed of the joint [rad/s, m/s]; inf where unknown.
     """
 
     name: str
@@ -57,6 +64,12 @@ class Joint:
     stiffness: float = 0.0
     spring_reference: float = 0.0
     actuated: bool = True
+    damping: float = 0.0
+    friction: float = 0.0
+    position_gain: float = 0.0
+    velocity_gain: float = 0.0
+    torque_limit: float = np.inf
+    speed_limit: float = np.inf
 
     def pose(self, coordinate: float) -> Placement:
         """Return the joint's moved frame in the parent joint's frame."""
@@ -73,15 +86,6 @@ class Frame:
     name: str
     joint: int
     placement: Placement
-
-
-@dataclass(frozen=True)
-class Loop:
-    """Two frames of a closed chain whose origins coincide, by name."""
-
-    name: str
-    first: str
-    second: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,13 +114,18 @@ class Robot:
         tip: frame taken as the contact point where none is named.
         rotor_inertia_sets: reflected rotor inertias by the name of their source, each with one
             entry a joint.
-        loops: that close the tree.
+        loops: equations between the joints: loops that close the tree, and couplings.
         home: a configuration at which the loops are closed or nearly so, in the wanted one of
             several ways to assemble them; None is zero.
         independent: names of the joints whose coordinates describe a closed chain; empty leaves
             the choice to ``closed_chain``.
         base_inertia: of what is fixed to the base, in its frame; felt by floating robots only.
+        rotors_stated: whether the file says all there is of rotors; else a motor's joint without
+            armature has a rotor of which nothing is known.
         payload: that it holds; with symbols in it, expressions need a q of symbols too.
+        tendons: that tie inertias or springs to several joints at once.
+        source: the file it was read from, for messages; empty where there is none.
+        warnings: what of its file was ignored or approximated, or looks implausible; one line each.
     """
 
     name: str
@@ -124,11 +133,15 @@ class Robot:
     frames: Mapping[str, Frame]
     tip: str | None = None
     rotor_inertia_sets: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    loops: tuple[Loop, ...] = ()
+    loops: tuple[Constraint, ...] = ()
     home: tuple[float, ...] | None = None
     independent: tuple[str, ...] = ()
     base_inertia: Inertia = field(default_factory=Inertia.zero)
     payload: PointMass | None = None
+    tendons: tuple[Tendon, ...] = ()
+    source: str = ""
+    rotors_stated: bool = False
+    warnings: tuple[str, ...] = ()
 
     @property
     def n(self) -> int:
@@ -146,10 +159,46 @@ class Robot:
         return np.array([joint.armature for joint in self.joints])
 
     @property
+    def damping(self) -> Array:
+        """Damping of the joints, shape (n,)."""
+        return np.array([joint.damping for joint in self.joints])
+
+    @property
+    def position_gains(self) -> Array:
+        """K_p of the file's servos, shape (n,)."""
+        return np.array([joint.position_gain for joint in self.joints])
+
+    @property
+    def velocity_gains(self) -> Array:
+        """K_d of the file's servos, shape (n,)."""
+        return np.array([joint.velocity_gain for joint in self.joints])
+
+    @property
+    def torque_limits(self) -> Array:
+        """Largest torques of the motors, shape (n,); inf where unknown."""
+        return np.array([joint.torque_limit for joint in self.joints])
+
+    @property
+    def speed_limits(self) -> Array:
+        """Largest speeds of the joints, shape (n,); inf where unknown."""
+        return np.array([joint.speed_limit for joint in self.joints])
+
+    @property
     def limits(self) -> tuple[Array, Array]:
         """Lower and upper joint limits, shape (n,) each."""
         lower = np.array([joint.lower for joint in self.joints])
         return lower, np.array([joint.upper for joint in self.joints])
+
+    @property
+    def followers(self) -> tuple[str, ...]:
+        """Names of the joints whose coordinates follow from others' by a coupling."""
+        couplings = (loop for loop in self.loops if isinstance(loop, Coupling))
+        return tuple(c.follower for c in couplings if c.follower is not None)
+
+    @property
+    def has_springs(self) -> bool:
+        """Whether springs of the file's own act on joints or tendons."""
+        return any(j.stiffness for j in self.joints) or any(t.stiffness for t in self.tendons)
 
     @property
     def actuated(self) -> tuple[bool, ...]:
@@ -192,8 +241,10 @@ class Robot:
             joint = self.joints[joint].parent
         return path
 
-    def moved_by(self, loop: Loop) -> set[int]:
-        """Indices of the joints that move a loop's two frames against each other."""
+    def moved_by(self, loop: Constraint) -> set[int]:
+        """Indices of the joints that a coupling ties, or that part a loop's two frames."""
+        if isinstance(loop, Coupling | Ball):
+            return {self.joint_names.index(name) for name in loop.joints}
         first, second = self.frame(loop.first).joint, self.frame(loop.second).joint
         return set(self.ancestors(first)) ^ set(self.ancestors(second))
 
@@ -249,6 +300,7 @@ class Robot:
                 joint.spring_reference,
                 joint.lower,
                 joint.upper,
+                joint.damping,
             ]
             head = f"{joint.name} {joint.kind.value} {joint.parent} {joint.actuated}"
             text.update(f"{head} {_in_words(numbers)}\n".encode())
@@ -256,13 +308,19 @@ class Robot:
             numbers = [*frame.placement.rotation.flat, *frame.placement.translation]
             text.update(f"{frame.name} {frame.joint} {_in_words(numbers)}\n".encode())
         for loop in self.loops:
-            text.update(f"{loop.name} {loop.first} {loop.second}\n".encode())
+            text.update(f"{_described(loop)}\n".encode())
+        for tendon in self.tendons:
+            text.update(f"{tendon}\n".encode())
         if self.loops:
             home = _in_words(self.home or ())
             text.update(f"{home} {' '.join(self.independent)}\n".encode())
         if self.payload:
             text.update(f"{self.payload.frame} {self.payload.mass} {self.payload.com}\n".encode())
         return text.hexdigest()
+
+
+def _described(loop: Constraint) -> str:
+    return f"{loop.name} {loop.first} {loop.second}" if isinstance(loop, Loop) else str(loop)
 
 
 def vector_of(names: Sequence[str], field: str, values: ArrayLike) -> Array:

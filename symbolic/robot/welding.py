@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import InvalidValue, UnknownName
+from ..errors import InvalidValue, UnknownName, UnsupportedModel
+from .constraints import Ball, Constraint, Coupling, Tendon, Weld
+from .plausibility import outside, require_sound_masses
 from .rigid import Placement
-from .robot import BASE, Frame, Joint, Loop, Robot
+from .robot import BASE, Frame, Joint, Robot
 
 
 def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
@@ -30,6 +32,7 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
             raise UnknownName("joint", name, robot.joint_names)
         if not np.isfinite(coordinate):
             raise InvalidValue(name, f"needs a finite coordinate to be welded at, not {coordinate}")
+    locked = _with_followers(robot, locked)
     carrier: dict[int, tuple[int, Placement]] = {BASE: (BASE, Placement.identity())}
     kept: list[Joint] = []
     base = robot.base_inertia
@@ -68,32 +71,108 @@ def lock_joints(robot: Robot, locked: Mapping[str, float]) -> Robot:
         home=home,
         independent=independent,
         base_inertia=base,
+        loops=tuple(_left(robot.loops, locked)),
+        tendons=tuple(_tendons(robot.tendons, locked)),
     )
+
+
+def _with_followers(robot: Robot, locked: Mapping[str, float]) -> dict[str, float]:
+    """Add the joints that follow from welded ones."""
+    all_locked = dict(locked)
+    couplings = [loop for loop in robot.loops if isinstance(loop, Coupling)]
+    for _ in couplings:  # a follower may lead others
+        for coupling in couplings:
+            follower = coupling.follower
+            led = all(name in all_locked for name, _ in coupling.leading)
+            if follower is not None and led and follower not in locked:
+                all_locked[follower] = coupling.follow(all_locked.__getitem__)
+    return all_locked
+
+
+def _left(loops: tuple[Constraint, ...], locked: Mapping[str, float]) -> Iterator[Constraint]:
+    """Yield what is left of constraints when some joints are welded."""
+    for loop in loops:
+        if not isinstance(loop, Coupling):
+            if not (isinstance(loop, Ball) and set(loop.joints) <= set(locked)):
+                yield loop
+            continue
+        left = loop.with_locked(locked)
+        if left.joints:
+            yield left
+
+
+def _tendons(tendons: tuple[Tendon, ...], locked: Mapping[str, float]) -> Iterator[Tendon]:
+    """Yield tendons over the joints that still move; welded ones only change their length."""
+    for tendon in tendons:
+        terms = tuple(term for term in tendon.terms if term[0] not in locked)
+        if terms:
+            gone = sum(c * locked[name] for name, c in tendon.terms if name in locked)
+            yield replace(tendon, terms=terms, rest=tendon.rest - gone)
 
 
 def chain_to(robot: Robot, frame: str, rest: ArrayLike | None = None) -> Robot:
     """Return the chain from the base to a frame; joints off it are welded, their masses kept.
 
-    Joints of a loop that the chain is part of stay, and loops among welded joints are dropped.
+    Joints of a loop or coupling that the chain is part of stay, and loops among welded joints are
+    dropped. Joints that follow welded ones are welded where these put them.
 
     Args:
         robot: any robot.
         frame: name of a frame; raises FrameNotFound.
         rest: coordinates of all joints at which those off the chain are welded (default zero).
+
+    Raises:
+        InvalidInertia: what the chain moves has no mass, an impossible one, or an unknown one.
+        UnsupportedModel: a ball joint is part of the chain, or its file welds bodies of it.
     """
     path, loops = _with_loops(robot, set(robot.ancestors(robot.frame(frame).joint)))
     values = np.zeros(robot.n) if rest is None else robot.vector("rest", rest)
-    locked = {j.name: float(values[i]) for i, j in enumerate(robot.joints) if i not in path}
-    return replace(lock_joints(robot, locked), tip=frame, loops=loops)
+    locked = {
+        joint.name: float(values[i])
+        for i, joint in enumerate(robot.joints)
+        if i not in path and joint.name not in robot.followers
+    }
+    welded = lock_joints(robot, locked)
+    kept = {loop.name for loop in loops}
+    chain = replace(
+        welded,
+        tip=frame,
+        loops=tuple(loop for loop in welded.loops if loop.name in kept),
+        warnings=(*robot.warnings, *_welded_outside(robot, locked)),
+    )
+    require_modelled(chain)
+    require_sound_masses(chain)
+    return chain
 
 
-def _with_loops(robot: Robot, path: set[int]) -> tuple[set[int], tuple[Loop, ...]]:
-    """Add to a chain all joints of the loops that hold it, and return those loops."""
+def require_modelled(robot: Robot) -> None:
+    """Raise UnsupportedModel for a ball joint that moves, or bodies that move and are welded."""
+    for loop in robot.loops:
+        if isinstance(loop, Weld):
+            reason = f"equality weld '{loop.name}' holds what joints move; close loops with connect"
+            raise UnsupportedModel(robot.source or robot.name, reason)
+        if isinstance(loop, Ball):
+            reason = f"joint '{loop.name}' is a ball joint; write it as three hinges"
+            raise UnsupportedModel(robot.source or robot.name, reason)
+
+
+def _welded_outside(robot: Robot, locked: Mapping[str, float]) -> Iterator[str]:
+    where = _with_followers(robot, locked)
+    names = [
+        f"'{joint.name}' at {where[joint.name]:g}"
+        for joint in robot.joints
+        if joint.name in locked and outside(joint, where[joint.name])
+    ]
+    if names:
+        yield f"joints welded outside their limits: {', '.join(names)}"
+
+
+def _with_loops(robot: Robot, path: set[int]) -> tuple[set[int], tuple[Constraint, ...]]:
+    """Add to a chain all joints of the loops and couplings that hold it, and return those."""
     around = {loop: robot.moved_by(loop) for loop in robot.loops}
-    held: set[Loop] = set()
+    held: set[Constraint] = set()
     while touched := {loop for loop in around if around[loop] & path} - held:
         held |= touched
         for loop in touched:
-            ends = (robot.frame(loop.first).joint, robot.frame(loop.second).joint)
-            path = path.union(*map(robot.ancestors, ends))
+            path = path.union(*(robot.ancestors(joint) for joint in around[loop]))
     return path, tuple(loop for loop in robot.loops if loop in held)

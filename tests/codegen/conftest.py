@@ -5,10 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 
 import pytest
 from compiled_packages import Generated, candidate_poses
 from oracles import example_urdf
+from sharing import once
 
 from softimpact.codegen import generate_package
 from softimpact.symbolic import Robot, chain_to, load_robot
@@ -32,9 +34,11 @@ GANTRY = """
 
 
 @pytest.fixture(scope="session")
-def package(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Generated]:
-    """Return the package of a robot by name; it is generated once."""
-    root = tmp_path_factory.mktemp("packages")
+def package(
+    shared_folder: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Callable[[str], Generated]:
+    """Return the package of a robot by name; it is generated once in a test run."""
+    root = tmp_path_factory.mktemp("robots")
 
     def load(name: str) -> tuple[Robot, str]:
         if name == "gantry":
@@ -55,9 +59,9 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Generat
     @cache
     def generated(name: str) -> Generated:
         robot, tip = load(name)
-        folder = root / name
+        folder = shared_folder / "packages" / name
         poses = candidate_poses(name, robot)
-        manifest = generate_package(robot, folder, tip=tip, poses=poses)
+        manifest = once(folder, lambda at: generate_package(robot, at, tip=tip, poses=poses))
         return Generated(robot, tip, folder, manifest)
 
     return generated

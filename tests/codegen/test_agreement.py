@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from compiled_packages import Generated, Library, run, tool
+from compiled_packages import Generated, Library, mostly_slow, run, tool
 from package_oracle import OK, SINGULAR, assert_agrees
 
 from softimpact.codegen import generate_package
@@ -26,7 +26,7 @@ NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE = 2, 3, 4
 
 
 @pytest.mark.parametrize("real", ["double", "float"])
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", mostly_slow(ROBOTS))
 def test_c_agrees_with_the_model_on_fresh_inputs(
     package: Callable[[str], Generated], robot: str, real: str
 ) -> None:
@@ -40,9 +40,10 @@ def test_c_agrees_with_the_model_on_fresh_inputs(
 EVERY_BUILD = [(compiler, real) for compiler in ("gcc", "clang") for real in ("double", "float")]
 BUILDS = [("panda", *build) for build in EVERY_BUILD]
 BUILDS += [(robot, *build) for robot in ROBOTS[1:] for build in EVERY_BUILD[::3]]
+QUICK_BUILDS = [("panda", "gcc", "float"), ("rr", "gcc", "double"), ("rmin", "clang", "float")]
 
 
-@pytest.mark.parametrize(("robot", "compiler", "real"), BUILDS)
+@pytest.mark.parametrize(("robot", "compiler", "real"), mostly_slow(BUILDS, QUICK_BUILDS))
 def test_own_test_compiles_without_warnings_and_passes(
     package: Callable[[str], Generated], robot: str, compiler: str, real: str, tmp_path: Path
 ) -> None:
@@ -67,6 +68,7 @@ def test_own_test_fails_on_a_wrong_result(
     assert "FAILED rr_reflected_mass: error within its bound" in run(binary, ok=False)
 
 
+@pytest.mark.slow
 def test_gravity_enters_the_stiffness(package: Callable[[str], Generated], tmp_path: Path) -> None:
     weightless = package("gantry")
     robot, tip, folder = weightless.robot, weightless.tip, tmp_path / "heavy"
@@ -219,6 +221,7 @@ def test_any_bits_give_finite_results_or_a_status(
     assert answered > 300
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_sanitizers_find_nothing(package: Callable[[str], Generated], tmp_path: Path) -> None:
     generated = package("panda")

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from softimpact.codegen import ForeignFiles, OutputNotWritable, files
-from softimpact.codegen.files import replace_package, sha256
+from softimpact.codegen import FolderNotWritable, ForeignFolder
+from softimpact.codegen.files import replace_package, require_place, sha256
 from softimpact.codegen.manifest import GENERATOR
 
 
@@ -52,7 +52,7 @@ def test_refuses_foreign_or_edited_files(tmp_path: Path, name: str, text: str) -
     replace_package(folder, package("one"))
     (folder / name).write_text(text)
     before = contents(folder)
-    with pytest.raises(ForeignFiles, match=r"not overwritten"):
+    with pytest.raises(ForeignFolder, match=r"not overwritten"):
         replace_package(folder, package("two"))
     assert contents(folder) == before
 
@@ -62,7 +62,7 @@ def test_refuses_a_file_or_a_link_in_the_folders_place(tmp_path: Path) -> None:
     (tmp_path / "target").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "target")
     for name in ("file", "link"):
-        with pytest.raises(ForeignFiles):
+        with pytest.raises(ForeignFolder):
             replace_package(tmp_path / name, package("one"))
     assert (tmp_path / "file").read_text() == "mine"
     assert contents(tmp_path / "target") == {}
@@ -72,14 +72,14 @@ def test_refuses_a_package_with_a_link_in_it(tmp_path: Path) -> None:
     replace_package(tmp_path / "p", package("one"))
     (tmp_path / "mine").mkdir()
     (tmp_path / "p/link").symlink_to(tmp_path / "mine")
-    with pytest.raises(ForeignFiles, match="link"):
+    with pytest.raises(ForeignFolder, match="link"):
         replace_package(tmp_path / "p", package("two"))
     assert (tmp_path / "p/link").is_symlink()
 
 
 def test_names_the_folder_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("mine")
-    with pytest.raises(OutputNotWritable, match="p"):
+    with pytest.raises(FolderNotWritable, match="p"):
         replace_package(tmp_path / "file" / "p", package("one"))
 
 
@@ -126,7 +126,7 @@ def test_package_left_behind_by_a_killed_process_comes_back(tmp_path: Path) -> N
     folder = tmp_path / "p"
     replace_package(folder, package("one"))
     folder.rename(tmp_path / ".p.previous")  # killed between the two renames
-    files._restore_interrupted(folder)
+    require_place(folder)
     assert contents(folder) == package("one")
     replace_package(folder, package("two"))
     assert contents(folder) == package("two")
@@ -137,6 +137,6 @@ def test_foreign_folder_in_the_place_of_the_older_package_stays(tmp_path: Path) 
     mine = tmp_path / ".p.previous"
     mine.mkdir()
     (mine / "notes.txt").write_text("mine")
-    with pytest.raises(ForeignFiles):
+    with pytest.raises(ForeignFolder):
         replace_package(tmp_path / "p", package("one"))
     assert contents(mine) == {"notes.txt": "mine"}

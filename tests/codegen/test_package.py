@@ -14,7 +14,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from compiled_packages import COMMITTED, Generated, run, tool
+from compiled_packages import COMMITTED, Generated, mostly_slow, run, tool
 
 from softimpact.codegen import generate_package
 from softimpact.codegen.inputs import parameters_of
@@ -34,7 +34,7 @@ ROOT = Path(__file__).parents[2]
 FLOAT_CALLS = {"sinf", "cosf", "sqrtf", "fmaxf", "powf", "logf", "memcpy", "memset"}
 
 
-@pytest.mark.parametrize("name", COMMITTED)
+@pytest.mark.parametrize("name", mostly_slow(COMMITTED))
 def test_committed_packages_are_current(package: Callable[[str], Generated], name: str) -> None:
     committed, fresh = ROOT / "generated" / name, package(name).folder
     names = {p.relative_to(fresh) for p in fresh.rglob("*") if p.is_file()}
@@ -82,6 +82,7 @@ def test_planar_robots_have_no_operational_space_inertia(
     assert not names & {"rr_osim", "rr_giaf", "rr_directional_giaf"}
 
 
+@pytest.mark.slow
 def test_every_robot_number_comes_from_the_model(tmp_path: Path, panda: Robot) -> None:
     values = drives(panda, joint_stiffness=1234.5, rotor_inertia=0.25, position_gain=7)
     generate_package(panda, tmp_path / "p", drives_=values, name="My Arm-2")
@@ -177,7 +178,7 @@ def test_joints_that_hardly_move_are_sampled_where_they_are(panda: Robot) -> Non
         assert sample.q[2] == pytest.approx(0.30005, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", COMMITTED)
+@pytest.mark.parametrize("name", mostly_slow(COMMITTED))
 def test_float_builds_hold_no_double_operation(
     package: Callable[[str], Generated], name: str, tmp_path: Path
 ) -> None:
@@ -192,6 +193,7 @@ def test_float_builds_hold_no_double_operation(
         assert not re.search(r"\b(cvtss2sd|cvtsd2ss|mulsd|addsd|fcvt)\b", code)
 
 
+@pytest.mark.slow
 def test_names_of_the_model_cannot_end_a_comment(tmp_path: Path, panda: Robot) -> None:
     named = replace(panda.joints[0], name="*/ #error /* joint")
     robot = replace(panda, name="x */ #error", joints=(named, *panda.joints[1:]))

@@ -49,11 +49,16 @@ def make(tmp_path_factory: pytest.TempPathFactory) -> Make:
 
 
 CASES = [
-    ("panda", LOAD, ()),
-    ("panda", LOAD, ("all",)),
-    ("panda", None, ("joint_stiffness", "position_gain")),
-    ("rr", None, ("rotor_inertia",)),
-    ("rr", None, ("all",)),
+    *(
+        pytest.param(*case, marks=pytest.mark.slow)
+        for case in [
+            ("panda", LOAD, ()),
+            ("panda", LOAD, ("all",)),
+            ("panda", None, ("joint_stiffness", "position_gain")),
+            ("rr", None, ("rotor_inertia",)),
+            ("rr", None, ("all",)),
+        ]
+    ),
     ("rr", LOAD, ("payload_mass", "position_gain")),
     ("rr", LOAD, ("all",)),
 ]
@@ -110,6 +115,7 @@ def test_struct_holds_what_is_not_frozen(make: Make) -> None:
     assert kept == ["reaction_time", "horizon", "motors", "steps"]  # what impacts go by
 
 
+@pytest.mark.slow
 def test_numbers_built_in_save_operations(make: Make) -> None:
     free, frozen = make("panda", LOAD, ()), make("panda", LOAD, ("all",))
     flops = [{f.name: f.flops for f in g.manifest.functions} for g in (free, frozen)]
@@ -119,6 +125,7 @@ def test_numbers_built_in_save_operations(make: Make) -> None:
         assert flops[0][name] - flops[1][name] >= saved, name
 
 
+@pytest.mark.slow
 def test_payload_costs_little(make: Make, package: Callable[[str], Generated]) -> None:
     loaded, empty = make("panda", LOAD, ()), package("panda")
     flops = [{f.name: f.flops for f in g.manifest.functions} for g in (loaded, empty)]

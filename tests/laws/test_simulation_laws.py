@@ -16,12 +16,14 @@ from mechanisms import FIVE_BAR, robot_of
 
 from softimpact.simulate import Approach, Controller, simulate_impact
 from softimpact.simulate.approach import arrival_of
-from softimpact.simulate.events import first_contact
+from softimpact.simulate.events import course_of, peaks_of
 from softimpact.simulate.full import full_scene
-from softimpact.simulate.simulator import UNIT_TIME, Run
+from softimpact.simulate.scene import Run, Scene
+from softimpact.simulate.simulator import UNIT_TIME
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
+    Motors,
     Robot,
     body_region,
     closed_chain,
@@ -59,6 +61,20 @@ def undamped(contact: Contact) -> Contact:
     return replace(contact, region=replace(contact.region, damping=0.0))
 
 
+def whole_run(scene: Scene, until: float | None) -> Run:
+    """Return an impact with the robot's states: the motions alone, which all laws share."""
+    course = course_of(scene, until)
+    size = 2 * len(scene.still.position)
+    states = [piece.run.state[:size, int(i > 0) :] for i, piece in enumerate(course.pieces)]
+    return replace(course.run, state=np.hstack(states))
+
+
+def followed(model: ImpactModel, approach: Approach, contact: Contact) -> tuple[Run, float | None]:
+    """Return an impact of free motors until the first contact has ended, and when it does."""
+    scene = full_scene(model, arrival_of(model, approach), contact, Motors("free"), 1e-11)
+    return whole_run(scene, None), peaks_of(course_of(scene, None), None).separation
+
+
 def joints_at(model: ImpactModel, run: Run, node: int, speed: float) -> tuple[Array, Array, Array]:
     """Motion since first touch and rates of all joints, and deflections since."""
     n, E = model.robot.n, [i for i, e in enumerate(model.drives.elastic) if e]
@@ -90,28 +106,27 @@ def energy(model: ImpactModel, approach: Approach, run: Run, node: int) -> float
 def test_energy_is_conserved_without_damping(case: Case) -> None:
     """What the body gives back is what it took: free motors, no damper, c_h = 0."""
     model, approach = case()
-    scene = full_scene(model, arrival_of(model, approach), undamped(HEAD), 1e-11)
-    found = first_contact(scene)
-    assert found.separation is not None
-    assert found.run.force[-1] == 0
-    before, after = (energy(model, approach, found.run, node) for node in (0, -1))
-    moving = joints_at(model, found.run, 0, approach.speed)[1]
+    run, separation = followed(model, approach, undamped(HEAD))
+    assert separation is not None
+    assert run.force[-1] == 0
+    before, after = (energy(model, approach, run, node) for node in (0, -1))
+    moving = joints_at(model, run, 0, approach.speed)[1]
     scale = (
         moving[: model.robot.n]
         @ np.array(mass_matrix(model.robot, approach.q))
         @ (moving[: model.robot.n])
     )
     assert abs(after - before) < 1e-6 * scale
-    damped = first_contact(full_scene(model, arrival_of(model, approach), HEAD, 1e-11))
-    lost = energy(model, approach, damped.run, 0) - energy(model, approach, damped.run, -1)
+    damped, _ = followed(model, approach, HEAD)
+    lost = energy(model, approach, damped, 0) - energy(model, approach, damped, -1)
     assert lost > 1e-4 * scale
 
 
 def test_loops_stay_closed_through_an_impact() -> None:
     model, approach = fast_r_min()
     controller = Controller(1076.0, 51.0, 9.26e3)
-    scene = full_scene(model, arrival_of(model, approach), HEAD, 1e-10, controller)
-    run = first_contact(scene, 0.06).run
+    scene = full_scene(model, arrival_of(model, approach), HEAD, controller, 1e-10)
+    run = whole_run(scene, 0.06)
     for node in range(0, len(run.time), 100):
         moved = joints_at(model, run, node, approach.speed)[0]
         assert abs(np.array(loop_gaps(model.robot, approach.q + moved))).max() < 1e-8
@@ -128,6 +143,7 @@ def test_forces_grow_with_speed(case: Case) -> None:
     assert all(faster > slower for slower, faster in pairwise(peaks))
 
 
+@pytest.mark.slow
 def test_stiff_joints_hit_like_rigid_ones(panda: Robot) -> None:
     """As k_s → ∞ the peak tends to that of the rigid robot's reflected mass, rotors included."""
     n = np.array([0.4, 1.0, -0.3])
@@ -164,8 +180,8 @@ def test_computed_torque_keeps_a_closed_chain_on_its_way(tmp_path: Path) -> None
     speed = float(np.linalg.norm(moved))
     approach = Approach(closed_chain(robot).home, moved / speed, speed, rates / speed)
     controller = Controller(100.0, 20.0, 0.0)
-    scene = full_scene(model, arrival_of(model, approach), nothing, 1e-10, controller)
-    moved = joints_at(model, scene.run(scene.touch, 0.02), -1, speed)[0]
+    scene = full_scene(model, arrival_of(model, approach), nothing, controller, 1e-10)
+    moved = joints_at(model, whole_run(scene, 0.02), -1, speed)[0]
     assert moved[list(model.independent)] == pytest.approx(0.02 * rates, abs=1e-8)
     G = np.array(loop_tangent(robot, ca.DM(approach.q)))
     assert abs(moved - G @ (0.02 * rates)).max() > 1e-3  # the others speed up

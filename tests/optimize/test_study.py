@@ -77,6 +77,13 @@ def test_direction_becomes_a_unit_vector(tmp_path: Path) -> None:
     np.testing.assert_allclose(study.direction, [0.0, 0.6, -0.8], atol=1e-15)
 
 
+def test_a_byte_order_mark_is_no_content(tmp_path: Path) -> None:
+    """Editors on Windows begin a file with one."""
+    marked = written(tmp_path, content())
+    marked.write_text(marked.read_text("utf-8"), encoding="utf-8-sig")
+    assert load_study(marked).title == load_study(PANDA_24).title
+
+
 def test_robot_file_beside_the_study(tmp_path: Path) -> None:
     shutil.copy(FOLDER / "panda.xml", tmp_path / "mine.xml")
     study = study_of(tmp_path, {"robot": {"model": "mine.xml"}})

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Workers end with their parent, also by Ctrl-C, which a terminal sends to all of them."""
+"""Workers end with their parent, also by Ctrl-C, which a terminal sends to all of them.
+
+No job here ends by itself: a parent that waited for one would never end.
+"""
 
 from __future__ import annotations
 
@@ -7,41 +10,106 @@ import os
 import signal
 import subprocess
 import sys
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
 
+import pytest
 from studies import InProcess
 
-from softimpact.optimize.workers import workers
+from softimpact.optimize.workers import WorkerLost, as_completed, workers
 
-LONG = """
-import time
-from softimpact.optimize.workers import workers
+SCRIPT = """
+import os
+import signal
+
+from softimpact.optimize.workers import as_completed, workers
+
+
+def say(word):
+    os.write(1, f"{word}\\n".encode())  # one write, so that words of two processes stay apart
+
+
+def endless():
+    say(f"worker {os.getpid()}")
+    while True:
+        signal.pause()
+
 
 if __name__ == "__main__":
-    with workers(1) as pool:
-        pool.submit(int).result()
-        jobs = [pool.submit(time.sleep, 600) for _ in range(9)]
-        time.sleep(1)  # until the worker is at the first of them
-        print("ready", flush=True)
-        jobs[-1].result()
+    with workers(2) as pool:
+        jobs = [pool.submit(endless) for _ in range(9)]
+        say("parent")
+        for job in as_completed(jobs):
+            job.result()
 """
 
 
-def test_an_interruption_ends_searches_that_run_or_wait() -> None:
-    command = [sys.executable, "-c", LONG]
+@contextmanager
+def running(folder: Path) -> Iterator[subprocess.Popen[str]]:
+    """Run the script in a process group of its own; leave nothing of it behind."""
+    script = folder / "script.py"
+    script.write_text(SCRIPT, encoding="utf-8")
     pipe = subprocess.PIPE
+    command = [sys.executable, str(script)]
     with subprocess.Popen(
         command, stdout=pipe, stderr=pipe, text=True, start_new_session=True
     ) as parent:
-        assert parent.stdout is not None
-        assert parent.stdout.readline() == "ready\n"
-        os.killpg(parent.pid, signal.SIGINT)
         try:
-            _, words = parent.communicate(timeout=100)  # a sixth of the time that a job takes
+            yield parent
         finally:
             if parent.poll() is None:
                 os.killpg(parent.pid, signal.SIGKILL)
-    assert parent.returncode != 0
-    assert "KeyboardInterrupt" in words
+
+
+def read_until(parent: subprocess.Popen[str], word: str) -> str:
+    """Return the first line that starts with a word."""
+    assert parent.stdout is not None
+    for line in parent.stdout:
+        if line.startswith(word):
+            return line
+    raise AssertionError(f"ended before '{word}'")
+
+
+@pytest.mark.parametrize("moment", ["parent", "worker"])
+def test_an_interruption_ends_searches_that_start_run_or_wait(tmp_path: Path, moment: str) -> None:
+    with running(tmp_path) as parent:
+        read_until(parent, moment)
+        os.killpg(parent.pid, signal.SIGINT)
+        _, words = parent.communicate(timeout=100)  # until all that hold the pipes have ended
+    assert parent.returncode == -signal.SIGINT
+    assert words.count("Traceback") == 1, words  # the parent's own
+    assert words.endswith("KeyboardInterrupt\n")
+
+
+def test_workers_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
+    with running(tmp_path) as parent:
+        read_until(parent, "worker")
+        parent.kill()
+        parent.communicate(timeout=100)  # until all that hold the pipes have ended
+
+
+def test_a_worker_that_is_killed_is_named(tmp_path: Path) -> None:
+    with running(tmp_path) as parent:
+        worker = int(read_until(parent, "worker").split()[1])
+        os.kill(worker, signal.SIGKILL)
+        _, words = parent.communicate(timeout=100)
+    assert parent.returncode == 1
+    assert f"{WorkerLost.__name__}: a worker process was ended from outside" in words
+
+
+def test_all_jobs_are_heard_of_also_those_that_take_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("softimpact.optimize.workers.AWAKE", 1e-3)
+    first, last = threading.Event(), threading.Event()
+    with ThreadPoolExecutor(2) as pool:
+        late = pool.submit(last.wait)
+        jobs = as_completed([late, pool.submit(first.wait)])
+        threading.Timer(0.05, first.set).start()  # after some looks at the jobs
+        assert next(jobs) is not late
+        last.set()
+        assert list(jobs) == [late]
 
 
 def test_the_callers_executor_stays_open() -> None:

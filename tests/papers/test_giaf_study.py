@@ -85,7 +85,7 @@ def forces(study: Study, poses: list[Array], n: Array, stiffness: float) -> Arra
     return np.array([run.first_contact for run in runs])
 
 
-@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("axis", [*(pytest.param(i, marks=pytest.mark.slow) for i in (0, 1)), 2])
 def test_masses_order_forces_at_both_ends_and_giaf_does_not(
     study: Study, poses: list[Array], axis: int
 ) -> None:
@@ -103,6 +103,7 @@ def test_masses_order_forces_at_both_ends_and_giaf_does_not(
     assert spearman(zeta, rigid) == pytest.approx(expected[axis], abs=0.05)
 
 
+@pytest.mark.slow
 def test_fixed_base_as_a_heavy_floating_one(study: Study, poses: list[Array]) -> None:
     """ξ → 1 in every pose for every set of rotors, while ζ goes to the fixed robot's."""
     sets = {name: study.robot.rotor_inertia_set(name) for name in SETS}

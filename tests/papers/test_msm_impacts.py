@@ -43,8 +43,10 @@ def mean_errors(region: str, name: str) -> list[float]:
     scenario = SCENARIOS[name]
     errors = []
     for stiffness in scenario.arm.stiffnesses():
-        full = impact_at(scenario, "full", float(stiffness), region).first_peak
-        peaks = [impact_at(scenario, r, float(stiffness), region).first_peak for r in RUNGS]
+        full = impact_at(scenario, "full", float(stiffness), region).force_of("first_peak")
+        peaks = [
+            impact_at(scenario, r, float(stiffness), region).force_of("first_peak") for r in RUNGS
+        ]
         errors.append([abs(peak / full - 1) for peak in peaks])
     return list(100 * np.mean(errors, axis=0))
 
@@ -92,8 +94,8 @@ def test_a_chain_of_three_is_within_a_percent_with_k_p(name: str) -> None:
 def test_largest_error_over_speed(name: str, recomputed: float) -> None:
     """Forces grow nearly in proportion to speed, and so do the two models' (Fig. 9)."""
     errors = [
-        impact_at(SCENARIOS[name], "two_mass", 1e4, "head", v).first_peak
-        / impact_at(SCENARIOS[name], "full", 1e4, "head", v).first_peak
+        impact_at(SCENARIOS[name], "two_mass", 1e4, "head", v).force_of("first_peak")
+        / impact_at(SCENARIOS[name], "full", 1e4, "head", v).force_of("first_peak")
         - 1
         for v in np.linspace(0.25, 2.5, 4)
     ]

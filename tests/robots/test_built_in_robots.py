@@ -87,9 +87,43 @@ def test_rotors_are_sane(robot: Robot) -> None:
     for values in robot.rotor_inertia_sets.values():
         assert len(values) == robot.n
         assert min(values) > 0
-    if robot.rotor_inertia_sets:
+    if robot.rotor_inertia_sets and robot.armature.any():  # all zero says: unknown
         sets = robot.rotor_inertia_sets.values()
         assert any(np.array_equal(values, robot.armature) for values in sets)
+
+
+def test_a_placeholder_is_not_taken_as_a_rotor(name: str, path: Path, robot: Robot) -> None:
+    """Menagerie's class default of 0.1 is no data; the UR5e's is used, with a word about it."""
+    if name != "ur5e":
+        assert not np.allclose(robot.armature, 0.1)
+    if any(np.allclose(values, 0.1) for values in robot.rotor_inertia_sets.values()):
+        assert re.search("placeholder|class default without a source", path.read_text())
+
+
+ROTOR_PER_TORQUE = 0.03
+"""Most reflected rotor inertia over largest torque [s²] of arms whose rotors somebody states."""
+
+
+def test_rotors_are_no_larger_than_the_upper_estimate(name: str, robot: Robot) -> None:
+    """So that it may stand for rotors that are unknown."""
+    if np.isinf(robot.torque_limits).any():
+        return
+    upper = ROTOR_PER_TORQUE * robot.torque_limits
+    if robot.armature.any():
+        assert (robot.armature <= upper).all()
+    else:
+        np.testing.assert_allclose(robot.rotor_inertia_set("upper_estimate"), upper)
+
+
+def test_limits_of_speed_are_sane(robot: Robot) -> None:
+    assert (robot.speed_limits > 0).all()
+    assert np.isinf(robot.speed_limits).all() == np.isinf(robot.speed_limits).any()
+
+
+def test_limits_of_torque_are_the_same_to_both_sides(path: Path) -> None:
+    model = mujoco.MjModel.from_xml_path(str(path))
+    for limited, (lower, upper) in zip(model.jnt_actfrclimited, model.jnt_actfrcrange, strict=True):
+        assert not limited or lower == -upper < 0
 
 
 def test_masses_are_sane(path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from impact_cases import ALONG_Y, HEAD, POSE
+from impact_cases import ALONG_Y, FREE_HEAD, HEAD, POSE
 
 from softimpact.simulate import (
     Approach,
@@ -22,8 +22,10 @@ from softimpact.simulate import (
     simulate_impact,
 )
 from softimpact.symbolic import (
+    Contact,
     ImpactModel,
     InvalidValue,
+    Motors,
     Robot,
     SingularDirection,
     SoftImpactError,
@@ -45,20 +47,25 @@ def arm(panda: Robot) -> ImpactModel:
 @pytest.fixture(scope="module")
 def two_peaks() -> ImpactHistory:
     """A light link bounces off the head before its motor arrives (MSM, RR in scenario a)."""
+    return straight_rr(HEAD, None)
+
+
+def straight_rr(contact: Contact, horizon: float | None) -> ImpactHistory:
     robot = load_robot("rr")
     model = impact_model(robot, "P", drives_=drives(robot, computed_torque_gain=6050.0))
     approach = Approach(np.zeros(4), np.array([0.0, 1.0, 0.0]), 1.0, np.array([1.0, 0, 0, 0]))
-    return simulate_impact(model, approach, HEAD)
+    return simulate_impact(model, approach, contact, motors=Motors("held"), horizon=horizon)
 
 
 def test_the_two_definitions_of_the_peak_part(two_peaks: ImpactHistory) -> None:
-    first, highest = two_peaks.peak("first_peak"), two_peaks.peak("first_contact")
+    first, highest = two_peaks.force_of("first_peak"), two_peaks.force_of("first_contact")
     assert first < 0.8 * highest
+    assert two_peaks.time_of_first_peak is not None
     assert two_peaks.time_of_first_peak < two_peaks.time_of_first_contact_peak
     assert two_peaks.separation is not None
     assert two_peaks.time_of_first_contact_peak < two_peaks.separation < two_peaks.time[-1]
     with pytest.raises(UnknownName, match="first_contact, first_peak"):
-        two_peaks.peak("mean")  # type: ignore[arg-type]
+        two_peaks.force_of("mean")  # type: ignore[arg-type]
 
 
 def test_peaks_lie_on_the_curve(two_peaks: ImpactHistory) -> None:
@@ -67,11 +74,12 @@ def test_peaks_lie_on_the_curve(two_peaks: ImpactHistory) -> None:
     assert time[0] == force[0] == 0
     assert np.all(np.diff(time) > 0)
     assert two_peaks.separation is not None
+    assert two_peaks.time_of_first_peak is not None
     before = time < two_peaks.separation
     assert np.all(force[before][1:] > 0)
     assert force[~before][0] == 0
     for at, peak in (
-        (two_peaks.time_of_first_peak, two_peaks.first_peak),
+        (two_peaks.time_of_first_peak, two_peaks.force_of("first_peak")),
         (two_peaks.time_of_first_contact_peak, two_peaks.first_contact),
     ):
         near = abs(time - at) < 1e-4
@@ -82,10 +90,10 @@ def test_peaks_lie_on_the_curve(two_peaks: ImpactHistory) -> None:
 
 
 def test_peaks_do_not_depend_on_the_time_grid(arm: ImpactModel) -> None:
-    ended = simulate_impact(arm, AHEAD, HEAD)
+    ended = simulate_impact(arm, AHEAD, FREE_HEAD, horizon=None)
     assert ended.separation is not None
     for duration in (0.0331, 0.071):
-        other = simulate_impact(arm, AHEAD, HEAD, duration=duration)
+        other = simulate_impact(arm, AHEAD, FREE_HEAD, horizon=duration)
         assert other.time[-1] == pytest.approx(duration, rel=1e-12)
         assert other.first_contact == pytest.approx(ended.first_contact, rel=1e-8)
         assert other.time_of_first_peak == pytest.approx(ended.time_of_first_peak, rel=1e-6)
@@ -93,23 +101,26 @@ def test_peaks_do_not_depend_on_the_time_grid(arm: ImpactModel) -> None:
 
 
 def test_a_short_simulation_says_what_it_has_seen(arm: ImpactModel) -> None:
-    whole = simulate_impact(arm, AHEAD, HEAD)
-    short = simulate_impact(arm, AHEAD, HEAD, duration=1.1 * whole.time_of_first_contact_peak)
+    whole = simulate_impact(arm, AHEAD, FREE_HEAD, horizon=None)
+    until = 1.1 * whole.time_of_first_contact_peak
+    short = simulate_impact(arm, AHEAD, FREE_HEAD, horizon=until)
     assert short.separation is None
     assert short.first_contact == pytest.approx(whole.first_contact, rel=1e-8)
-    with pytest.raises(InvalidValue, match="before the force has reached its first peak"):
-        simulate_impact(arm, AHEAD, HEAD, duration=0.5 * whole.time_of_first_peak)
+    assert whole.time_of_first_peak is not None
+    shorter = simulate_impact(arm, AHEAD, FREE_HEAD, horizon=0.5 * whole.time_of_first_peak)
+    assert shorter.first_peak is shorter.time_of_first_peak is None
+    assert shorter.peak == shorter.first_contact == shorter.force[-1]
+    with pytest.raises(InvalidValue, match="first_peak: does not exist: the force rises"):
+        shorter.force_of("first_peak")
 
 
-def test_a_second_rise_cut_short_counts_as_far_as_it_went(two_peaks: ImpactHistory) -> None:
-    robot = load_robot("rr")
-    model = impact_model(robot, "P", drives_=drives(robot, computed_torque_gain=6050.0))
-    approach = Approach(np.zeros(4), np.array([0.0, 1.0, 0.0]), 1.0, np.array([1.0, 0, 0, 0]))
-    until = 0.97 * two_peaks.time_of_first_contact_peak
-    cut = simulate_impact(model, approach, HEAD, duration=until)
-    assert cut.first_peak == pytest.approx(two_peaks.first_peak, rel=1e-8)
-    assert cut.first_contact == cut.force[-1]
-    assert cut.first_peak < cut.first_contact < two_peaks.first_contact
+def test_a_second_rise_cut_short_counts_as_far_as_it_went() -> None:
+    whole = straight_rr(FREE_HEAD, None)
+    cut = straight_rr(FREE_HEAD, 0.97 * whole.time_of_first_contact_peak)
+    assert cut.first_peak == pytest.approx(whole.first_peak, rel=1e-8)
+    assert cut.peak == cut.first_contact == cut.force[-1]
+    assert cut.first_peak is not None
+    assert cut.first_peak < cut.first_contact < whole.first_contact
 
 
 @pytest.mark.parametrize("fidelity", ["one_mass", "linearised", "full"])
@@ -142,7 +153,8 @@ def test_a_safe_first_peak_is_safe_at_all_lower_speeds(guess: float) -> None:
     found = largest_safe_speed(model, approach, HEAD, 390.0, definition="first_peak")
 
     def peak(speed: float) -> float:
-        return simulate_impact(model, replace(approach, speed=speed), HEAD).first_peak
+        found = simulate_impact(model, replace(approach, speed=speed), HEAD)
+        return found.force_of("first_peak")
 
     assert peak(found) == pytest.approx(390.0, rel=1e-7)
     assert max(peak(v) for v in np.linspace(0.1, 0.999, 12) * found) < 390.0
@@ -191,8 +203,16 @@ def test_bad_approaches_are_rejected(
         ({"fidelity": "chain", "order": 0}, InvalidValue),
         ({"fidelity": "chain", "order": 15}, InvalidValue),
         ({"fidelity": "chain", "end": "fixed"}, UnknownName),
-        ({"duration": 0.0}, InvalidValue),
-        ({"duration": NAN}, InvalidValue),
+        ({"horizon": 0.0}, InvalidValue),
+        ({"horizon": -0.1}, InvalidValue),
+        ({"horizon": np.inf}, InvalidValue),
+        ({"horizon": NAN}, InvalidValue),
+        ({"motors": Motors("asleep")}, UnknownName),  # type: ignore[arg-type]
+        ({"motors": Motors("driven", -1e-9)}, InvalidValue),
+        ({"motors": Motors("driven", NAN)}, InvalidValue),
+        ({"motors": Motors("driven", reaction="run")}, UnknownName),  # type: ignore[arg-type]
+        ({"motors": Motors("driven", stopping_time=0.0)}, InvalidValue),
+        ({"motors": Motors("driven", stopping_time=np.inf)}, InvalidValue),
         ({"tolerance": 0.0}, InvalidValue),
         ({"tolerance": NAN}, InvalidValue),
     ],
@@ -204,10 +224,14 @@ def test_bad_options_are_rejected(
         simulate_impact(arm, AHEAD, HEAD, **options)
 
 
-def test_an_impact_that_never_peaks_says_how_long_it_was_watched(panda: Robot) -> None:
+def test_an_impact_that_never_peaks_is_followed_for_two_seconds(panda: Robot) -> None:
     heavy = impact_model(panda, drives_=drives(panda, rotor_inertia=1e9))
-    with pytest.raises(InvalidValue, match=r"duration: 2 s end before .* first peak"):
-        simulate_impact(heavy, AHEAD, HEAD)
+    found = simulate_impact(heavy, AHEAD, HEAD, horizon=None)
+    assert found.first_peak is found.separation is None
+    assert found.time[-1] == pytest.approx(2.0)
+    assert found.peak == found.force[-1]
+    with pytest.raises(InvalidValue, match=r"first_peak: does not exist"):
+        largest_safe_speed(heavy, AHEAD, HEAD, 100.0, definition="first_peak")
 
 
 def test_lists_will_do(arm: ImpactModel) -> None:

@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from impact_cases import peak_of_one_mass
 from scipy.optimize import brentq
 
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.simulate.events import first_contact
-from softimpact.simulate.linear import LinearSystem, modal_scene
 from softimpact.symbolic import Contact, ImpactModel, body_region, drives, impact_model, load_robot
 
 COMPUTED_TORQUE_GAIN = 6050.0
@@ -56,11 +55,6 @@ def test_one_mass_forces_of_r_min(m_c: float, region: str, force: float) -> None
     assert peak_of_one_mass(m_c, 1.0, Contact(body_region(region))) == pytest.approx(
         force, rel=5e-4
     )
-
-
-def peak_of_one_mass(mass: float, speed: float, contact: Contact) -> float:
-    alone = LinearSystem(np.array([[mass]]), np.zeros((1, 1)), np.ones(1), np.ones(1))
-    return first_contact(modal_scene(alone, speed, contact, 1e-10)).highest.force
 
 
 def peak_from_energy(mass: float, speed: float, contact: Contact) -> float:

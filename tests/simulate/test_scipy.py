@@ -12,6 +12,7 @@ from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
+    Motors,
     Robot,
     approach_velocity,
     body_region,
@@ -80,7 +81,8 @@ def test_agrees_with_scipy(panda: Robot, region: str, clamped: bool, case: int) 
     )
     approach = Approach(q, random.normal(size=3), random.uniform(0.1, 2))
     contact = Contact(body_region(region), clamped=clamped)
-    ours = simulate_impact(model, approach, contact)
+    motors = Motors("free" if gain is None else "held")
+    ours = simulate_impact(model, approach, contact, motors=motors, horizon=None)
     force, first_peak, separation = by_scipy(model, approach, contact, ours.time)
     np.testing.assert_allclose(ours.force, force, rtol=0, atol=1e-6 * force.max())
     assert ours.first_peak == pytest.approx(first_peak, rel=1e-6)

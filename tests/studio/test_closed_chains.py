@@ -49,7 +49,10 @@ def test_any_point_of_any_body() -> None:
         (("--q", "[0, 0, 0]"), "q: has 3 values, but 6 are needed"),
         (("--motor-angles", "--q", "[0, 0, 0]"), "has 3 values, but 2 are needed"),
         (("--motor-angles", "--q", "[3.1416, 0]"), "loop 'end_point' does not close"),
-        ((*MOTORS, "--joint-stiffness", "[9, 9, 9, 9, 9, 9]"), "rotor_inertia: joint 'q11'"),
+        (
+            (*MOTORS, "--joint-stiffness", "[9, 9, 9, 9, 9, 9]"),
+            "joint 'q12' follows",
+        ),
     ],
 )
 def test_what_may_go_wrong_with_rmin(options: tuple[str, ...], reason: str) -> None:

@@ -9,6 +9,7 @@ import pytest
 from command_line import refusal, run, run_json
 
 from softimpact.codegen import Payload, generate_package
+from softimpact.studio.pose_table import pose_table
 from softimpact.symbolic import drives, load_robot
 
 STUDY = Path(__file__).parents[2] / "robots/studies/panda_24_poses.toml"
@@ -22,6 +23,7 @@ def contents(folder: Path) -> dict[str, str]:
     }
 
 
+@pytest.mark.slow
 def test_writes_what_the_library_writes(tmp_path: Path) -> None:
     typed, called = tmp_path / "typed", tmp_path / "called"
     options = ("--real", "float", "--position-gain", "[500, 0, 400, 0]", "--order", 2)
@@ -57,12 +59,19 @@ def test_bad_input(tmp_path: Path, options: list[str], reason: str) -> None:
     assert not (tmp_path / "c").exists()
 
 
+@pytest.mark.slow
 def test_candidate_poses_come_from_a_file(tmp_path: Path) -> None:
     path = tmp_path / "poses.json"
     path.write_text('{"low": [0.1, 0, 0.2, 0], "high": [1, 0, 1, 0]}')
     result = run_json("generate", "rr", "--out", tmp_path / "c", "--poses", path)
     assert result["poses"] == ["low", "high"]
     assert "RR_CANDIDATES 2" in (tmp_path / "c/include/rr.h").read_text()
+
+
+def test_a_byte_order_mark_is_no_content(tmp_path: Path) -> None:
+    path = tmp_path / "poses.json"
+    path.write_text('{"low": [0.1, 0, 0.2, 0]}', encoding="utf-8-sig")
+    assert pose_table(path, load_robot("rr")) == {"low": [0.1, 0, 0.2, 0]}
 
 
 @pytest.mark.parametrize(
@@ -99,6 +108,7 @@ def test_foreign_files_stay(tmp_path: Path) -> None:
     assert contents(tmp_path) == {"notes.txt": "mine"}
 
 
+@pytest.mark.slow
 def test_failure_leaves_the_older_package(tmp_path: Path) -> None:
     folder = tmp_path / "c"
     assert run("generate", "rr", "--out", folder).code == 0
@@ -110,6 +120,7 @@ def test_failure_leaves_the_older_package(tmp_path: Path) -> None:
     assert (folder / "README.md").read_text() == "edited"
 
 
+@pytest.mark.slow
 def test_payload_and_frozen_parameters(tmp_path: Path) -> None:
     typed, called = tmp_path / "typed", tmp_path / "called"
     options = ("--payload", "--payload-mass", 2, "--payload-com", "[0, 0, 0.125]", "--order", 2)

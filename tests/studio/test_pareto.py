@@ -122,6 +122,7 @@ def test_the_page_links_its_figures(results: tuple[Path, dict[str, Any]]) -> Non
     assert all((out / link).is_file() for link in links)
 
 
+@pytest.mark.slow
 def test_words(report: ParetoReport) -> None:
     said = " ".join(in_words(report))
     points = report.fronts["free"]
@@ -134,6 +135,7 @@ def test_words(report: ParetoReport) -> None:
     assert "# " in markdown(report, [])
 
 
+@pytest.mark.slow
 def test_words_about_failures_and_limits(report: ParetoReport) -> None:
     """A level that Ipopt left is told, with its status; a limit that is met, from where on."""
     front = report.pareto.free
@@ -154,6 +156,7 @@ def lines(axes: Any) -> dict[str, Any]:
     return {line.get_label(): line for line in axes.lines}
 
 
+@pytest.mark.slow
 def test_fronts_are_drawn_as_they_are(report: ParetoReport) -> None:
     force, speed = figure_of_fronts(report), figure_of_speeds(report)
     labels = {
@@ -176,6 +179,7 @@ def test_fronts_are_drawn_as_they_are(report: ParetoReport) -> None:
     assert "the study's bound, 1 mm" in lines(force.axes[0])
 
 
+@pytest.mark.slow
 def test_a_limit_that_is_near_is_drawn(report: ParetoReport) -> None:
     region = replace(report.study.contact.region, quasi_static_limit=700.0)
     contact = replace(report.study.contact, region=region)
@@ -186,6 +190,7 @@ def test_a_limit_that_is_near_is_drawn(report: ParetoReport) -> None:
     assert "beyond" not in axes.get_xlabel()
 
 
+@pytest.mark.slow
 def test_designs_are_drawn_joint_by_joint(report: ParetoReport) -> None:
     stiffness, angles = figure_of_designs(report).axes
     points = report.fronts["free"]
@@ -196,6 +201,7 @@ def test_designs_are_drawn_joint_by_joint(report: ParetoReport) -> None:
         np.testing.assert_allclose(turned, [p.point.outcome.q[i] for p in points])
 
 
+@pytest.mark.slow
 def test_figures_are_legible_and_the_same_each_time(report: ParetoReport, tmp_path: Path) -> None:
     for figure in (figure_of_fronts(report), figure_of_speeds(report), figure_of_designs(report)):
         figure.draw_without_rendering()
@@ -214,6 +220,7 @@ def test_figures_are_legible_and_the_same_each_time(report: ParetoReport, tmp_pa
         assert path.read_bytes() == (folders[1] / path.name).read_bytes()
 
 
+@pytest.mark.slow
 def test_tables_say_what_was_found(tmp_path: Path) -> None:
     study = written(tmp_path, changed(HEAD, ("q9",)))
     outcome = run("pareto", study, "--out", tmp_path / "out")

@@ -8,13 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from softimpact.studio.results_folder import (
-    RESULTS,
-    FolderNotWritable,
-    ForeignFolder,
-    replaced_folder,
-    require_replaceable,
-)
+from softimpact.codegen import FolderNotWritable, ForeignFolder
+from softimpact.studio.results_folder import RESULTS, replaced_folder, require_replaceable
 
 MINE = "softimpact test"
 
@@ -59,7 +54,7 @@ def test_an_interruption_between_the_two_moves_is_undone(
     move = Path.rename
 
     def interrupted(source: Path, target: Path) -> Path:
-        if target.name == "out" and not source.name.endswith(".old"):
+        if target.name == "out" and not source.name.endswith(".previous"):
             raise KeyboardInterrupt
         return move(source, target)
 

@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 from oracles import assert_near
 
-from softimpact.symbolic import InvalidValue, Robot, WrongLength, drives, load_robot
+from softimpact.symbolic import (
+    InvalidValue,
+    Robot,
+    WrongLength,
+    drives,
+    impact_model,
+    load_robot,
+)
+from softimpact.symbolic.impact.motors import MotorLaw
 
 
 @pytest.fixture(scope="module")
@@ -65,13 +73,13 @@ NAN = float("nan")
         ({"rotor_inertia": -0.1}, "rotor_inertia", "must be finite and ≥ 0"),
         ({"rotor_inertia": np.inf}, "rotor_inertia", "must be finite and ≥ 0"),
         ({"rotor_inertia": NAN}, "rotor_inertia", "must not be NaN"),
-        (
-            {"joint_stiffness": 1e3, "rotor_inertia": [1, 1, 0, 1, 1, 1, 1]},
-            "rotor_inertia",
-            "joint 'joint3' is elastic, so its rotor needs an inertia greater than 0",
-        ),
         ({"position_gain": -1.0}, "position_gain", "must be finite and ≥ 0"),
         ({"position_gain": np.inf}, "position_gain", "must be finite and ≥ 0"),
+        ({"damping_gain": -1.0}, "damping_gain", "must be finite and ≥ 0"),
+        ({"damping_gain": np.inf}, "damping_gain", "must be finite and ≥ 0"),
+        ({"torque_limit": 0.0}, "torque_limit", "must be greater than 0 N·m"),
+        ({"torque_limit": [1, 1, 1, -2, 1, 1, 1]}, "torque_limit", "entry 4 is -2"),
+        ({"torque_limit": NAN}, "torque_limit", "must not be NaN"),
         ({"computed_torque_gain": -1.0}, "computed_torque_gain", "must be finite and ≥ 0"),
         ({"computed_torque_gain": NAN}, "computed_torque_gain", "must be finite and ≥ 0"),
         (
@@ -106,3 +114,17 @@ def test_vectors_must_fit(robot: Robot, field: str, values: list[float]) -> None
 def test_vectors_are_flat(robot: Robot) -> None:
     with pytest.raises(InvalidValue, match="joint_stiffness: must be a flat list"):
         drives(robot, np.ones((7, 1)))
+
+
+@pytest.mark.parametrize("law", ["free", "servo", "held", "driven"])
+def test_only_motors_that_are_not_driven_need_rotors(robot: Robot, law: MotorLaw) -> None:
+    """The rotor of an elastic joint must not be zero, unless its motion is given."""
+    given = drives(robot, joint_stiffness=1e3, rotor_inertia=[1, 1, 0, 1, 1, 1, 1])
+    model = impact_model(robot, drives_=given)
+    q, n = np.full(7, 0.3), np.array([0.0, 1.0, 0.0])
+    if law == "driven":
+        assert model.linear(q, n, law).jacobian.shape == (1, 7)
+        return
+    with pytest.raises(InvalidValue, match="joint 'joint3' is elastic") as caught:
+        model.linear(q, n, law)
+    assert caught.value.field == "rotor_inertia"

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact check``: everything that is wrong in a study file."""
+
+from __future__ import annotations
+
+import typer
+
+from . import options as o
+
+
+def check(study: o.StudyFile, json: o.Json = False) -> None:
+    """Say everything that is wrong in a study file, with line numbers, without running it."""
+    from softimpact.optimize.study import load_study
+    from softimpact.optimize.study_check import study_problems
+
+    from .output import print_json, print_warnings
+
+    problems = study_problems(study)
+    if json:
+        print_json({"study": study, "problems": problems})
+    for problem in problems:
+        where = study if problem.line is None else f"{study}:{problem.line}"
+        what = f"{problem.field}: " if problem.field else ""
+        typer.echo(f"error: {where}: {what}{' '.join(problem.reason.split())}", err=True)
+    if problems:
+        raise typer.Exit(2)
+    found = load_study(study)
+    print_warnings(found.robot.warnings)
+    if not json:
+        typer.echo(f"{study}: nothing is wrong; {found.robot.name}, {len(found.poses)} poses")

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A study file to begin with: what a robot's file has, and what somebody has to fill in."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from softimpact.symbolic import (
+    Robot,
+    SingularDirection,
+    approach_velocity,
+    arm_of,
+    contact_point_jacobian,
+    impact_model,
+    load_robot,
+)
+from softimpact.symbolic.robot.loading import model_path
+from softimpact.symbolic.robot.rigid import Array
+
+POSES_TRIED = 200
+"""Random configurations of which the one that moves best in all directions is taken."""
+
+DIRECTIONS = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))
+
+NOMINAL = 1.5e4
+"""Joint stiffness to begin with [N·m/rad], as of harmonic drives in arms of this size."""
+
+TEXT = """# A study of {name}: which joint springs, and which posture, make an impact harmless.
+# Written by "softimpact init"; see what is marked with TODO, then run
+# "softimpact check" and "softimpact design" on it.
+title = "{name}"
+
+[robot]
+model = {model}
+tip = {tip}  # contact frame{others}
+{rotors}
+
+[impact]
+region = "chest"  # TODO: chest, head, hand, ...: what may be hit
+clamped = true  # whether it is held, or can give way
+direction = {direction}  # TODO: in which the tip moves, base axes
+speed = 0.5  # TODO: of the tip, m/s
+
+# What the motors do; without this table the worse of free motors and of motors that drive on.
+{motors}
+
+[stiffness]  # of the joints' springs, N·m/rad: one number, or one for each of {joints}
+lower = {lower:g}
+upper = {upper:g}
+nominal = {nominal:g}  # TODO: of the springs that the robot has now
+
+[accuracy]  # how far the tip may give way
+forces = [[30.0, 0.0, 0.0], [0.0, 30.0, 0.0], [0.0, 0.0, 30.0]]  # N, base axes
+max_deflection = 0.001  # TODO: m
+
+[task]
+pose_of = "first"  # the tip is held where this pose has it
+exact = true
+
+# Candidate postures, rad and m. TODO: those of your task; limits are
+{limits}
+[[poses]]
+name = "first"
+q = {q}
+"""
+
+
+def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
+    """Return a study file for a robot, and what there is to say about its model file.
+
+    Args:
+        model: name of a robot, or path of a file.
+        tip: contact frame; default the robot's own.
+
+    Raises:
+        SoftImpactError: the robot cannot be read, or no contact frame that moves is named.
+    """
+    robot = load_robot(model, toward=tip)
+    arm = arm_of(robot, tip, tip)
+    q, direction = _posture(arm.robot)
+    path = model_path(model)
+    name = model if path.name != Path(model).name else str(path.resolve())
+    others = [frame for frame in robot.frames if frame != arm.robot.tip]
+    text = TEXT.format(
+        name=robot.name.replace('"', "'"),
+        model=json.dumps(name, ensure_ascii=False),
+        tip=json.dumps(arm.robot.tip, ensure_ascii=False),
+        others=f"; others are {', '.join(others[:8])}" if others else "",
+        rotors=_rotors(arm.robot),
+        direction=list(direction),
+        motors=_motors(arm.robot),
+        joints=", ".join(arm.robot.joint_names),
+        lower=NOMINAL / 50,
+        upper=NOMINAL * 10,
+        nominal=NOMINAL,
+        limits="".join(
+            f"#   {joint.name}: {joint.lower:g} to {joint.upper:g}\n" for joint in arm.robot.joints
+        ),
+        q=[round(float(x), 3) for x in q],
+    )
+    return text, [*arm.robot.warnings, *arm.warnings]
+
+
+def _rotors(robot: Robot) -> str:
+    """Lines on rotor inertias: the file's, its named sets, or that there are none."""
+    sets = ", ".join(f'"{name}"' for name in robot.rotor_inertia_sets)
+    named = f"# rotor_inertia: one of the model's sets ({sets}), or kg m² for each joint" * bool(
+        sets
+    )
+    unknown = [j.name for j in robot.joints if j.actuated and not j.armature]
+    if unknown and not robot.rotors_stated:
+        lines = f"# TODO: the model has no rotor inertia of {', '.join(unknown)};\n"
+        lines += "# reflected to the joints, kg m²; motors count as driving on without it:\n"
+        return lines + f"# rotor_inertia = {[0.1] * robot.n}" + (f"\n{named}" if named else "")
+    shown = ", ".join(f"{joint.armature:g}" for joint in robot.joints)
+    return f"# rotor inertias of the model, kg m²: {shown}" + (f"\n{named}" if named else "")
+
+
+def _motors(robot: Robot) -> str:
+    gains = robot.position_gains
+    lines = ["# [motors]", '# kind = "servo"  # free, servo or driven']
+    if gains.any():
+        lines += [
+            f"# position_gain = {gains.tolist()}  # N·m/rad, the model's",
+            f"# damping_gain = {robot.velocity_gains.tolist()}  # N·m·s/rad, the model's",
+        ]
+    else:
+        lines += ["# position_gain = 3000.0  # TODO: N·m/rad; the model has none"]
+    return "\n".join([*lines, "# reaction_time = 0.02  # s, from first touch on"])
+
+
+def _posture(robot: Robot) -> tuple[Array, tuple[float, ...]]:
+    """Return a configuration within the limits that moves well, and a direction it can move in."""
+    lower, upper = (np.clip(bound, -np.pi, np.pi) for bound in robot.limits)
+    middle, room = (lower + upper) / 2, (upper - lower) / 2
+    random = np.random.default_rng(0)
+    model = impact_model(robot)
+    best: tuple[float, Array, tuple[float, ...]] | None = None
+    for _ in range(POSES_TRIED):
+        q = (middle + 0.6 * room * random.uniform(-1, 1, robot.n)).round(3)
+        J = np.array(contact_point_jacobian(robot, str(robot.tip), q))
+        for direction in DIRECTIONS:
+            try:
+                approach_velocity(model, q, direction)
+            except SingularDirection:
+                continue
+            values = np.linalg.svd(J, compute_uv=False)
+            score = float(values[values > 1e-9].min(initial=1.0)) - 1e-3 * DIRECTIONS.index(
+                direction
+            )
+            if best is None or score > best[0]:
+                best = (score, q, direction)
+    return (middle, DIRECTIONS[0]) if best is None else best[1:]

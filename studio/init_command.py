@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact init``: a study file to begin with."""
+
+from __future__ import annotations
+
+import typer
+
+from . import options as o
+
+
+def init(model: o.Model, tip: o.Tip = None) -> None:
+    """Print a study file for a robot, with what its file has and what is missing."""
+    from .first_study import first_study
+    from .output import print_warnings
+
+    text, warnings = first_study(model, tip)
+    print_warnings(warnings)
+    typer.echo(text, nl=False)

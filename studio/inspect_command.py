@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact inspect``: what a robot's file says, what of it counts, and what looks wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from . import options as o
+
+
+def inspect(
+    model: o.Model,
+    tip: o.Tip = None,
+    json: o.Json = False,
+) -> None:
+    """Print what a robot is: joints, masses, drives, frames, loops, and what is doubtful."""
+    from .inspection import inspected
+    from .output import print_json, print_warnings
+
+    found = inspected(model, tip)
+    print_warnings(found["warnings"])
+    if json:
+        print_json(found)
+    else:
+        _print_tables(found)
+
+
+def _print_tables(found: Mapping[str, Any]) -> None:
+    from .output import print_table
+
+    print_table(
+        f"{found['robot']}, {found['base']} base",
+        ("quantity", "value", "unit"),
+        [
+            ("joints", str(len(found["joints"])), ""),
+            ("contact frame", found["tip"], ""),
+            ("reach of the contact frame, at most", found["reach"], "m"),
+            ("moving mass", found["moving_mass"], "kg"),
+            ("mass fixed to the base", found["base_mass"], "kg"),
+        ],
+    )
+    print_table(
+        "Joints",
+        ("joint", "kind", "on", "lower", "upper", "speed", "torque", "motor", "moves [kg]"),
+        [
+            (
+                joint["name"],
+                joint["kind"],
+                joint["parent"],
+                joint["lower"],
+                joint["upper"],
+                joint["speed_limit"],
+                joint["torque_limit"],
+                "yes" if joint["motor"] else "no",
+                joint["mass"],
+            )
+            for joint in found["joints"]
+        ],
+    )
+    print_table(
+        "Drives, reflected to the joints (rad or m)",
+        ("joint", "rotor", "spring", "damping", "friction", "K_p", "K_d"),
+        [
+            (
+                joint["name"],
+                joint["rotor_inertia"],
+                joint["stiffness"],
+                joint["damping"],
+                joint["friction"],
+                joint["position_gain"],
+                joint["velocity_gain"],
+            )
+            for joint in found["joints"]
+        ],
+    )
+    if found["constraints"]:
+        print_table(
+            "Loops and couplings",
+            ("name", "kind", "what it ties"),
+            [(c["name"], c["kind"], c["ties"]) for c in found["constraints"]],
+        )
+    print_table("Frames", ("frame", "moved by"), [(f["name"], f["joint"]) for f in found["frames"]])
+    print_table(
+        "Mass matrix by others, largest difference over largest entry",
+        ("library", "difference"),
+        [
+            (name, opinion if isinstance(opinion, str) else f"{opinion:.1e}")
+            for name, opinion in found["second_opinions"].items()
+        ],
+    )

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact program``: how fast a robot's program may run, and what limits it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from typer.core import TyperCommand
+
+from . import options as o
+from .simulate_command import BODY, Clamped, Cover, Horizon
+
+
+class SeveralValues(TyperCommand):
+    """Lets options that may be repeated take several values at once: ``--points A B``."""
+
+    def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
+        """Repeat such an option before each of its values."""
+        several = {
+            name
+            for parameter in self.params
+            if getattr(parameter, "multiple", False)
+            for name in parameter.opts
+        }
+        words: list[str] = []
+        option, empty = "", False
+        for word in args:
+            if word.startswith("--"):
+                words += [option] if empty else []
+                option = word if word in several else ""
+                empty = bool(option)
+                words += [] if option else [word]
+            else:
+                words += [option, word] if option else [word]
+                empty = False
+        words += [option] if empty else []
+        return list(super().parse_args(ctx, words))
+
+
+Motion = Annotated[
+    Path,
+    typer.Argument(
+        metavar="MOTION",
+        help="CSV: columns t (s) and one for each joint of the arm, by name (rad, m); or JSON: "
+        "waypoints, each with q and a speed (m/s) or time (s).",
+        show_default=False,
+    ),
+]
+Robot = Annotated[
+    str,
+    typer.Option(
+        "--model", metavar="MODEL", help="Built-in robot, or path of a .urdf or MJCF .xml file."
+    ),
+]
+Points = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--points",
+        metavar="FRAME...",
+        help="Points of the arm that may hit somebody: frames, or BODY@x,y,z; default the end and "
+        "frames some 0.15 m apart along the arm.",
+    ),
+]
+Regions = Annotated[
+    list[str],
+    typer.Option(
+        "--regions",
+        metavar="NAME...",
+        help="Regions or areas of the body that they may hit.",
+        rich_help_panel=BODY,
+    ),
+]
+Band = Annotated[
+    bool,
+    typer.Option(
+        "--band", help="Where 95 of 100 cases of the worst moments lie, for what is not known."
+    ),
+]
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder for results.json, CSV tables and a figure."),
+]
+
+
+def program(
+    motion: Motion,
+    model: Robot,
+    regions: Regions,
+    points: Points = None,
+    end: o.End = None,
+    lock: o.Lock = None,
+    payload: o.Payload = None,
+    tool: o.Tool = None,
+    cover: Cover = None,
+    clamped: Clamped = True,
+    motors: o.Motors = None,
+    reaction_time: o.ReactionTime = None,
+    stopping_time: o.StoppingTime = None,
+    horizon: Horizon = None,
+    joint_stiffness: o.JointStiffness = None,
+    rotor_inertia: o.RotorInertia = None,
+    position_gain: o.PositionGain = None,
+    damping_gain: o.DampingGain = None,
+    torque_limit: o.TorqueLimit = None,
+    gear_ratio: o.GearRatio = None,
+    gravity: o.Gravity = None,
+    band: Band = False,
+    out: Out = None,
+    json: o.Json = False,
+) -> None:
+    """Find the factor by which to slow a motion down, so that no watched point can hurt."""
+    from .output import print_json, print_warnings
+    from .program import TypedProgram, run_program
+    from .program_record import GENERATOR, print_program
+    from .results_folder import replaced_folder, require_replaceable
+    from .situation import TypedArm, TypedDrives
+    from .typed_motors import TypedMotors
+
+    if out is not None:
+        require_replaceable(out, GENERATOR)
+    how = TypedProgram(
+        arm=TypedArm(model, None, end, lock, payload, tool),
+        drives=TypedDrives(
+            joint_stiffness,
+            rotor_inertia,
+            position_gain,
+            None,
+            gear_ratio,
+            damping_gain,
+            torque_limit,
+            servo=motors == "servo",
+        ),
+        motors=TypedMotors(motors, reaction_time, stopping_time),
+        points=tuple(points or ()),
+        regions=tuple(name for text in regions for name in text.split(",") if name),
+        cover=cover,
+        clamped=clamped,
+        horizon=horizon,
+        gravity=gravity,
+        band=band,
+    )
+    found = run_program(motion, how)
+    print_warnings(found.record["warnings"])
+    if out is not None:
+        from .program_files import write_program
+
+        with replaced_folder(out, GENERATOR) as fresh:
+            write_program(found, fresh)
+    if json:
+        print_json({"out": out, **found.record})
+    else:
+        print_program(found, out)

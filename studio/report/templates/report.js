@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a report does in a browser: arms that turn, tables that sort. */
+"use strict";
+
+function drawArm(svg) {
+  const points = JSON.parse(svg.dataset.points);
+  const contact = JSON.parse(svg.dataset.contact);
+  const direction = JSON.parse(svg.dataset.direction);
+  const exceeded = Number(svg.dataset.share) > 1;
+  const every = points.concat([contact, [0, 0, 0]]);
+  const middle = [0, 1, 2].map((k) => {
+    const values = every.map((p) => p[k]);
+    return (Math.min(...values) + Math.max(...values)) / 2;
+  });
+  const reach = Math.max(...every.map((p) => Math.hypot(...p.map((x, k) => x - middle[k]))), 0.1);
+  let turn = 0.9, tilt = 0.35;
+
+  function flat(p) { /* turned about the vertical, then tilted; the page's y points down */
+    const [x, y, z] = p.map((value, k) => (value - middle[k]) / (1.25 * reach));
+    const right = Math.cos(turn) * x + Math.sin(turn) * y;
+    const deep = Math.cos(turn) * y - Math.sin(turn) * x;
+    return [right, -(Math.cos(tilt) * z + Math.sin(tilt) * deep)];
+  }
+  function line(a, b, colour, width) {
+    const [[x1, y1], [x2, y2]] = [flat(a), flat(b)];
+    return `<line x1="${x1}" y1="${y1}" x2="${x2}" y2="${y2}" stroke="${colour}" ` +
+      `stroke-width="${width}" stroke-linecap="round"/>`;
+  }
+  function dot(p, colour, radius) {
+    const [x, y] = flat(p);
+    return `<circle cx="${x}" cy="${y}" r="${radius}" fill="${colour}"/>`;
+  }
+  function paint() {
+    const arrow = direction.map((x, k) => contact[k] - 0.45 * reach * x);
+    const ground = reach * 0.25;
+    let picture = line([-ground, 0, 0], [ground, 0, 0], "#b8b8b8", 0.012);
+    picture += line([0, -ground, 0], [0, ground, 0], "#b8b8b8", 0.012);
+    for (let i = 1; i < points.length; ++i) picture += line(points[i - 1], points[i], "#0072b2", 0.035);
+    for (const p of points) picture += dot(p, "#1a1a1a", 0.022);
+    const colour = exceeded ? "#d55e00" : "#009e73";
+    picture += line(arrow, contact, colour, 0.022) + dot(contact, colour, 0.04);
+    svg.innerHTML = picture;
+  }
+  let last = null;
+  svg.addEventListener("pointerdown", (event) => { last = event; svg.setPointerCapture(event.pointerId); });
+  svg.addEventListener("pointermove", (event) => {
+    if (!last) return;
+    turn -= (event.clientX - last.clientX) / 120;
+    tilt = Math.min(1.5, Math.max(-1.5, tilt + (event.clientY - last.clientY) / 120));
+    last = event;
+    paint();
+  });
+  for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => { last = null; });
+  svg.tabIndex = 0;
+  svg.addEventListener("keydown", (event) => {
+    const step = { ArrowLeft: [0.1, 0], ArrowRight: [-0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] }[event.key];
+    if (!step) return;
+    turn += step[0];
+    tilt = Math.min(1.5, Math.max(-1.5, tilt + step[1]));
+    event.preventDefault();
+    paint();
+  });
+  paint();
+}
+
+function makeSortable(table) {
+  const body = table.tBodies[0];
+  table.querySelectorAll("th").forEach((head, column) => {
+    head.addEventListener("click", () => {
+      const rises = head.getAttribute("aria-sort") !== "ascending";
+      table.querySelectorAll("th").forEach((other) => other.removeAttribute("aria-sort"));
+      head.setAttribute("aria-sort", rises ? "ascending" : "descending");
+      const value = (row) => {
+        const cell = row.cells[column];
+        return "value" in cell.dataset ? Number(cell.dataset.value) : cell.textContent;
+      };
+      const order = (a, b) => (a < b ? -1 : a > b ? 1 : 0);
+      [...body.rows]
+        .sort((a, b) => (rises ? 1 : -1) * order(value(a), value(b)))
+        .forEach((row) => body.append(row));
+    });
+  });
+}
+
+document.querySelectorAll("svg.arm").forEach(drawArm);
+document.querySelectorAll("table.sortable").forEach(makeSortable);
