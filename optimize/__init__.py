@@ -2,7 +2,7 @@
 """Design problems: which joint stiffness and which posture hurt least."""
 
 from .co_design import Design, Gains, PoseResult, design
-from .failure import SolverFailure
+from .failure import Infeasible, SolverFailure
 from .front import Front, ParetoPoint
 from .pareto import Pareto, pareto_fronts
 from .poses import Candidate, candidates
@@ -14,6 +14,7 @@ __all__ = [
     "Design",
     "Front",
     "Gains",
+    "Infeasible",
     "Mode",
     "Outcome",
     "Pareto",

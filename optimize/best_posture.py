@@ -13,9 +13,11 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import build_nlp, parameters, tip_pose_error
+from .impact_program import impact_program
+from .nlp import task_numbers, tip_pose_error
 from .poses import tip_pose
-from .solve import Bounds, Program, Start, quiet, solve
+from .problem import study_impacts, study_program
+from .solve import Bounds, Instance, Start, one_posture, quiet, solve
 from .study import Study
 from .timing import impact_timing
 
@@ -70,13 +72,15 @@ def posture_of_least_force(study: Study, start: Array) -> BestPosture:
         study: robot, impact and stiffness; its bound on the deflection does not count.
         start: posture that holds the task, length n [rad].
     """
-    free = replace(study, max_deflection=1e3)
+    springs = study.nominal
+    free = replace(study, max_deflection=1e3, lower=springs, upper=springs)
     timing = impact_timing(free, [start])
-    nlp = build_nlp(free.model, len(free.forces), timing.nodes, timing.substeps)
-    position, rotation = tip_pose(free.model, start)
-    unit = 100.0
-    numbers = parameters(free, position, rotation, timing.step, unit)
-    program = Program(nlp.oracle.serialize(), None, nlp.n, nlp.pose, nlp.forces)
-    bounds = Bounds(*free.robot.limits, free.nominal, free.nominal, unit)
-    found = solve(program, Start("start", "free", ((start, free.nominal),)), bounds, numbers)
+    impact = impact_program(free.model, timing.nodes, timing.substeps, compiled=False)
+    impacts = study_impacts(free, timing.step)
+    task = task_numbers(free, *tip_pose(free.model, start))
+    shape = one_posture(free.groups, len(impacts))
+    instance = Instance(shape, task[None, :], impacts, np.full(len(impacts), 100.0))
+    bounds = Bounds(*free.robot.limits, springs, springs)
+    program = study_program(free, (impact,))
+    found = solve(program, Start("start", "free", ((start, springs),)), bounds, instance)
     return BestPosture(found.q, found.force, found.status, found.solved)

@@ -9,18 +9,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from softimpact.symbolic import InvalidValue
+from softimpact.symbolic import InvalidValue, Motors
+from softimpact.symbolic.robot.rigid import Array
 
-from .failure import SolverFailure
-from .poses import Candidate, leaves_a_choice
-from .problem import Problem, prepare
+from .answers import Price, indifferent_ranges, prices_of
+from .failure import Infeasible, SolverFailure
+from .poses import Candidate, candidates, leaves_a_choice
+from .problem import Problem, peak_force, prepare, study_impacts
 from .repair import accurate_springs, largest_deflection
-from .solve import Mode, Outcome, Start, better, solve
+from .solve import IN_TURN, Mode, Outcome, Start, better, minimise, solve
+from .stiffest import stiffest
 from .study import Study
 from .timing import Timing
 from .workers import as_completed, workers
 
 MODES: tuple[Mode, ...] = ("table", "free")
+
+KEEPS = 1 + 1e-5
+"""Deflection over its bound up to which the bound counts as kept: Ipopt's tolerance."""
 
 LAGS_BEHIND = 1.003
 """Force over the best found from which on a free search is given another start."""
@@ -63,6 +69,43 @@ class Gains:
 
 
 @dataclass(frozen=True, eq=False)
+class Reference:
+    """The design to compare with: the task's pose, springs in the nominal proportions.
+
+    They are the nominal ones where these keep the bound on the deflection, else just stiff enough.
+
+    Attributes:
+        springs: joint stiffness, length n [N·m/rad].
+        force: largest peak [N].
+        deflection: under the study's forces [m].
+    """
+
+    springs: Array
+    force: float
+    deflection: float
+
+
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """What the winner's numbers mean.
+
+    Attributes:
+        deflection: of the winner [m].
+        indifferent: range of each joint's stiffness that costs less than 0.5 %, the others held,
+            n×2 [N·m/rad].
+        prices: what each binding bound costs.
+        worst_motors: under which the winner's force is largest.
+        reference: that keeps the bounds, to compare with.
+    """
+
+    deflection: float
+    indifferent: Array
+    prices: tuple[Price, ...]
+    worst_motors: Motors
+    reference: Reference
+
+
+@dataclass(frozen=True, eq=False)
 class Design:
     """Results of a study.
 
@@ -72,6 +115,7 @@ class Design:
         winner: the solved outcome of least force.
         gains: what springs and posture bought; None if a mode that the task leaves open was not
             run, or the springs of the task's pose were not solved.
+        answers: what the winner's numbers mean.
         timing: of the impacts simulated.
         compiled: whether the NLP ran as machine code.
     """
@@ -80,6 +124,7 @@ class Design:
     poses: tuple[PoseResult, ...]
     winner: Outcome
     gains: Gains | None
+    answers: Answers
     timing: Timing
     compiled: bool
 
@@ -110,6 +155,7 @@ def design(
         SolverFailure: no search was solved.
     """
     modes = applicable(study, modes)
+    require_reachable(study, modes)
     problem = prepare(study)
     poses = problem.poses
     outcomes: dict[tuple[str, Mode], Outcome] = {}
@@ -139,8 +185,66 @@ def design(
     )
     winner = min(solved, key=lambda outcome: outcome.force)
     gains = _gains(study, results, winner.force)
-    compiled = problem.program.library is not None
-    return Design(study, results, winner, gains, problem.timing, compiled)
+    answers = _answers(problem, winner, results)
+    compiled = problem.program.library
+    return Design(study, results, winner, gains, answers, problem.timing, compiled)
+
+
+def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -> Answers:
+    """Return what the winner means: bounds that bind, numbers that matter, and a fair reference."""
+    study, instance, program = problem.study, problem.numbers(), problem.program
+    free = winner.mode == "free"
+    with IN_TURN:
+        again = minimise(
+            program, instance, problem.bounds, winner.q[None, :], winner.springs, free=free
+        )
+
+    def force(springs: Array) -> float:
+        return peak_force(study, program.impacts[0], problem.timing, winner.q, springs)
+
+    def keeps(springs: Array) -> bool:
+        return largest_deflection(study, winner.q, springs) <= study.max_deflection * KEEPS
+
+    task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
+    accurate = study.nominal
+    if task.deflection_before > study.max_deflection * KEEPS:
+        accurate = accurate_springs(study, task.candidate.q, study.nominal)
+    at = task.candidate.q
+    return Answers(
+        deflection=largest_deflection(study, winner.q, winner.springs),
+        indifferent=indifferent_ranges(study, winner.springs, force, keeps),
+        prices=prices_of(study, instance, again, float(instance.units[0]), program),
+        worst_motors=_worst_motors(problem, winner),
+        reference=Reference(
+            accurate,
+            peak_force(study, program.impacts[0], problem.timing, at, accurate),
+            largest_deflection(study, at, accurate),
+        ),
+    )
+
+
+def _worst_motors(problem: Problem, winner: Outcome) -> Motors:
+    """Return what the motors do where the winner's force is largest."""
+    x = np.concatenate([winner.q, np.log10(winner.springs)])
+    peaks = problem.program.impacts[0]["peaks"]
+    rows = study_impacts(problem.study, problem.timing.step)
+    forces = [np.array(peaks(x, row, 0)).max() for row in rows]
+    return problem.study.motors[int(np.argmax(forces))]
+
+
+def require_reachable(study: Study, modes: Sequence[Mode]) -> None:
+    """Raise Infeasible if no springs, and no posture if it is sought, are accurate enough."""
+    postures = [pose.q for pose in candidates(study)]
+    ends = []
+    for mode in modes:
+        for pose, q in zip(study.poses, postures, strict=True):
+            if largest_deflection(study, q, study.upper) <= study.max_deflection:
+                return
+            ends.append((stiffest(study, q, mode), pose.name, mode))
+            if ends[-1][0].deflection <= study.max_deflection:
+                return
+    least, name, mode = min(ends, key=lambda end: end[0].deflection)
+    raise Infeasible.of(study, least, name, free=mode == "free")
 
 
 def applicable(study: Study, modes: Sequence[Mode]) -> tuple[Mode, ...]:

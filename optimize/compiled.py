@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""NLP functions as machine code: compiled once by the C compiler, kept in a cache.
+"""Functions as machine code: compiled once by the C compiler, kept in a cache.
 
 Without a C compiler everything runs in CasADi's virtual machine, about ten times slower.
 """
@@ -9,10 +9,12 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import os
+import platform
 import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import casadi as ca
@@ -36,11 +38,11 @@ def cache_folder() -> Path:
     return (Path(base) if base else Path.home() / ".cache") / "softimpact"
 
 
-def compiled_nlp(solver: ca.Function, compiler: str | None) -> Path | None:
-    """Return a shared library of an NLP solver's functions, compiled if it is not in the cache.
+def compiled_functions(functions: Sequence[ca.Function], compiler: str | None) -> Path | None:
+    """Return a shared library of functions, compiled if it is not in the cache.
 
     Args:
-        solver: from ``casadi.nlpsol``.
+        functions: to be loaded by ``casadi.external`` under their names.
         compiler: the C compiler, None for none.
 
     Returns:
@@ -53,25 +55,24 @@ def compiled_nlp(solver: ca.Function, compiler: str | None) -> Path | None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            return _compile(solver, compiler, folder, Path(scratch))
+            return _compile(functions, compiler, folder, Path(scratch))
     except OSError:
         return None
 
 
-def _compile(solver: ca.Function, compiler: str, folder: Path, scratch: Path) -> Path | None:
-    source = scratch / "nlp.c"
-    # CasADi writes where it stands: give it a bare name and move the file
-    here = Path.cwd()
-    os.chdir(scratch)
-    try:
-        solver.generate_dependencies("nlp.c")
-    finally:
-        os.chdir(here)
+def _compile(
+    functions: Sequence[ca.Function], compiler: str, folder: Path, scratch: Path
+) -> Path | None:
+    generator = ca.CodeGenerator("functions.c")
+    for function in functions:
+        generator.add(function)
+    generator.generate(f"{scratch}{os.sep}")
+    source = scratch / "functions.c"
     key = hashlib.sha256(source.read_bytes())
-    key.update(" ".join([compiler, *FLAGS, sys.platform, os.uname().machine]).encode())
-    library = folder / f"nlp_{key.hexdigest()[:24]}.so"
+    key.update(" ".join([compiler, *FLAGS, sys.platform, platform.machine()]).encode())
+    library = folder / f"impact_{key.hexdigest()[:24]}.so"
     if not library.exists():
-        built = scratch / "nlp.so"
+        built = scratch / "functions.so"
         command = [compiler, *FLAGS, str(source), "-o", str(built), "-lm"]
         if subprocess.run(command, capture_output=True, check=False).returncode != 0:
             return None

@@ -30,7 +30,7 @@ class ParetoPoint:
 
     @property
     def force(self) -> float:
-        """Peak of the first contact [N]."""
+        """Largest peak [N]."""
         return self.outcome.force
 
 

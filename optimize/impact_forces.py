@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The contact force over time of the linearised robot, as a differentiable expression.
 
-The impact of MSM Eq. 5 is integrated inside the expression, so that an NLP has no states: a
-leapfrog in link and motor angles (explicit, second order, no 2n×2n algebra) around an implicit
-trapezoidal step for the one stiff variable, the compression of the body.
+The impact is integrated inside the expression, so that an NLP has no states: a leapfrog in link
+and motor angles (explicit, second order, no 2n×2n algebra) around an implicit trapezoidal step for
+the one stiff variable, the compression of the body.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from typing import NamedTuple
 import casadi as ca
 
 from softimpact.symbolic import Contact, Matrix
+
+from .motor_laws import LAW, MotorLaws
 
 NEWTON_STEPS = 4
 """Newton steps for the body's compression, from the value of the step before."""
@@ -38,20 +40,20 @@ class ContactParameters(NamedTuple):
 
     @staticmethod
     def of(contact: Contact) -> ContactParameters:
-        """Return a contact's numbers."""
+        """Return a contact's numbers; raises InvalidValue if it does not follow Hertz's law."""
         region = contact.region
         mobility = 0.0 if contact.clamped else 1.0 / region.effective_mass
         return ContactParameters(
-            contact.hertz_stiffness, region.stiffness, region.damping, mobility
+            contact.series_stiffness, region.stiffness, region.damping, mobility
         )
 
 
 @dataclass(frozen=True, eq=False)
 class ImpactDynamics:
-    """The linearised elastic robot in link angles x and motor angles θ.
+    """The linearised elastic robot in link angles x and motor angles θ, both since first touch.
 
-    M ẍ = −k_s(x − θ) − J_cᵀ f_c and B θ̈ = k_s(x − θ) − K_p θ, the same as M0 q̈ + K0 q = −J_cᵀ f_c
-    over motors and deflections.
+    M ẍ = −k_s(x − θ) − J_cᵀ f_c, and B θ̈ = k_s(x − θ) + τ or a motion that is given; a servo has
+    τ = −K_p(θ − q̇0 t) − K_d(θ̇ − q̇0).
 
     Attributes:
         mobility: M⁻¹, n×n.
@@ -59,7 +61,8 @@ class ImpactDynamics:
         springs: k_s, length n.
         rotors: B, length n.
         gains: K_p, n×n; sparse where it is structurally zero.
-        velocity: of links and motors at first touch, length n [rad/s].
+        damping: K_d, length n.
+        velocity: q̇0 of links and motors at first touch, length n [rad/s].
     """
 
     mobility: Matrix
@@ -67,19 +70,26 @@ class ImpactDynamics:
     springs: Matrix
     rotors: Matrix
     gains: Matrix
+    damping: Matrix
     velocity: Matrix
 
 
 def contact_forces(
-    dynamics: ImpactDynamics, contact: ContactParameters, step: Matrix, nodes: int, substeps: int
+    dynamics: ImpactDynamics,
+    contact: ContactParameters,
+    laws: MotorLaws,
+    step: Matrix,
+    nodes: int,
+    substeps: int,
 ) -> Matrix:
     """Return the force at ``nodes`` equidistant times, length ``nodes`` [N], differentiable.
 
-    After the first separation the force stays zero: only the first contact counts.
+    Between contacts the force is zero and the body comes back; every contact counts.
 
     Args:
         dynamics: of the robot, MX expressions.
         contact: the contact, MX expressions or numbers.
+        laws: what the motors do, MX expressions or numbers.
         step: time step [s]; 2/step must exceed the robot's largest angular frequency.
         nodes: number of forces returned.
         substeps: time steps from node to node.
@@ -89,6 +99,8 @@ def contact_forces(
         dynamics.jacobian.T,
         dynamics.springs,
         1 / dynamics.rotors,
+        dynamics.damping,
+        dynamics.velocity,
         *contact,
         step,
         _nonzeros(dynamics.gains),
@@ -98,9 +110,8 @@ def contact_forces(
     start = ca.vertcat(
         ca.MX.zeros(2 * n), dynamics.velocity, dynamics.velocity, ca.MX.zeros(len(Body._fields))
     )
-    states = node.mapaccum("impact", nodes, 1, FEW_DIRECTIONS)(
-        start, ca.repmat(parameters, 1, nodes)
-    )
+    given = ca.vertcat(ca.repmat(parameters, 1, nodes), laws.at_nodes(step, substeps, nodes))
+    states = node.mapaccum("impact", nodes, 1, FEW_DIRECTIONS)(start, given)
     return states[4 * n + Body._fields.index("force"), :].T
 
 
@@ -111,45 +122,51 @@ def _nonzeros(matrix: Matrix) -> Matrix:
 
 
 class Body(NamedTuple):
-    """State of the body region during the impact.
+    """State of the body region during the impact, and the time.
 
     Attributes:
         position: of the effective mass that gives way behind the region [m].
         velocity: of that mass, half a step ahead [m/s].
         compression: of the region's spring [m].
         force: f_c [N].
-        separated: 1 once the robot has left the body.
+        time: since first touch [s].
     """
 
     position: Matrix
     velocity: Matrix
     compression: Matrix
     force: Matrix
-    separated: Matrix
+    time: Matrix
 
 
 def _leapfrog(n: int, steps: int, gains: ca.Sparsity) -> ca.Function:
     """Return (state, parameters) -> state after some steps.
 
-    The state is link angles, motor angles, their velocities half a step ahead, and the body's.
+    The state is link angles, motor angles, their velocities half a step ahead, and the body's. The
+    parameters end with what the motors do meanwhile.
     """
     state = ca.SX.sym("state", 4 * n + len(Body._fields))
     M_inv, j, k_s = ca.SX.sym("M_inv", n, n), ca.SX.sym("j", n), ca.SX.sym("k_s", n)
-    B_inv, K_p = ca.SX.sym("B_inv", n), ca.SX.sym("K_p", gains)
+    B_inv, K_d, velocity = ca.SX.sym("B_inv", n), ca.SX.sym("K_d", n), ca.SX.sym("dq0", n)
+    K_p, law = ca.SX.sym("K_p", gains), ca.SX.sym("law", LAW)
     contact = ContactParameters(*ca.vertsplit(ca.SX.sym("contact", 4)))
     h = ca.SX.sym("h")
     x, theta, dx, dtheta, rest = ca.vertsplit(state, [0, n, 2 * n, 3 * n, 4 * n, state.numel()])
     body = Body(*ca.vertsplit(rest))
+    moves, share, servo = ca.vertsplit(law)
     for _ in range(steps):
         x, theta = x + h * dx, theta + h * dtheta
         body = _press(body, ca.dot(j, x), contact, h)
         pull = k_s * (x - theta)
         dx = dx - h * ca.mtimes(M_inv, pull + j * body.force)
-        dtheta = dtheta + h * B_inv * (pull - ca.mtimes(K_p, theta))
-    parameters = ca.vertcat(ca.vec(M_inv), j, k_s, B_inv, *contact, h, _nonzeros(K_p))
-    return ca.Function(
-        "leapfrog", [state, parameters], [ca.vertcat(x, theta, dx, dtheta, *body)], FEW_DIRECTIONS
+        torque = ca.mtimes(K_p, theta - velocity * body.time) + K_d * (dtheta - velocity)
+        moved = dtheta + h * B_inv * (pull - servo * torque)
+        dtheta = moves * moved + (1 - moves) * share * velocity
+    parameters = ca.vertcat(
+        ca.vec(M_inv), j, k_s, B_inv, K_d, velocity, *contact, h, _nonzeros(K_p), law
     )
+    after = ca.vertcat(x, theta, dx, dtheta, *body)
+    return ca.Function("leapfrog", [state, parameters], [after], FEW_DIRECTIONS)
 
 
 def _press(body: Body, tip: Matrix, contact: ContactParameters, h: Matrix) -> Body:
@@ -167,6 +184,5 @@ def _press(body: Body, tip: Matrix, contact: ContactParameters, h: Matrix) -> Bo
         residual = (drag + k_h) * y - k_f * skin * root - known
         y = y - residual / (drag + k_h + 1.5 * k_f * root)
     skin = ca.fmax(depth - y, 0)
-    separated = ca.fmax(body.separated, skin <= 0)
-    force = (1 - separated) * k_f * skin * ca.sqrt(skin + ROUNDING)
-    return Body(position, body.velocity + h * mobility * force, y, force, separated)
+    force = k_f * skin * ca.sqrt(skin + ROUNDING)
+    return Body(position, body.velocity + h * mobility * force, y, force, body.time + h)

@@ -1,62 +1,82 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The co-design problem as a nonlinear program: least peak force over posture and stiffness.
+"""The co-design problem as a nonlinear program: least worst force over postures and stiffness.
 
-Variables are the link angles q, s = log10 k_s and the peak force F (in units of a reference
-force). F is minimised over its epigraph F ≥ f_k at nodes along the first contact, subject to the
-tip's pose, the springs' deflection under given forces, joint limits and stiffness bounds. The
-impact is simulated inside the constraints (``impact_forces``), so there are no states.
+Variables are h = log10 k_s of each group of joints, the link angles q of each posture, and F. F is
+minimised over its epigraph: each peak of each impact, over the force that counts as one there, is
+at most F. Each posture holds its tip's pose and keeps the bounds on hardware, such as the springs'
+deflection. Impacts are simulated inside the constraints (``impact_forces``): there are no states.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import (
-    ImpactModel,
-    Matrix,
-    contact_point_jacobian,
-    direction_jacobian,
-    frame_pose,
-    least_velocity,
-)
-from softimpact.symbolic.matrices import Factorisation
+from softimpact.symbolic import ImpactModel, Matrix, contact_point_jacobian, frame_pose
 from softimpact.symbolic.robot.rigid import Array
 
-from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
+from .impact_program import NUMBERS, ImpactProgram
+from .peaks import WINDOWS
 from .study import Study
 
 HALF_TURN = 1e-12
 """Keeps the pose error of a tip turned by exactly half a turn finite, and from vanishing there."""
 
+POSE = 6
+"""Equations that a pose of the tip stands for; an arm of fewer joints has no posture to choose."""
 
-@dataclass(frozen=True, eq=False)
-class DesignNlp:
-    """Functions of the problem; numbers of a study enter as parameters.
+
+@dataclass(frozen=True)
+class Program:
+    """The functions of a study's NLPs, which a process can load.
 
     Attributes:
-        oracle: (x, p) -> (f, g) of the NLP, x = [q, s, F].
+        impacts: one for each contact point.
+        task: serialised (x, b) -> the tip's pose error and the bounds' rows (at most zero), and
+            its derivative by x = [q, log10 k_s].
         n: number of joints.
-        wrenches: number of forces on the tip that bound the deflection.
-        nodes: times at which the force bounds F from below.
+        rows: of the task.
+        size: of its numbers b.
     """
 
-    oracle: ca.Function
+    impacts: tuple[ImpactProgram, ...]
+    task: str
     n: int
-    wrenches: int
-    nodes: int
+    rows: int
+    size: int
 
     @property
-    def pose(self) -> slice:
-        """Entries of g that are the tip's pose error."""
-        return slice(0, 6)
+    def library(self) -> bool:
+        """Whether the impacts run as machine code."""
+        return all(impact.library is not None for impact in self.impacts)
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Which variables and impacts an NLP has.
+
+    Attributes:
+        groups: of each joint, length n: joints of the same group share their stiffness.
+        postures: number of them.
+        impacts: posture and contact point of each, by place.
+    """
+
+    groups: tuple[int, ...]
+    postures: int
+    impacts: tuple[tuple[int, int], ...]
 
     @property
-    def forces(self) -> slice:
-        """Entries of g that are f_k − F."""
-        return slice(6 + self.wrenches, 6 + self.wrenches + self.nodes)
+    def springs(self) -> int:
+        """Number of stiffness variables."""
+        return max(self.groups) + 1
+
+    @property
+    def sharing(self) -> Array:
+        """Matrix from the groups' log10 k_s to the joints', n×groups."""
+        return np.eye(self.springs)[list(self.groups)]
 
 
 def tip_pose_error(model: ImpactModel, q: Matrix, position: Matrix, rotation: Matrix) -> Matrix:
@@ -80,87 +100,91 @@ def deflections(model: ImpactModel, q: Matrix, springs: Matrix, forces: Matrix) 
     return ca.mtimes(J, ca.mtimes(J.T, forces) / ca.repmat(springs, 1, forces.shape[1]))
 
 
-def build_nlp(model: ImpactModel, wrenches: int, nodes: int, substeps: int) -> DesignNlp:
-    """Return the NLP of a robot whose joints are all elastic.
+def task_function(model: ImpactModel, wrenches: int) -> ca.Function:
+    """Return (x, b) -> (rows, their derivative by x); b as ``task_numbers`` has it."""
+    n = model.robot.n
+    x, b = ca.SX.sym("x", 2 * n), ca.SX.sym("b", 13 + 3 * wrenches)
+    q, s = ca.vertsplit(x, n)
+    position, rotation, bound, forces = ca.vertsplit(b, [0, 3, 12, 13, b.numel()])
+    moved = deflections(model, q, 10**s, ca.reshape(forces, 3, wrenches))
+    error = tip_pose_error(model, q, position, ca.reshape(rotation, 3, 3))
+    rows = ca.vertcat(error, ca.sum1(moved**2).T / bound**2 - 1)
+    outputs = ca.cse([rows, ca.densify(ca.jacobian(rows, x))])
+    return ca.Function("task", [x, b], outputs)
+
+
+def task_numbers(study: Study, position: Array, rotation: Array) -> Array:
+    """Return what a posture must do, as numbers.
 
     Args:
-        model: robot, tip and drives; its springs are replaced by the variables.
-        wrenches: number of forces that bound the deflection.
-        nodes: times at which the force bounds F from below.
-        substeps: time steps of the impact from node to node.
-    """
-    n = model.robot.n
-    x = ca.MX.sym("x", 2 * n + 1)
-    q, s, peak = ca.vertsplit(x, [0, n, 2 * n, 2 * n + 1])
-    p = ca.MX.sym("p", _parameter_size(wrenches))
-    direction, speed, contact, step, position, rotation, forces, bound, unit = ca.vertsplit(
-        p, _parameter_offsets(wrenches)
-    )
-    rotation, forces = ca.reshape(rotation, 3, 3), ca.reshape(forces, 3, wrenches)
-    springs = 10**s
-    mobility, jacobian, velocity, gains, error, given_way = _posture(model, wrenches)(
-        q, springs, direction, position, rotation, forces
-    )
-    rotors = model.drives.rotors
-    dynamics = ImpactDynamics(mobility, jacobian, springs, rotors, gains, velocity * speed)
-    pressed = contact_forces(
-        dynamics, ContactParameters(*ca.vertsplit(contact)), step, nodes, substeps
-    )
-    slack = ca.sum1(given_way**2).T / bound**2 - 1
-    g = ca.vertcat(error, slack, pressed / unit - peak)
-    oracle = ca.Function("oracle", [x, p], [peak, g], ["x", "p"], ["f", "g"], FEW_DIRECTIONS)
-    return DesignNlp(oracle, n, wrenches, nodes)
-
-
-def _posture(model: ImpactModel, wrenches: int) -> ca.Function:
-    """Return everything that depends on the posture alone, as one scalar expression graph."""
-    n = model.robot.n
-    q, springs = ca.SX.sym("q", n), ca.SX.sym("k_s", n)
-    direction, position = ca.SX.sym("n", 3), ca.SX.sym("position", 3)
-    rotation, forces = ca.SX.sym("R", 3, 3), ca.SX.sym("forces", 3, wrenches)
-    outputs = [
-        Factorisation(model.mass_matrix(q)).solve(ca.SX.eye(n)),
-        direction_jacobian(model.robot, model.tip, q, direction),
-        least_velocity(model.jacobian(q), direction),
-        ca.SX(model.position_gains(q)),
-        tip_pose_error(model, q, position, rotation),
-        deflections(model, q, springs, forces),
-    ]
-    inputs = [q, springs, direction, position, rotation, forces]
-    return ca.Function("posture", inputs, ca.cse(outputs), FEW_DIRECTIONS)
-
-
-def _parameter_sizes(wrenches: int) -> list[int]:
-    return [3, 1, 4, 1, 3, 9, 3 * wrenches, 1, 1]
-
-
-def _parameter_offsets(wrenches: int) -> list[int]:
-    return [0, *np.cumsum(_parameter_sizes(wrenches)).tolist()]
-
-
-def _parameter_size(wrenches: int) -> int:
-    return sum(_parameter_sizes(wrenches))
-
-
-def parameters(study: Study, position: Array, rotation: Array, step: float, unit: float) -> Array:
-    """Return a study's numbers in the order of the NLP's parameters.
-
-    Args:
-        study: the study.
+        study: whose forces and bound count.
         position: where the tip is held, length 3 [m].
         rotation: how the tip is held, 3×3.
-        step: time step of the impact [s].
-        unit: force that F = 1 stands for [N].
     """
-    return np.concatenate(
-        [
-            study.direction,
-            [study.speed],
-            np.array(ContactParameters.of(study.contact), dtype=float),
-            [step],
-            position,
-            rotation.ravel(order="F"),
-            study.forces.ravel(),
-            [study.max_deflection, unit],
-        ]
-    )
+    pose = np.concatenate([position, rotation.ravel(order="F")])
+    return np.concatenate([pose, [study.max_deflection], study.forces.ravel()])
+
+
+def problem_functions(program: Program, shape: Shape) -> dict[str, ca.Function]:
+    """Return the NLP's functions by the names of CasADi's ``nlpsol``, with their derivatives.
+
+    Parameters are each posture's numbers b, then each impact's: its own, the force that counts as
+    one [N], and the boundary of its windows.
+    """
+    n, G, K, C = program.n, shape.springs, shape.postures, len(shape.impacts)
+    x = ca.MX.sym("x", G + K * n + 1)
+    p = ca.MX.sym("p", K * program.size + C * (NUMBERS + 2))
+    h, *postures, peak = ca.vertsplit(x, [0, *(G + n * k for k in range(K + 1)), G + K * n + 1])
+    cuts = [program.size * k for k in range(K)]
+    cuts += [program.size * K + (NUMBERS + 2) * c for c in range(C + 1)]
+    given = ca.vertsplit(p, cuts)
+    sharing = ca.DM(shape.sharing)
+    s = ca.mtimes(sharing, h)
+    task = ca.Function.deserialize(program.task)
+    value, slope = [], []
+
+    def placed(by_x: Matrix, k: int, by_peak: float) -> Matrix:
+        """Put a derivative by q and s of one posture into a row of all variables."""
+        rows = by_x.shape[0]
+        return ca.horzcat(
+            ca.mtimes(by_x[:, n:], sharing),
+            ca.DM(rows, n * k),
+            by_x[:, :n],
+            ca.DM(rows, n * (K - 1 - k)),
+            ca.DM.ones(rows, 1) * by_peak if by_peak else ca.DM(rows, 1),
+        )
+
+    for k, q in enumerate(postures):
+        rows, by_x = task(ca.vertcat(q, s), given[k])
+        value.append(rows)
+        slope.append(placed(by_x, k, 0.0))
+    for c, (k, point) in enumerate(shape.impacts):
+        numbers, unit, boundary = ca.vertsplit(given[K + c], [0, NUMBERS, NUMBERS + 1, NUMBERS + 2])
+        at = ca.vertcat(postures[k], s), numbers, boundary
+        value.append(program.impacts[point]["peaks"](*at) / unit - peak)
+        by_x = program.impacts[point]["slopes"](*at)[1]
+        slope.append(placed(by_x / unit, k, -1.0))
+    g, J = ca.vertcat(*value), ca.vertcat(*slope)
+    slope_of_peak = ca.densify(ca.jacobian(peak, x)).T
+    return {
+        "grad_f": ca.Function("nlp_grad_f", [x, p], [peak, slope_of_peak]),
+        "nlp": ca.Function("nlp", [x, p], [peak, g], ["x", "p"], ["f", "g"]),
+        "jac_g": ca.Function("nlp_jac_g", [x, p], [g, J], ["x", "p"], ["g", "jac_g_x"]),
+    }
+
+
+def nlp_solver(program: Program, shape: Shape, options: dict[str, Any]) -> ca.Function:
+    """Return Ipopt on the problem."""
+    functions = problem_functions(program, shape)
+    x, p = (ca.MX.sym(name, functions["nlp"].numel_in(name)) for name in ("x", "p"))
+    f, g = functions["nlp"](x, p)
+    problem: dict[str, Any] = {"x": x, "p": p, "f": f, "g": g}
+    given = {name: functions[name] for name in ("grad_f", "jac_g")}
+    unasked = {"no_nlp_grad": True, "calc_lam_p": False}
+    return ca.nlpsol("design", "ipopt", problem, {**options, **given, **unasked})
+
+
+def peak_rows(program: Program, shape: Shape) -> slice:
+    """Entries of g that are peaks less F: ``WINDOWS`` for each impact."""
+    begin = shape.postures * program.rows
+    return slice(begin, begin + WINDOWS * len(shape.impacts))

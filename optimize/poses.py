@@ -12,8 +12,8 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue, Joint, JointKind, frame_pose
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import tip_pose_error
-from .repair import POSE, posture_at_pose
+from .nlp import POSE, tip_pose_error
+from .repair import posture_at_pose
 from .study import Pose, Study
 
 TURNED = 0.1

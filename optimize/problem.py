@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A study made ready to search: candidate postures, time steps, compiled NLP and bounds."""
+"""A study made ready to search: candidate postures, time steps, compiled impacts and bounds."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .compiled import c_compiler, compiled_nlp
-from .nlp import DesignNlp, build_nlp, parameters
+from .impact_program import ImpactProgram, impact_numbers, impact_program
+from .nlp import POSE, Program, task_function, task_numbers
 from .poses import Candidate, candidates, leaves_a_choice, tip_pose
-from .solve import Bounds, Mode, Program, nlp_solver
+from .solve import Bounds, Instance, Mode, one_posture
 from .study import Study
 from .timing import Timing, impact_timing
 
@@ -26,8 +26,7 @@ class Problem:
         poses: its candidates as they serve the task.
         before: peak force of each with the nominal stiffness [N].
         timing: of the impacts simulated.
-        nlp: the program's functions.
-        program: the same for worker processes.
+        program: the NLP's functions, also for worker processes.
         bounds: on the variables.
     """
 
@@ -35,7 +34,6 @@ class Problem:
     poses: tuple[Candidate, ...]
     before: tuple[float, ...]
     timing: Timing
-    nlp: DesignNlp
     program: Program
     bounds: Bounds
 
@@ -44,13 +42,16 @@ class Problem:
         """The mode that leaves most free."""
         return "free" if leaves_a_choice(self.study) else "table"
 
-    def numbers(self, max_deflection: float | None = None) -> Array:
-        """Return the NLP's parameters, with another bound on the deflection [m] if one is given."""
+    def numbers(self, max_deflection: float | None = None) -> Instance:
+        """Return the NLP of one posture, with another bound on the deflection [m] if given."""
         study = self.study
         if max_deflection is not None:
             study = replace(study, max_deflection=max_deflection)
-        position, rotation = tip_pose(study.model, study.task_pose.q)
-        return parameters(study, position, rotation, self.timing.step, self.bounds.unit)
+        task = task_numbers(study, *tip_pose(study.model, study.task_pose.q))
+        impacts = study_impacts(study, self.timing.step)
+        unit = float(np.median(self.before))
+        shape = one_posture(study.groups, len(impacts))
+        return Instance(shape, task[None, :], impacts, np.full(len(impacts), unit))
 
 
 def prepare(study: Study) -> Problem:
@@ -61,16 +62,34 @@ def prepare(study: Study) -> Problem:
     """
     poses = tuple(candidates(study))
     timing = impact_timing(study, [pose.q for pose in poses])
-    nlp = build_nlp(study.model, len(study.forces), timing.nodes, timing.substeps)
-    before = tuple(peak_force(study, nlp, timing, pose.q, study.nominal) for pose in poses)
-    bounds = Bounds(*study.robot.limits, study.lower, study.upper, float(np.median(before)))
-    library = compiled_nlp(nlp_solver(nlp.oracle), c_compiler())
-    program = Program(nlp.oracle.serialize(), library, nlp.n, nlp.pose, nlp.forces)
-    return Problem(study, poses, before, timing, nlp, program, bounds)
+    impact = impact_program(study.model, timing.nodes, timing.substeps, compiled=True)
+    before = tuple(peak_force(study, impact, timing, pose.q, study.nominal) for pose in poses)
+    bounds = Bounds(*study.robot.limits, study.lower, study.upper)
+    program = study_program(study, (impact,))
+    return Problem(study, poses, before, timing, program, bounds)
 
 
-def peak_force(study: Study, nlp: DesignNlp, timing: Timing, q: Array, springs: Array) -> float:
-    """Return the peak of the first contact [N] as the NLP sees it."""
-    x = np.concatenate([q, np.log10(springs), [0.0]])
-    numbers = parameters(study, np.zeros(3), np.eye(3), timing.step, 1.0)
-    return float(np.array(nlp.oracle(x, numbers)[1])[nlp.forces].max())
+def study_program(study: Study, impacts: tuple[ImpactProgram, ...]) -> Program:
+    """Return the functions of a study's NLPs."""
+    wrenches = len(study.forces)
+    task = task_function(study.model, wrenches)
+    return Program(impacts, task.serialize(), study.robot.n, POSE + wrenches, task.numel_in(1))
+
+
+def study_impacts(study: Study, step: float) -> Array:
+    """Return the numbers of a study's own impact, a row for each end of what motors may do."""
+    return np.array(
+        [
+            impact_numbers(study.direction, study.speed, study.contact, motors, step)
+            for motors in study.motors
+        ]
+    )
+
+
+def peak_force(
+    study: Study, program: ImpactProgram, timing: Timing, q: Array, springs: Array
+) -> float:
+    """Return the largest peak force [N] over what the motors may do, as the NLP sees it."""
+    x = np.concatenate([q, np.log10(springs)])
+    rows = study_impacts(study, timing.step)
+    return float(max(np.array(program["peaks"](x, row, 0)).max() for row in rows))

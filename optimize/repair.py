@@ -12,15 +12,12 @@ import numpy as np
 from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import deflections, tip_pose_error
+from .nlp import POSE, deflections, tip_pose_error
 from .solve import quiet
 from .study import Study
 
 HELD = 1e-9
 """Pose error [m, rad] up to which a posture holds the tip as it is."""
-
-POSE = 6
-"""Equations that a pose of the tip stands for; an arm of fewer joints has no posture to choose."""
 
 
 def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) -> Array | None:

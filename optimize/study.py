@@ -16,6 +16,7 @@ from softimpact.symbolic import (
     ImpactModel,
     InvalidValue,
     Joint,
+    Motors,
     Robot,
     SoftImpactError,
     UnknownName,
@@ -27,17 +28,21 @@ from softimpact.symbolic import (
     load_robot,
     unit_direction,
 )
-from softimpact.symbolic.impact.drives import PerJoint, per_joint
+from softimpact.symbolic.impact.drives import PerJoint, per_joint, require_rotors
 from softimpact.symbolic.robot.rigid import Array
 
+from .hardware import joint_groups
 from .study_file import (
     ParetoSection,
     PoseSection,
     RobotSection,
+    ScenarioSection,
+    ScenariosSection,
     StiffnessSection,
     StudyFile,
     read_study_file,
 )
+from .study_motors import motors_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,33 +69,42 @@ class Study:
         source: the study file.
         model: the robot with the nominal joint stiffness, all joints elastic.
         contact: what it hits.
+        motors: what they do during the impact; of several the worst counts.
+        horizon: up to which every contact counts [s].
         direction: unit vector of the tip's velocity, base axes.
         speed: of the tip [m/s].
         lower, upper: bounds on the joint stiffness, length n [N·m/rad].
         nominal: the joint stiffness to improve on, length n [N·m/rad].
+        groups: of each joint, length n; joints of the same group have the same stiffness.
         forces: on the tip, k×3 [N].
         max_deflection: of the springs under each force [m].
         levels: at which a Pareto front is sought, as the file has it.
         task_pose: the pose that fixes where the tip is held.
         exact: whether poses are moved to where they hold the tip exactly there.
         poses: all candidates.
+        scenarios: what the hardware must bear, as the file has it; None for the study's own
+            impact.
     """
 
     title: str
     source: Path
     model: ImpactModel
     contact: Contact
+    motors: tuple[Motors, ...]
+    horizon: float
     direction: Array
     speed: float
     lower: Array
     upper: Array
     nominal: Array
+    groups: tuple[int, ...]
     forces: Array
     max_deflection: float
     levels: ParetoSection
     task_pose: Pose
     exact: bool
     poses: tuple[Pose, ...]
+    scenarios: ScenariosSection | tuple[ScenarioSection, ...] | None = None
 
     @property
     def robot(self) -> Robot:
@@ -126,11 +140,15 @@ def _naming(source: Path, section: str, field: str) -> Iterator[None]:
 
 def build_study(file: StudyFile, source: Path) -> Study:
     """Return the study that a file describes; raises InvalidValue, which names file and field."""
-    robot = _robot(file.robot, source)
+    robot = robot_of_study(file.robot, source)
     with _naming(source, "stiffness", "lower"):
         lower, upper, nominal = _stiffness(robot, file.stiffness)
     with _naming(source, "robot", "rotor_inertia"):
-        model = _model(robot, file.robot, nominal)
+        model = _model(robot, file, nominal)
+    with _naming(source, "motors", "kind"):
+        motors = motors_of(file.motors, model)
+    with _naming(source, "hardware", "joint_stiffness"):
+        groups = joint_groups(robot, file.hardware.joint_stiffness)
     with _naming(source, "impact", "direction"):
         direction = unit_direction(file.impact.direction)
     with _naming(source, "impact", "region"):
@@ -145,21 +163,25 @@ def build_study(file: StudyFile, source: Path) -> Study:
         source=source,
         model=model,
         contact=Contact(region, file.impact.clamped),
+        motors=motors,
+        horizon=file.motors.horizon,
         direction=direction,
         speed=file.impact.speed,
         lower=lower,
         upper=upper,
         nominal=nominal,
+        groups=groups,
         forces=np.array(file.accuracy.forces),
         max_deflection=file.accuracy.max_deflection,
         levels=file.pareto,
         task_pose=next(pose for pose in poses if pose.name == file.task.pose_of),
         exact=file.task.exact,
         poses=poses,
+        scenarios=tuple(file.scenarios) if isinstance(file.scenarios, list) else file.scenarios,
     )
 
 
-def _robot(section: RobotSection, source: Path) -> Robot:
+def robot_of_study(section: RobotSection, source: Path) -> Robot:
     """Load the robot, a chain to its tip; a path is taken relative to the study file."""
     beside = source.parent / section.model
     with _naming(source, "robot", "model"):
@@ -199,13 +221,23 @@ def _require_drive(joint: Joint) -> None:
     )
 
 
-def _model(robot: Robot, section: RobotSection, nominal: Array) -> ImpactModel:
+def _model(robot: Robot, file: StudyFile, nominal: Array) -> ImpactModel:
+    section, motors = file.robot, file.motors
     rotors: PerJoint | None
     if isinstance(section.rotor_inertia, str):
         rotors = robot.rotor_inertia_set(section.rotor_inertia)
     else:
         rotors = section.rotor_inertia
-    built = drives(robot, nominal, rotors, section.position_gain, section.computed_torque_gain)
+    gain = section.position_gain if motors.position_gain is None else motors.position_gain
+    built = drives(
+        robot,
+        nominal,
+        rotors,
+        gain,
+        section.computed_torque_gain,
+        damping_gain=motors.damping_gain,
+    )
+    require_rotors(built, robot.joint_names)
     return impact_model(robot, drives_=built)
 
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, Reaction
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Vector3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
 
 
@@ -38,6 +40,47 @@ class ImpactSection(_Section):
     clamped: bool = True
     direction: Vector3
     speed: Positive
+
+
+class MotorsSection(_Section):
+    """What the motors do during an impact; without a kind the worse end of {free, driven}."""
+
+    kind: Literal["free", "servo", "driven", "held"] | None = None
+    position_gain: Finite | list[Finite] | None = None
+    damping_gain: Finite | list[Finite] | None = None
+    reaction_time: Annotated[float, Field(ge=0)] = REACTION_TIME
+    reaction: Reaction = "release"
+    stopping_time: Positive = STOPPING_TIME
+    horizon: Positive = 0.5
+
+
+class HardwareSection(_Section):
+    """Which variables of the hardware are sought: joint stiffness, each, equal or in groups."""
+
+    joint_stiffness: Literal["each", "equal"] | list[list[str]] = "each"
+
+
+class ScenariosSection(_Section):
+    """The product of what may happen; what is left out is the study's own."""
+
+    poses: Literal["all"] | Annotated[list[str], Field(min_length=1)] = "all"
+    posture: Literal["given", "free"] = "given"
+    directions: Annotated[list[Vector3], Field(min_length=1)] | None = None
+    points: Annotated[list[str], Field(min_length=1)] | None = None
+    regions: Annotated[list[str], Field(min_length=1)] | None = None
+    payloads: Annotated[list[NotNegative], Field(min_length=1)] | None = None
+    speeds: Annotated[list[Positive], Field(min_length=1)] | None = None
+
+
+class ScenarioSection(_Section):
+    """One of a list of scenarios; what is left out is the study's own."""
+
+    pose: str | None = None
+    direction: Vector3 | None = None
+    point: str | None = None
+    region: str | None = None
+    payload: NotNegative = 0.0
+    speed: Positive | None = None
 
 
 class StiffnessSection(_Section):
@@ -90,6 +133,11 @@ class StudyFile(_Section):
     title: str = ""
     robot: RobotSection
     impact: ImpactSection
+    motors: MotorsSection = MotorsSection()
+    hardware: HardwareSection = HardwareSection()
+    scenarios: ScenariosSection | Annotated[list[ScenarioSection], Field(min_length=1)] | None = (
+        None
+    )
     stiffness: StiffnessSection
     accuracy: AccuracySection
     pareto: ParetoSection = ParetoSection()

@@ -10,16 +10,17 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .solve import Bounds, Outcome, Program, Start, better, preference, solve
+from .nlp import Program
+from .solve import Bounds, Instance, Outcome, Start, better, preference, solve
 from .stiffest import Stiffest
 
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """An accuracy: the largest deflection allowed [m], and the NLP's parameters with it."""
+    """An accuracy: the largest deflection allowed [m], and the NLP with it."""
 
     bound: float
-    numbers: Array
+    numbers: Instance
 
 
 def sweep(

@@ -11,22 +11,30 @@ import numpy as np
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import build_nlp, parameters
+from .impact_program import ImpactProgram, impact_numbers, impact_program
+from .scenarios import Scenarios
 from .study import Study
 
-SHORTEST, LONGEST = 0.02, 0.64
-"""Durations tried [s]."""
+MARGIN = 1.3
+"""Duration simulated, as a multiple of the latest time at which a force among trials is largest,
+plus the time that a contact then takes to end."""
 
-MARGIN = 1.5
-"""Duration simulated, as a multiple of the longest first contact among the candidates."""
+SHORTEST = 0.02
+"""Least duration simulated [s]."""
 
 LARGEST_PHASE = 1.5
 """Largest angular frequency times the step; the leapfrog is stable below 2."""
 
 
 NODES = 150
-"""Fewest times at which the force bounds the peak from below (there are less than twice as many);
-between them the force exceeds that bound by some 0.01 %."""
+"""Fewest times at which the force is taken (there are less than twice as many if they need several
+steps each); a parabola gives the peak between them."""
+
+INTERVAL = 5e-4
+"""Most time between two of them [s]: peaks of light tips are a few milliseconds wide."""
+
+TRIALS = 40
+"""Scenarios of which the duration is taken."""
 
 MOST_STEPS = 4500
 """Time steps beyond which compiling and running the impact would take minutes."""
@@ -58,54 +66,79 @@ class Timing:
 
 
 def impact_timing(study: Study, postures: Sequence[Array]) -> Timing:
-    """Return a duration that holds every first contact, and steps that resolve the robot.
+    """Return a duration that holds every peak up to the study's horizon, and steps for the robot.
 
-    Contacts are tried with the softest, the nominal and the stiffest springs; frequencies with the
-    stiffest.
+    Impacts are tried to the horizon with the softest, the nominal and the stiffest springs;
+    frequencies with the stiffest. What is found in the end is simulated to the horizon again.
 
     Raises:
         InvalidValue: the stiffest springs are so stiff that an impact needs too many steps.
     """
-    frequency = max(_largest_frequency(study, q) for q in postures)
-    duration = SHORTEST
-    while True:
-        timing = _timing(study, duration, frequency)
-        longest = _longest_contact(study, postures, timing)
-        if longest is not None or duration >= LONGEST:
-            break
-        duration *= 2.0
-    wanted = min(LONGEST, MARGIN * (duration if longest is None else float(longest)))
-    return _timing(study, wanted, frequency)
+    frequency = max(_largest_frequency(study, q, study.direction) for q in postures)
+    whole = _timing(study, study.horizon, frequency)
+    program = impact_program(study.model, whole.nodes, whole.substeps, compiled=False)
+    latest = max(_latest_peak(study, program, q, whole) for q in postures)
+    return _timing(study, min(max(SHORTEST, MARGIN * latest), study.horizon), frequency)
+
+
+def scenario_timing(study: Study, scenarios: Scenarios) -> Timing:
+    """Return time steps for all scenarios, from trials of some of them, evenly spread.
+
+    Raises:
+        InvalidValue: as ``impact_timing``; or a direction in which a pose cannot move.
+    """
+    n = scenarios.directions[0]
+    frequency = max(_largest_frequency(study, pose.q, n) for pose in scenarios.poses)
+    whole = _timing(study, study.horizon, frequency)
+    programs = [
+        impact_program(study.model, whole.nodes, whole.substeps, point, compiled=False)
+        for point in scenarios.points
+    ]
+    latest = 0.0
+    for i in np.unique(np.linspace(0, len(scenarios) - 1, TRIALS).astype(int)):
+        one = scenarios[int(i)]
+        row, program = scenarios.numbers(one, whole.step), programs[one.point]
+        for springs in (study.lower, study.nominal, study.upper):
+            x = np.concatenate([scenarios.poses[one.pose].q, np.log10(springs)])
+            latest = max(latest, _end_of_peak(np.array(program["forces"](x, row)), whole))
+    return _timing(study, min(max(SHORTEST, MARGIN * latest), study.horizon), frequency)
 
 
 def _timing(study: Study, duration: float, frequency: float) -> Timing:
-    steps = max(NODES, int(np.ceil(duration * frequency / LARGEST_PHASE)))
+    needed = int(np.ceil(duration * frequency / LARGEST_PHASE))
+    steps = max(NODES, int(np.ceil(duration / INTERVAL)), needed)
     if steps > MOST_STEPS:
         raise InvalidValue(
             f"{study.source}: stiffness.upper",
             f"joints that stiff vibrate so fast that {duration:g} s of impact need {steps} time "
-            f"steps, more than {MOST_STEPS}; lower the bound or raise robot.rotor_inertia",
+            f"steps, more than {MOST_STEPS}; lower the bound or motors.horizon, or raise "
+            "robot.rotor_inertia",
         )
-    substeps = steps // NODES
+    substeps = max(1, int(steps / max(NODES, duration / INTERVAL)))
     return Timing(duration, int(np.ceil(steps / substeps)), substeps)
 
 
-def _largest_frequency(study: Study, q: Array) -> float:
-    linear = study.model.with_springs(study.upper).linear(q, study.direction)
+def _largest_frequency(study: Study, q: Array, direction: Array) -> float:
+    linear = study.model.with_springs(study.upper).linear(q, direction)
     mass, stiffness = np.array(linear.mass.matrix), np.array(linear.stiffness)
     return float(np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(mass, stiffness))).max()))
 
 
-def _longest_contact(study: Study, postures: Sequence[Array], timing: Timing) -> float | None:
-    """Longest first contact [s]; None if one of them outlasts the duration."""
-    nlp = build_nlp(study.model, len(study.forces), timing.nodes, timing.substeps)
-    numbers = parameters(study, np.zeros(3), np.eye(3), timing.step, 1.0)
-    longest = 0.0
-    for q in postures:
+def _latest_peak(study: Study, program: ImpactProgram, q: Array, timing: Timing) -> float:
+    """Return when the contact that holds the largest force ends, the latest of all trials [s]."""
+    latest = 0.0
+    for motors in study.motors:
+        row = impact_numbers(study.direction, study.speed, study.contact, motors, timing.step)
         for springs in (study.lower, study.nominal, study.upper):
-            x = np.concatenate([q, np.log10(springs), [0.0]])
-            force = np.array(nlp.oracle(x, numbers)[1])[nlp.forces].ravel()
-            if force[-1] > 0.0:
-                return None
-            longest = max(longest, timing.duration * np.count_nonzero(force) / timing.nodes)
-    return longest
+            x = np.concatenate([q, np.log10(springs)])
+            latest = max(latest, _end_of_peak(np.array(program["forces"](x, row)), timing))
+    return latest
+
+
+def _end_of_peak(force: Array, timing: Timing) -> float:
+    """Return when the contact that holds the largest force ends [s]."""
+    force = force.ravel()
+    peak = int(force.argmax())
+    apart = np.flatnonzero(force[peak:] <= 0)
+    end = peak + (int(apart[0]) if apart.size else force.size - peak)
+    return timing.duration * (end + 1) / force.size

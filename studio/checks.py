@@ -36,7 +36,7 @@ class Check:
 def checked(study: Study, outcome: Outcome) -> Check:
     """Simulate what a search found."""
     linearised, full = (
-        simulated(study, outcome.q, outcome.springs, fidelity).first_contact
+        simulated(study, outcome.q, outcome.springs, fidelity).peak
         for fidelity in ("linearised", "full")
     )
     return Check(outcome.force, linearised, full)
@@ -45,14 +45,30 @@ def checked(study: Study, outcome: Outcome) -> Check:
 def simulated(
     study: Study, q: Array, springs: Array, fidelity: Fidelity = "linearised"
 ) -> ImpactHistory:
-    """Simulate a study's impact with a posture [rad] and joint stiffness [N·m/rad]."""
+    """Simulate a study's impact with a posture [rad] and joint stiffness [N·m/rad].
+
+    Of what the motors may do, the one of the largest peak counts.
+    """
     model = study.model.with_springs(ca.DM(springs))
     approach = Approach(q, study.direction, study.speed)
-    return simulate_impact(model, approach, study.contact, fidelity)
+    lumped = fidelity in ("one_mass", "two_mass")
+    found = [
+        simulate_impact(
+            model, approach, study.contact, fidelity, motors=motors, horizon=study.horizon
+        )
+        for motors in ((None,) if lumped else study.motors)
+    ]
+    return max(found, key=lambda history: history.peak)
 
 
 def safe_speed(study: Study, q: Array, springs: Array) -> float:
-    """Return the speed [m/s] at which the peak force is the region's limit."""
+    """Return the speed [m/s] up to which peaks keep the limit, whatever the motors may do."""
     model = study.model.with_springs(ca.DM(springs))
     approach = Approach(q, study.direction, study.speed)
-    return largest_safe_speed(model, approach, study.contact, study.contact.region.force_limit)
+    limit = study.contact.region.force_limit
+    return min(
+        largest_safe_speed(
+            model, approach, study.contact, limit, motors=motors, horizon=study.horizon
+        )
+        for motors in study.motors
+    )

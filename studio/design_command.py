@@ -45,9 +45,12 @@ def design(
     from .values import given
 
     problem = load_study(study, {"impact": given(region=region, speed=speed)})
-    modes = _modes(mode, problem)
     folder = out or Path("results") / problem.source.stem
     require_replaceable(folder, GENERATOR)
+    if problem.scenarios is not None:
+        _robust(problem, folder, json)
+        return
+    modes = _modes(mode, problem)
     with failures_as_json(json):
         found = _search(problem, modes)
     report = design_report(found)
@@ -58,6 +61,41 @@ def design(
         print_json({"out": folder, **record})
     else:
         _print(report, folder)
+
+
+def _robust(study: Study, folder: Path, json: bool) -> None:
+    """Design one machine for all scenarios."""
+    from softimpact.codegen import generate_package
+    from softimpact.optimize.robust import robust_design
+    from softimpact.optimize.study_file import ScenariosSection
+    from softimpact.optimize.study_scenarios import scenarios_of
+
+    from .design_report import GENERATOR
+    from .output import failures_as_json, print_json, write_json
+    from .progress import optimiser_bar
+    from .results_folder import RESULTS, replaced_folder
+    from .robust_report import robust_in_words, robust_record
+
+    asked, scenarios = study.scenarios, scenarios_of(study)
+    free = isinstance(asked, ScenariosSection) and asked.posture == "free"
+    with failures_as_json(json), optimiser_bar() as progress:
+        task = progress.add_task("compile", total=None)
+
+        def advance(what: str, done: int, total: int) -> None:
+            progress.update(task, description=what, completed=done, total=total)
+
+        found = robust_design(study, scenarios, on_progress=advance, free=free)
+    record = robust_record(found)
+    with replaced_folder(folder, GENERATOR) as fresh:
+        write_json(fresh / RESULTS, record)
+        model = study.model.with_springs(found.springs)
+        generate_package(model.robot, fresh / "c", drives_=model.drives)
+    if json:
+        print_json({"out": folder, **record})
+        return
+    for line in robust_in_words(found):
+        typer.echo(line)
+    typer.echo(f"Results and the C package: {folder}")
 
 
 def _modes(name: str, study: Study) -> tuple[Mode, ...]:

@@ -99,7 +99,7 @@ def design_report(design: Design) -> DesignReport:
         design=design,
         poses=poses,
         worst=worst,
-        check=Check(winner.force, history.first_contact, full.first_contact),
+        check=Check(winner.force, history.peak, full.peak),
         winner_history=history,
         worst_history=simulated(study, worst.candidate.q, study.nominal),
         speed_before=safe_speed(study, task.candidate.q, study.nominal),
@@ -123,12 +123,31 @@ def as_record(report: DesignReport) -> dict[str, Any]:
             "impact_duration": design.timing.duration,
             "impact_steps": design.timing.steps,
         },
-        "winner": {**vars(design.winner), "meets_limit": design.winner.force <= report.limit},
+        "winner": {
+            **vars(design.winner),
+            "deflection": design.answers.deflection,
+            "meets_limit": design.winner.force <= report.limit,
+        },
+        "worst_force": design.winner.force,
+        "worst_scenario": {
+            "pose": design.winner.name,
+            "direction": study.direction,
+            "point": study.model.tip,
+            "region": region.name,
+            "speed": study.speed,
+            "motors": design.answers.worst_motors.kind,
+        },
+        "indifferent": dict(
+            zip(study.robot.joint_names, design.answers.indifferent.tolist(), strict=True)
+        ),
+        "prices": design.answers.prices,
+        "conflicts": [],
+        "reference": design.answers.reference,
         "check": vars(report.check),
         "gains": None if design.gains is None else vars(design.gains),
         "safe_speed": {"before": report.speed_before, "after": report.speed_after},
-        "peak_definition": "first_contact",
-        "poses": [_pose(pose) for pose in report.poses],
+        "peak_definition": "peak",
+        "poses": [_pose(pose, study.max_deflection) for pose in report.poses],
     }
 
 
@@ -169,12 +188,25 @@ def inputs(study: Study) -> dict[str, Any]:
         "stiffness_nominal": study.nominal,
         "forces": study.forces,
         "max_deflection": study.max_deflection,
+        "motors": study.motors,
+        "horizon": study.horizon,
         "task_pose": study.task_pose.name,
         "exact": study.exact,
     }
 
 
-def _pose(pose: RankedPose) -> dict[str, Any]:
+def peak_in_words(study: Study) -> str:
+    """Return which peak counts, and under what motors."""
+    until = "no reaction"
+    kinds = " or ".join(motors.kind for motors in study.motors)
+    reaction = study.motors[0].reaction_time
+    if reaction < np.inf:
+        until = f"reaction after {1e3 * reaction:g} ms"
+    worse = ", the worse counts" if len(study.motors) > 1 else ""
+    return f"largest force within {study.horizon:g} s; motors {kinds}{worse}; {until}"
+
+
+def _pose(pose: RankedPose, max_deflection: float) -> dict[str, Any]:
     result, candidate = pose.result, pose.result.candidate
     figures = pose.figures
     return {
@@ -195,6 +227,7 @@ def _pose(pose: RankedPose) -> dict[str, Any]:
         "directional_giaf": figures.directional_giaf,
         "force_before": result.force_before,
         "deflection_before": result.deflection_before,
+        "keeps_bounds_before": result.deflection_before <= max_deflection,
         "table": result.table,
         "free": result.free,
     }

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 from rich.console import Console
 
 from softimpact.optimize import Outcome
 from softimpact.optimize.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
 
-from .design_report import DesignReport, RankedPose, gains_in_words, limit_kind
+from .design_report import DesignReport, RankedPose, gains_in_words, limit_kind, peak_in_words
 from .output import Cell, print_table
 
 COLUMNS = (
@@ -39,8 +40,8 @@ def print_design(report: DesignReport) -> None:
     fits = not console.is_terminal or console.width >= WIDE
     columns = COLUMNS if fits else COLUMNS[:-1]
     print_table(
-        f"{study.title}\n{contact.region.title}, {held}, {study.speed:g} m/s; peak of the first "
-        f"contact. Nominal: k_s = {_stiffness(study.nominal)} kN·m/rad",
+        f"{study.title}\n{contact.region.title}, {held}, {study.speed:g} m/s; "
+        f"{peak_in_words(study)}. Nominal: k_s = {_stiffness(study.nominal)} kN·m/rad",
         columns,
         [_row(pose)[: len(columns)] for pose in report.poses],
     )
@@ -125,11 +126,33 @@ def _winner(report: DesignReport) -> list[str]:
         f"(ISO/TS 15066, {region.title.lower()})",
         f"  q   = [{', '.join(f'{angle:.4f}' for angle in winner.q)}] rad",
         f"  k_s = [{', '.join(f'{k:.0f}' for k in winner.springs)}] N·m/rad",
-        *(f"  {line}" for line in _gains(report)),
+        *(f"  {line}" for line in [*_meaning(report), *_gains(report)]),
         f"Check of the winner: linearised by SUNDIALS {check.linearised:.2f} N "
         f"({100 * (check.linearised / check.nlp - 1):+.3f} % from the optimum), "
         f"nonlinear {check.full:.2f} N ({100 * (check.full / check.nlp - 1):+.2f} %)",
     ]
+
+
+def _meaning(report: DesignReport) -> list[str]:
+    """What binds, which numbers matter, and whether the nominal springs are a fair reference."""
+    study, answers = report.study, report.design.answers
+    bound, reference = study.max_deflection, answers.reference
+    ranges = zip(study.robot.joint_names, answers.indifferent, strict=True)
+    named = ", ".join(f"{name} {low:.0f}–{high:.0f}" for name, (low, high) in ranges)
+    lines = [
+        f"deflection {1e3 * answers.deflection:.4g} mm of {1e3 * bound:.4g} mm; motors "
+        f"{answers.worst_motors.kind} are the worst",
+        f"costs less than 0.5 %, one at a time: {named} N·m/rad",
+        *(f"{price.bound}: {price.room} buys {price.newtons:.2g} N" for price in answers.prices),
+    ]
+    if not np.array_equal(reference.springs, study.nominal):
+        saved = 100 * (1 - report.design.winner.force / reference.force)
+        lines.append(
+            f"nominal springs break the bound on the deflection in {study.task_pose.name}; just "
+            f"stiff enough (k_s = {_stiffness(reference.springs)} kN·m/rad) they give "
+            f"{reference.force:.1f} N, of which the design saves {saved:.1f} %"
+        )
+    return lines
 
 
 def _gains(report: DesignReport) -> list[str]:

@@ -59,10 +59,15 @@ def print_warnings(lines: Iterable[str]) -> None:
 @contextmanager
 def failures_as_json(wanted: bool) -> Iterator[None]:
     """Print what a failed solver found best as one JSON object, too, if that is wanted."""
-    from softimpact.optimize import SolverFailure
+    from softimpact.optimize import Infeasible, SolverFailure
 
     try:
         yield
+    except Infeasible as failure:
+        if wanted:
+            least = vars(failure.least)
+            print_json({"error": str(failure), "conflicts": failure.conflicts, "least": least})
+        raise
     except SolverFailure as failure:
         if wanted:
             best = {**vars(failure.best), "feasible": failure.feasible}

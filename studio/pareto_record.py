@@ -26,7 +26,7 @@ def as_record(report: ParetoReport) -> dict[str, Any]:
         "region": study.contact.region.name,
         "limit": report.limit,
         "limit_kind": limit_kind(study),
-        "peak_definition": "first_contact",
+        "peak_definition": "peak",
         "accuracy": "largest deflection of the tip by the springs under the study's forces [m]",
         "solver": {
             "compiled": pareto.compiled,

@@ -9,7 +9,7 @@ from math import log
 
 from softimpact.optimize import ParetoPoint
 
-from .design_report import limit_kind
+from .design_report import limit_kind, peak_in_words
 from .output import Cell, shown
 from .pareto_report import CheckedPoint, ParetoReport
 
@@ -34,8 +34,8 @@ def heading(report: ParetoReport) -> str:
     study = report.study
     held = "clamped" if study.contact.clamped else "free to give way"
     return (
-        f"{study.title}\n{study.contact.region.title}, {held}, {study.speed:g} m/s; least peak of "
-        "the first contact by the largest deflection allowed"
+        f"{study.title}\n{study.contact.region.title}, {held}, {study.speed:g} m/s; least "
+        f"peak by the largest deflection allowed ({peak_in_words(study)})"
     )
 
 

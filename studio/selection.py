@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from softimpact.optimize import Candidate, Study, candidates
-from softimpact.simulate import Approach, Fidelity, simulate_impact
+from softimpact.simulate import Fidelity
 from softimpact.symbolic import InvalidValue, analyse
 from softimpact.symbolic.robot.rigid import Array
 
+from .checks import simulated
 from .output import print_table
 
 Criterion = Literal["peak_force", "m_c", "giaf", "directional_giaf"]
@@ -31,7 +32,7 @@ class PoseFigures:
         m_a: [kg].
         giaf: generalised impact absorption factor.
         directional_giaf: along the impact.
-        peak_force: of the first contact [N].
+        peak_force: largest over all contacts and all that the motors may do [N].
     """
 
     name: str
@@ -66,8 +67,6 @@ def ranking(study: Study, criterion: Criterion, fidelity: Fidelity) -> list[Pose
 def _figures(study: Study, candidate: Candidate, fidelity: Fidelity) -> PoseFigures:
     q = candidate.q
     figures = analyse(study.model, q, study.direction)
-    approach = Approach(q, study.direction, study.speed)
-    history = simulate_impact(study.model, approach, study.contact, fidelity)
     return PoseFigures(
         name=candidate.pose.name,
         q=q,
@@ -77,7 +76,7 @@ def _figures(study: Study, candidate: Candidate, fidelity: Fidelity) -> PoseFigu
         m_a=figures.m_a,
         giaf=figures.giaf,
         directional_giaf=figures.directional_giaf,
-        peak_force=history.first_contact,
+        peak_force=simulated(study, q, study.nominal, fidelity).peak,
     )
 
 
@@ -95,7 +94,9 @@ def report(
         "speed": study.speed,
         "joint_stiffness": study.nominal,
         "model": fidelity,
-        "peak_definition": "first_contact",
+        "peak_definition": "peak",
+        "motors": study.motors,
+        "horizon": study.horizon,
         "by": criterion,
         "limit": study.contact.region.force_limit,
         "winner": ranked[0].name,

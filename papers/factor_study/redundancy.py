@@ -13,7 +13,7 @@ from softimpact.optimize import Study
 from softimpact.optimize.best_posture import BestPosture, best_posture, posture_of_least_force
 from softimpact.optimize.self_motion import SelfMotion
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.symbolic import ImpactModel, Matrix, giaf
+from softimpact.symbolic import ImpactModel, Matrix, Motors, giaf
 from softimpact.symbolic.robot.rigid import Array
 
 from .functions import FactorFunctions
@@ -81,8 +81,18 @@ def along_self_motion(
         peak_force=forces,
         most_giaf=replace(most, value=-most.value),
         least_mass=best_posture(model, curve.q[np.argmin(mass)], felt),
-        least_force=posture_of_least_force(replace(study, model=model), best_start),
+        least_force=posture_of_least_force(_as_published(study, model), best_start),
     )
+
+
+def _as_published(study: Study, model: ImpactModel) -> Study:
+    """Return the study with motors that are free from first touch on, and its first contact."""
+    free = (Motors("free"),)
+    return replace(study, model=model, motors=free, horizon=FIRST_CONTACT)
+
+
+FIRST_CONTACT = 0.1
+"""Time [s] in which the tip leaves the body once."""
 
 
 def peak_force(study: Study, model: ImpactModel, q: Array) -> float:

@@ -31,7 +31,7 @@ MILLISECONDS = 1e3
 
 
 def figure_of_forces(report: DesignReport) -> Figure:
-    """Draw the first contact of the winner and of the worst pose, their peaks and the limit."""
+    """Draw the contacts of the winner and of the worst pose, their peaks and the limit."""
     figure = new_figure(8.0, 4.8)
     axes = figure.add_subplot()
     winner, worst = report.design.winner, report.worst.candidate.pose.name
@@ -48,29 +48,26 @@ def figure_of_forces(report: DesignReport) -> Figure:
         ),
     ]
     histories = (report.worst_history, report.winner_history)
-    axes.set_xlim(0.0, max(first_contact_of(history)[0][-1] for history in histories))
+    axes.set_xlim(0.0, max(until_apart(history)[0][-1] for history in histories))
     _mark_peaks(axes, *histories)
-    axes.set_ylim(0.0, 1.15 * max(report.limit, *(history.first_contact for history in histories)))
+    axes.set_ylim(0.0, 1.15 * max(report.limit, *(history.peak for history in histories)))
     axes.set_xlabel("time since first touch [ms]", fontsize=TEXT)
     axes.set_ylabel("contact force [N]", fontsize=TEXT)
-    axes.set_title(f"Contact force during the first contact\n{setting(report)}", fontsize=TEXT + 1)
+    axes.set_title(f"Contact force\n{setting(report)}", fontsize=TEXT + 1)
     tidy(axes)
     legend_below(figure, lines, columns=1)
     return figure
 
 
-def first_contact_of(history: ImpactHistory) -> tuple[Array, Array]:
-    """Return time [ms] and force [N] until the first contact ends."""
-    end = history.separation
-    if end is None:
-        return MILLISECONDS * history.time, history.force
-    during = history.time < end
-    time = np.append(history.time[during], end)
-    return MILLISECONDS * time, np.append(history.force[during], 0.0)
+def until_apart(history: ImpactHistory) -> tuple[Array, Array]:
+    """Return time [ms] and force [N] until the contact of the largest force ends."""
+    over = (history.time > history.time_of_peak) & (history.force <= 0)
+    end = int(np.argmax(over)) + 1 if over.any() else history.time.size
+    return MILLISECONDS * history.time[:end], np.maximum(history.force[:end], 0.0)
 
 
 def _draw(axes: Any, history: ImpactHistory, colour: str, label: str) -> Any:
-    (line,) = axes.plot(*first_contact_of(history), color=colour, linewidth=2.0, label=label)
+    (line,) = axes.plot(*until_apart(history), color=colour, linewidth=2.0, label=label)
     return line
 
 
@@ -80,12 +77,12 @@ def _mark_peaks(axes: Any, worst: ImpactHistory, winner: ImpactHistory) -> None:
     There the curves are low. The higher peak is named above its level, the lower one below.
     """
     peaks = [("worst", worst, BEFORE), ("winner", winner, BOTH)]
-    peaks.sort(key=lambda peak: peak[1].first_contact)
+    peaks.sort(key=lambda peak: peak[1].peak)
     longest = axes.get_xlim()[1]
-    late = MILLISECONDS * peaks[-1][1].time_of_first_contact_peak > 0.6 * longest
+    late = MILLISECONDS * peaks[-1][1].time_of_peak > 0.6 * longest
     end = 0.0 if late else longest
     for (name, history, colour), place in zip(peaks, ("top", "bottom"), strict=True):
-        time, force = MILLISECONDS * history.time_of_first_contact_peak, history.first_contact
+        time, force = MILLISECONDS * history.time_of_peak, history.peak
         axes.hlines(force, time, end, color=colour, linewidth=1.0, linestyle=":")
         axes.plot(time, force, "o", color=colour, markersize=7, markeredgecolor=BLACK, zorder=4)
         axes.annotate(

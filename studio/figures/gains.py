@@ -52,7 +52,7 @@ def _draw_forces(axes: Any, report: DesignReport, gains: Gains) -> Any:
     label = limit_in_words(report)
     line = axes.axhline(report.limit, color=LIMIT, linewidth=1.8, linestyle="--", label=label)
     axes.set_ylim(0.0, 1.18 * max(*heights, report.limit))
-    axes.set_ylabel("peak force of the first contact [N]", fontsize=TEXT)
+    axes.set_ylabel("peak force [N]", fontsize=TEXT)
     axes.set_title("Force at the study's speed", fontsize=TEXT)
     return line
 

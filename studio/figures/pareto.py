@@ -67,7 +67,7 @@ def figure_of_fronts(report: ParetoReport) -> Figure:
     near = low - 0.5 * (high - low) <= report.limit <= high + 0.5 * (high - low)
     if near:
         handles.append(_draw_limit(axes, report))
-    axes.set_ylabel("least peak force of the first contact [N]", fontsize=TEXT)
+    axes.set_ylabel("least peak force [N]", fontsize=TEXT)
     below = "" if near else f"\n{limit_in_words(report)}: beyond the axis"
     _finish(figure, report, handles, "Safety against accuracy", below)
     return figure

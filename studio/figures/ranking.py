@@ -139,7 +139,7 @@ def _draw_limit(axes: Any, report: DesignReport) -> list[Any]:
 
 
 def _label(report: DesignReport, low: float, high: float) -> str:
-    label = "peak force of the first contact [N]; the axis does not start at zero"
+    label = "peak force [N]; the axis does not start at zero"
     if low <= report.limit <= high:
         return label
     side = "left" if report.limit < low else "right"

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -52,7 +53,7 @@ def read_mjcf(path: Path) -> Description:
         _require_sound_joints(spec, str(path))
         try:
             bodies, stated, measured, rules = body_inertias(spec, lambda: _parsed(path), str(path))
-            warnings = _cleared(spec)
+            unread = _cleared(spec)
             if any("NaN" in warning for warning in heard):
                 raise ModelFileError(str(path), "a number is NaN")
             model = spec.compile()
@@ -60,7 +61,7 @@ def read_mjcf(path: Path) -> Description:
             raise ModelFileError(str(path), one_line(error)) from None
     _require_finite(model, path)
     inertias = _by_compiled_body(model, bodies, stated, measured, rules)
-    return _Reader(model, path, inertias, warnings, keys).description()
+    return _Reader(model, path, inertias, unread, keys).description()
 
 
 @contextmanager
@@ -70,7 +71,9 @@ def _warnings() -> Iterator[list[str]]:
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(heard.append)
     try:
-        yield heard
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of the inertias that stand in for the file's
+            yield heard
     finally:
         mujoco.set_mju_user_warning(before)
 
@@ -95,7 +98,7 @@ def one_line(error: Exception) -> str:
 
 def _cleared(spec: mujoco.MjSpec) -> list[str]:
     """Drop what only rendering, contact and sensors need, and with it every file beside it."""
-    warnings = ["soft bodies (flex) do not count"] if list(spec.flexes) else []
+    unread = ["soft bodies (flex) do not count"] if list(spec.flexes) else []
     for item in (*spec.geoms, *spec.sites, *spec.tendons):
         item.material = ""
     for geom in [geom for geom in spec.geoms if geom.meshname or geom.hfieldname]:
@@ -104,7 +107,7 @@ def _cleared(spec: mujoco.MjSpec) -> list[str]:
     for group in (spec.sensors, *files, spec.pairs, spec.excludes, spec.tuples, spec.keys):
         for item in list(group):
             spec.delete(item)
-    return warnings
+    return unread
 
 
 def _require_sound_joints(spec: mujoco.MjSpec, source: str) -> None:
@@ -182,7 +185,7 @@ class _Reader:
         model: mujoco.MjModel,
         path: Path,
         inertias: list[Inertia],
-        warnings: list[str],
+        unread: list[str],
         keys: list[list[float]],
     ) -> None:
         self.model, self.path, self.inertias, self.keys = model, path, inertias, keys
@@ -193,7 +196,7 @@ class _Reader:
         movable = [j for j in range(model.njnt) if int(model.jnt_type[j]) != FREE]
         speeds = self.values.get(SPEED_LIMIT, (math.inf,) * len(movable))
         self.speed_limits = dict(zip(movable, speeds, strict=True))
-        self.warnings = [*warnings, *self.motors.warnings, *self.ties.warnings]
+        self.warnings = [*unread, *self.motors.warnings, *self.ties.warnings]
 
     def description(self) -> Description:
         """Walk the bodies, which MuJoCo keeps parents before children."""

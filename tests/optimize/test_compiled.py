@@ -13,19 +13,18 @@ import numpy as np
 import pytest
 from studies import study_of
 
-from softimpact.optimize.compiled import c_compiler, cache_folder, compiled_nlp
-from softimpact.optimize.nlp import build_nlp, parameters
-from softimpact.optimize.solve import nlp_solver, quiet
+from softimpact.optimize.compiled import c_compiler, cache_folder, compiled_functions
+from softimpact.optimize.impact_program import impact_numbers, impact_program
+from softimpact.symbolic import Motors
 
 COMPILER = c_compiler()
 needs_compiler = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
 
 
-def parabola(weight: float = 1.0) -> ca.Function:
-    """A small problem whose answer is (weight, 1 − weight)."""
+def parabola(weight: float = 1.0) -> list[ca.Function]:
+    """A small function."""
     x = ca.MX.sym("x", 2)
-    problem = {"x": x, "f": ca.sumsqr(x - ca.DM([weight, 0])), "g": ca.sum1(x)}
-    return ca.nlpsol("design", "ipopt", problem, quiet({}))
+    return [ca.Function("parabola", [x], [ca.sumsqr(x - ca.DM([weight, 0]))])]
 
 
 def program(folder: Path, name: str, text: str) -> str:
@@ -69,31 +68,29 @@ def test_which_compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
 
 
 def test_no_compiler_no_library(cache: Path) -> None:
-    assert compiled_nlp(parabola(), None) is None
+    assert compiled_functions(parabola(), None) is None
     assert not cache.exists()
 
 
 @needs_compiler
-def test_a_library_solves_the_same_problem(cache: Path) -> None:
+def test_a_library_computes_the_same(cache: Path) -> None:
     before = Path.cwd()
-    library = compiled_nlp(parabola(0.25), COMPILER)
+    library = compiled_functions(parabola(0.25), COMPILER)
     assert library is not None
     assert library.parent == cache
     assert Path.cwd() == before
-    solver = ca.nlpsol("design", "ipopt", str(library), quiet({}))
-    solution = solver(x0=[3, 4], lbg=1, ubg=1)
-    np.testing.assert_allclose(np.array(solution["x"]).ravel(), [0.625, 0.375], atol=1e-7)
+    assert float(ca.external("parabola", str(library))([1.25, 2])) == 5.0
     assert [path.name for path in cache.iterdir()] == [library.name]
 
 
 @needs_compiler
 def test_the_second_time_nothing_is_compiled(cache: Path) -> None:
-    library = compiled_nlp(parabola(), COMPILER)
+    library = compiled_functions(parabola(), COMPILER)
     assert library is not None
     os.utime(library, (1, 1))
-    assert compiled_nlp(parabola(), COMPILER) == library
+    assert compiled_functions(parabola(), COMPILER) == library
     assert library.stat().st_mtime == 1
-    other = compiled_nlp(parabola(2.0), COMPILER)
+    other = compiled_functions(parabola(2.0), COMPILER)
     assert other not in (None, library)
 
 
@@ -107,12 +104,12 @@ def test_the_second_time_nothing_is_compiled(cache: Path) -> None:
     ],
 )
 def test_a_broken_compiler_does_not_matter(cache: Path, tmp_path: Path, text: str) -> None:
-    assert compiled_nlp(parabola(), program(tmp_path, "cc", text)) is None
+    assert compiled_functions(parabola(), program(tmp_path, "cc", text)) is None
     assert list(cache.iterdir()) == []
 
 
 def test_a_compiler_that_cannot_run_does_not_matter(cache: Path, tmp_path: Path) -> None:
-    assert compiled_nlp(parabola(), str(tmp_path / "none")) is None
+    assert compiled_functions(parabola(), str(tmp_path / "none")) is None
     assert list(cache.iterdir()) == []
 
 
@@ -123,17 +120,17 @@ def test_a_cache_that_cannot_be_written_does_not_matter(
     (tmp_path / "file").write_text("not a folder")
     for place in ("file", "file/cache"):
         monkeypatch.setenv("SOFTIMPACT_CACHE", str(tmp_path / place))
-        assert compiled_nlp(parabola(), COMPILER) is None
+        assert compiled_functions(parabola(), COMPILER) is None
 
 
 TWIN = """
 import sys, casadi as ca
-from softimpact.optimize.compiled import c_compiler, compiled_nlp
+from softimpact.optimize.compiled import c_compiler, compiled_functions
 x = ca.MX.sym("x", 2)
-solver = ca.nlpsol("design", "ipopt", {"x": x, "f": ca.sumsqr(x - 1), "g": ca.sum1(x)})
+function = ca.Function("parabola", [x], [ca.sumsqr(x - 1)])
 print("ready", flush=True)
 sys.stdin.readline()
-print(compiled_nlp(solver, c_compiler()))
+print(compiled_functions([function], c_compiler()))
 """
 
 
@@ -157,25 +154,19 @@ def test_two_processes_may_compile_the_same_at_once(cache: Path) -> None:
     assert (a.returncode, b.returncode) == (0, 0)
     assert libraries == {str(path) for path in cache.iterdir()}
     (library,) = libraries
-    solution = ca.nlpsol("design", "ipopt", library, quiet({}))(x0=[3, 4], lbg=0, ubg=9)
-    np.testing.assert_allclose(np.array(solution["x"]).ravel(), 1.0, atol=1e-7)
+    assert float(ca.external("parabola", library)([3, 4])) == 13.0
 
 
 @needs_compiler
 def test_machine_code_computes_what_the_virtual_machine_does(tmp_path: Path) -> None:
     study = study_of(tmp_path, {"impact": {"region": "head"}}, ("q9",))
-    nlp = build_nlp(study.model, 3, 150, 1)
-    library = compiled_nlp(nlp_solver(nlp.oracle), COMPILER)
-    assert library is not None
-    p = parameters(study, np.zeros(3), np.eye(3), 2e-4, 700.0)
+    fast, slow = (impact_program(study.model, 150, 1, compiled=c) for c in (True, False))
+    assert fast.library is not None
+    p = impact_numbers(study.direction, 1.0, study.contact, Motors("driven"), 2e-4)
     random = np.random.default_rng(0)
-    compiled = ca.external("nlp_g", str(library))
-    derivative = ca.external("nlp_jac_g", str(library))
-    exact = nlp_solver(nlp.oracle).get_function("nlp_jac_g")
     for _ in range(3):
         q = study.task_pose.q + random.uniform(-0.3, 0.3, 7)
-        x = np.concatenate([q, random.uniform(3, 5, 7), [1.0]])
-        expected = np.array(nlp.oracle(x, p)[1])
-        np.testing.assert_allclose(np.array(compiled(x, p)), expected, atol=1e-9)
-        J, expected = (np.array(f(x, p)[1]) for f in (derivative, exact))
-        np.testing.assert_allclose(J, expected, atol=1e-9 * abs(expected).max())
+        x = np.concatenate([q, random.uniform(3, 5, 7)])
+        np.testing.assert_allclose(fast["forces"](x, p), slow["forces"](x, p), atol=1e-9)
+        found, expected = (np.array(each["slopes"](x, p, 75)[1]) for each in (fast, slow))
+        np.testing.assert_allclose(found, expected, atol=1e-9 * abs(expected).max())

@@ -98,7 +98,12 @@ def test_ipopt_finds_the_top_of_the_curve(study: Study, curve: SelfMotion, tip: 
 def test_posture_of_least_force(study: Study, curve: SelfMotion) -> None:
     def force(q: np.ndarray) -> float:
         approach = Approach(q, study.direction, study.speed)
-        return simulate_impact(study.model, approach, study.contact).first_contact
+        return max(
+            simulate_impact(
+                study.model, approach, study.contact, motors=motors, horizon=study.horizon
+            ).peak
+            for motors in study.motors
+        )
 
     samples = curve.q[::25]
     forces = [force(q) for q in samples]

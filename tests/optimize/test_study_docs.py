@@ -12,10 +12,13 @@ from pydantic import BaseModel
 from softimpact.optimize import load_study
 from softimpact.optimize.study_file import (
     AccuracySection,
+    HardwareSection,
     ImpactSection,
+    MotorsSection,
     ParetoSection,
     PoseSection,
     RobotSection,
+    ScenariosSection,
     StiffnessSection,
     StudyFile,
     TaskSection,
@@ -57,6 +60,9 @@ def test_examples_load(tmp_path: Path) -> None:
 SECTIONS: dict[str, type[BaseModel]] = {
     "[robot]": RobotSection,
     "[impact]": ImpactSection,
+    "[motors]": MotorsSection,
+    "[hardware]": HardwareSection,
+    "[scenarios]": ScenariosSection,
     "[stiffness]": StiffnessSection,
     "[accuracy]": AccuracySection,
     "[pareto]": ParetoSection,

@@ -117,23 +117,21 @@ def test_text_is_legible_and_inside_the_figure(name: str, request: pytest.Fixtur
 
 
 @pytest.mark.parametrize("name", ["panda", "ur5"])
-def test_forces_are_those_of_the_first_contact(name: str, request: pytest.FixtureRequest) -> None:
+def test_forces_are_those_of_the_impact(name: str, request: pytest.FixtureRequest) -> None:
     report: DesignReport = request.getfixturevalue(name)
     figure = figure_of_forces(report)
     (axes,) = figure.axes
     ends = []
     for label, history in (("winner", report.winner_history), ("worst", report.worst_history)):
         time, force = _line(axes, label).get_data()
-        assert history.separation is not None
-        assert time[-1] == pytest.approx(1e3 * history.separation)
+        apart = history.time[(history.time > history.time_of_peak) & (history.force <= 0)]
+        assert time[-1] == pytest.approx(1e3 * apart[0])
         assert force[-1] == 0.0
         np.testing.assert_allclose(
             np.interp(time[:-1], 1e3 * history.time, history.force), force[:-1]
         )
-        assert force.max() == pytest.approx(history.first_contact, rel=1e-3)
-        assert any(
-            f"{label}: {history.first_contact:.1f} N at " in words for words in _words(figure)
-        )
+        assert force.max() == pytest.approx(history.peak, rel=1e-3)
+        assert any(f"{label}: {history.peak:.1f} N at " in words for words in _words(figure))
         ends.append(time[-1])
     assert axes.get_xlim() == (0.0, max(ends))
     limit = [line for line in axes.lines if "ISO/TS 15066" in str(line.get_label())]
@@ -141,16 +139,18 @@ def test_forces_are_those_of_the_first_contact(name: str, request: pytest.Fixtur
 
 
 def test_a_cut_history_is_drawn_to_its_end(ur5: DesignReport) -> None:
-    cut = replace(ur5, worst_history=replace(ur5.worst_history, separation=None))
+    history = ur5.worst_history
+    early = history.time < 1.1 * history.time_of_peak
+    short = replace(history, time=history.time[early], force=history.force[early])
+    cut = replace(ur5, worst_history=short, winner_history=short)
     time = _line(figure_of_forces(cut).axes[0], "worst").get_xdata()
-    assert time[-1] == pytest.approx(1e3 * ur5.worst_history.time[-1])
+    assert time[-1] == pytest.approx(1e3 * short.time[-1])
 
 
 def test_peaks_late_in_the_contact_are_named_on_the_left(ur5: DesignReport) -> None:
-    end = ur5.worst_history.separation
-    assert end is not None
-    late = replace(ur5.worst_history, time_of_first_contact_peak=0.9 * end)
-    (axes,) = figure_of_forces(replace(ur5, worst_history=late)).axes
+    end = 1e-3 * _line(figure_of_forces(ur5).axes[0], "worst").get_xdata()[-1]
+    late = replace(ur5.worst_history, time_of_peak=0.9 * end)
+    (axes,) = figure_of_forces(replace(ur5, worst_history=late, winner_history=late)).axes
     assert [text.get_horizontalalignment() for text in axes.texts] == ["left", "left"]
 
 

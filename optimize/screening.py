@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The forces of all scenarios under given hardware, piece by piece; runs in worker processes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from softimpact.symbolic.robot.rigid import Array
+
+from .impact_program import NUMBERS
+from .nlp import Program
+from .scenarios import Indices, Scenario, Scenarios
+
+CHUNK = 100
+"""Impacts simulated in one call."""
+
+PIECE = 1000
+"""Scenarios in one job."""
+
+KEPT = 8
+"""Scenarios of a piece that are reported: the worst, each of another pose, point or direction."""
+
+
+@dataclass(frozen=True)
+class Screened:
+    """A scenario with its force.
+
+    Attributes:
+        index: of the scenario.
+        share: of the force over its limit.
+        force: largest peak [N].
+    """
+
+    index: int
+    share: float
+    force: float
+
+
+def screen(
+    program: Program,
+    scenarios: Scenarios,
+    postures: Array,
+    springs: Array,
+    step: float,
+    begin: int,
+    end: int,
+) -> list[Screened]:
+    """Return the worst of some scenarios, worst first.
+
+    Args:
+        program: functions of the impacts, one for each contact point.
+        scenarios: all of them.
+        postures: of each pose, P×n [rad].
+        springs: joint stiffness, length n [N·m/rad].
+        step: time step of the impacts [s].
+        begin: number of the first scenario.
+        end: number after that of the last.
+    """
+    places = scenarios.at(begin, end)
+    x = np.column_stack([postures[places[:, 0]], np.tile(np.log10(springs), (len(places), 1))])
+    limits = np.array([contact.region.force_limit for contact in scenarios.contacts])
+    numbers = numbers_of(scenarios, places, step)
+    force = np.empty(len(places))
+    for point in np.unique(places[:, 1]):
+        at = np.flatnonzero(places[:, 1] == point)
+        force[at] = largest_forces(program, int(point), x[at], numbers[at])
+    share = force / limits[places[:, 3]]
+    kept: dict[tuple[int, ...], Screened] = {}
+    for i in np.argsort(-share):
+        kind = tuple(places[i, :3])
+        if kind not in kept:
+            kept[kind] = Screened(begin + int(i), float(share[i]), float(force[i]))
+        if len(kept) == KEPT:
+            break
+    return list(kept.values())
+
+
+def numbers_of(scenarios: Scenarios, places: Indices, step: float) -> Array:
+    """Return the impacts' numbers, a row each; those that differ in nothing but the pose once."""
+    found: dict[tuple[int, ...], Array] = {}
+    rows = np.empty((len(places), NUMBERS))
+    for i, place in enumerate(places):
+        key = tuple(place[2:])
+        if key not in found:
+            found[key] = scenarios.numbers(Scenario(*(int(i) for i in place)), step)
+        rows[i] = found[key]
+    return rows
+
+
+def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Array:
+    """Return the largest peak of each impact [N].
+
+    Args:
+        program: its functions.
+        point: that hits.
+        x: posture and log10 k_s, m×2n.
+        numbers: of the impacts, m×``NUMBERS``.
+    """
+    count = len(x)
+    padding = (-count) % CHUNK  # one shape, so that CasADi maps the function once
+    x, numbers = (np.pad(a, ((0, padding), (0, 0)), mode="edge") for a in (x, numbers))
+    peaks = program.impacts[point]["peaks"].map(CHUNK)
+    found = [
+        np.array(peaks(x[i : i + CHUNK].T, numbers[i : i + CHUNK].T, np.zeros((1, CHUNK)))).max(0)
+        for i in range(0, count + padding, CHUNK)
+    ]
+    return np.concatenate(found)[:count]

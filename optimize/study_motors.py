@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a study's motors do during its impacts."""
+
+from __future__ import annotations
+
+from softimpact.symbolic import ImpactModel, InvalidValue, Motors
+from softimpact.symbolic.impact.motors import MotorKind, check_motors, refuse_held
+
+from .study_file import MotorsSection
+
+
+def motors_of(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ...]:
+    """Return what the motors may do; the worst of several counts.
+
+    Without a kind, motors with gains are a servo. Without gains either, what they do is unknown:
+    free motors and those that keep their speed are the two ends of it.
+
+    Raises:
+        InvalidValue: motors that are held, or a servo without gains.
+    """
+    kind, has_gains = section.kind, model.drives.has_gains
+    if kind is None and has_gains:
+        kind = "servo"
+    if kind == "servo" and not has_gains:
+        raise InvalidValue("position_gain", "is needed: a servo acts by its gains")
+    kinds: tuple[MotorKind, ...] = ("free", "driven") if kind is None else (kind,)
+    found = tuple(
+        Motors(each, section.reaction_time, section.reaction, section.stopping_time)
+        for each in kinds
+    )
+    for motors in found:
+        refuse_held(motors, "a design")
+        check_motors(motors)
+    return found
