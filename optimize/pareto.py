@@ -24,7 +24,7 @@ from .levels import ROOM, even_bounds, level_range
 from .problem import Problem, prepare
 from .repair import largest_deflection
 from .searches import Progress, Searches
-from .solve import Outcome, preference
+from .solve import Outcome, Start, better, preference, solve
 from .stiffest import Stiffest, stiffest
 from .study import Study
 from .sweep import Level, sweep
@@ -117,6 +117,7 @@ def pareto_fronts(
         levels = _levels(searches, accurate, ends[study.task_pose.name], soft)
         held = _held(searches, ends, levels)
         free = free_outcomes(searches, levels, list(held.values()), accurate)
+        _seed_held(searches, ends, levels, held, free)
     if not any(outcome.solved for outcome in free if outcome is not None):
         raise SolverFailure([outcome for outcome in free if outcome is not None])
     return _fronts(problem, [level.bound for level in levels], held, free)
@@ -171,6 +172,31 @@ def _held(
     for name, outcomes in searches.run("postures held", sweep, jobs):
         found[name][-len(outcomes) :] = outcomes
     return found
+
+
+def _seed_held(
+    searches: Searches,
+    ends: dict[str, Stiffest],
+    levels: Sequence[Level],
+    held: dict[str, Outcomes],
+    free: Sequence[Outcome | None],
+) -> None:
+    """Search the held postures from the springs that free ones ended with, too.
+
+    Else an optimum of the springs that held searches missed would count as gained by posture.
+    """
+    problem = searches.problem
+    jobs = {}
+    for i, (level, found) in enumerate(zip(levels, free, strict=True)):
+        if found is None or not found.solved:
+            continue
+        for name, end in ends.items():
+            if held[name][i] is not None:
+                start = Start(name, "table", ((end.q, found.springs),))
+                jobs[name, i] = (problem.program, start, problem.bounds, level.numbers)
+    for (name, i), outcome in searches.run("held from free", solve, jobs):
+        known = held[name][i]
+        held[name][i] = outcome if known is None else better(known, outcome)
 
 
 def _fronts(

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from softimpact.simulate import HORIZON, Approach
-from softimpact.simulate.assessment import bracket
+from softimpact.simulate import HORIZON, Approach, bracket
 from softimpact.simulate.band import Band, impact_band
 from softimpact.simulate.program import (
     Danger,

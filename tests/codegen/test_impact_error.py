@@ -41,6 +41,7 @@ def leg(folder: Path, inertia: float) -> Generated:
     return Generated(robot, "foot", folder / "leg", manifest)
 
 
+@pytest.mark.slow
 def test_a_light_foot_states_how_many_impacts_do_not_end(tmp_path: Path) -> None:
     package = leg(tmp_path, inertia=2e-5)
     record = record_of(package)

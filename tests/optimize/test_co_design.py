@@ -246,19 +246,6 @@ def test_the_fallback_is_taken_when_all_points_fail(
     assert result.gains is None
 
 
-def test_a_bound_that_no_spring_can_meet(tmp_path: Path) -> None:
-    """Ipopt must say so, and the failure carries what comes nearest."""
-    study = study_of(tmp_path, {"accuracy": {"max_deflection": 1e-6}}, ("q9",))
-    with pytest.raises(SolverFailure) as caught:
-        design(study, ["table"], InProcess())
-    best = caught.value.best
-    assert not caught.value.feasible
-    assert "no point found is feasible" in str(caught.value)
-    assert best.violation > solving.FEASIBLE
-    stiffest = largest_deflection(study, best.q, study.upper)
-    assert largest_deflection(study, best.q, best.springs) == pytest.approx(stiffest, rel=0.05)
-
-
 def test_processes_given_by_the_caller(tmp_path: Path) -> None:
     study = study_of(tmp_path, {"impact": {"region": "head"}}, ("q3", "q9"))
     with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:

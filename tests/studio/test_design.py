@@ -89,6 +89,7 @@ def test_gains_add_up(results: Results) -> None:
     assert gains["before"] >= gains["springs"]
 
 
+@pytest.mark.slow
 def test_tables_say_what_was_found(tmp_path: Path) -> None:
     outcome = run("design", small_study(tmp_path), "--out", tmp_path / "out", "--mode", "table")
     assert outcome.code == 0
@@ -97,6 +98,7 @@ def test_tables_say_what_was_found(tmp_path: Path) -> None:
     assert "2 of 2 solved" in outcome.out
 
 
+@pytest.mark.slow
 def test_region_and_speed_override_the_study(tmp_path: Path) -> None:
     record = run_json_without_progress(
         *("design", small_study(tmp_path), "--out", tmp_path / "out", "--mode", "table"),
@@ -120,6 +122,7 @@ def run_json_without_progress(*arguments: object) -> dict[str, Any]:
     return result
 
 
+@pytest.mark.slow
 def test_infeasible_study_fails_with_ipopts_status_and_keeps_older_results(tmp_path: Path) -> None:
     out = tmp_path / "out"
     out.mkdir()

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One set of springs for many scenarios: certified, no worse than brute force, and explained."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from studies import InProcess, changed, study_of, written
+
+from softimpact.optimize import Infeasible, Study, design, load_study
+from softimpact.optimize.robust import RobustDesign, robust_design
+from softimpact.optimize.study_scenarios import scenarios_of
+from softimpact.simulate import Approach, simulate_impact
+from softimpact.symbolic import InvalidValue, impact_model, with_load
+from softimpact.symbolic.robot.rigid import Array
+
+SIDES = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
+
+TWO_GROUPS = [["joint1", "joint2", "joint3", "joint4"], ["joint5", "joint6", "joint7"]]
+
+ASKED: dict[str, dict[str, Any]] = {
+    "motors": {"kind": "driven", "horizon": 0.1},
+    "hardware": {"joint_stiffness": TWO_GROUPS},
+    "scenarios": {
+        "directions": SIDES,
+        "regions": ["chest", "hand"],
+        "payloads": [0.0, 2.0],
+        "speeds": [0.5],
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    return study_of(tmp_path_factory.mktemp("robust"), ASKED, ("q9", "q18"))
+
+
+@pytest.fixture(scope="module")
+def found(study: Study) -> RobustDesign:
+    return robust_design(study, scenarios_of(study), InProcess())
+
+
+def simulated(found: RobustDesign, index: int, springs: Array) -> float:
+    """Share of its limit that a scenario's force is, by SUNDIALS."""
+    scenarios = found.scenarios
+    one = scenarios[index]
+    robot, load = found.study.robot, scenarios.payloads[one.payload]
+    if load:
+        robot = with_load(robot, found.study.model.tip, load)
+    drives = found.study.model.with_springs(springs).drives
+    model = impact_model(robot, scenarios.points[one.point], drives_=drives)
+    approach = Approach(
+        found.postures[one.pose], scenarios.directions[one.direction], scenarios.speeds[one.speed]
+    )
+    motors, contact = scenarios.motors[one.motors], scenarios.contacts[one.contact]
+    force = simulate_impact(
+        model, approach, contact, motors=motors, horizon=found.study.horizon
+    ).peak
+    return force / contact.region.force_limit
+
+
+def test_no_scenario_is_worse_than_the_certificate(found: RobustDesign) -> None:
+    assert len(found.scenarios) == 2 * 2 * 2 * 2
+    shares = [simulated(found, i, found.springs) for i in range(len(found.scenarios))]
+    assert max(shares) == pytest.approx(found.worst.share, rel=1e-3)
+    assert int(np.argmax(shares)) == found.worst.index
+    assert found.worst.share <= found.bound * (1 + 1e-3)
+    assert found.worst.deflection <= found.study.max_deflection * (1 + 1e-5)
+
+
+def test_groups_share_their_spring(found: RobustDesign) -> None:
+    for joints in (found.springs[:4], found.springs[4:]):
+        np.testing.assert_array_equal(joints, joints[0])
+    assert found.springs[0] != found.springs[6]
+
+
+@pytest.mark.slow
+def test_two_groups_are_no_worse_than_a_grid(found: RobustDesign) -> None:
+    study, best = found.study, np.inf
+    J = [np.array(study.model.jacobian(q)) for q in found.postures]
+    for large in np.geomspace(300.0, 1e5, 12):
+        for small in np.geomspace(300.0, 1e5, 12):
+            springs = np.r_[np.full(4, large), np.full(3, small)]
+            bends = [np.linalg.norm(j @ ((j.T @ study.forces.T).T / springs).T, axis=0) for j in J]
+            if np.max(bends) > study.max_deflection:
+                continue
+            worst = max(simulated(found, i, springs) for i in found.active)
+            if worst < best:
+                best = max(simulated(found, i, springs) for i in range(len(found.scenarios)))
+    assert np.isfinite(best)
+    assert found.worst.share <= best * (1 + 1e-3)
+
+
+def test_it_is_compared_with_what_keeps_the_bounds(found: RobustDesign) -> None:
+    equal, springs = found.equal
+    assert equal.deflection <= found.study.max_deflection * (1 + 2e-3)
+    assert np.ptp(springs) < 1e-6 * springs[0]
+    assert found.worst.share <= equal.share * (1 + 1e-3)
+
+
+@pytest.mark.slow
+def test_ranges_cost_less_than_half_a_percent(found: RobustDesign) -> None:
+    least = found.worst.share
+    for joints in (slice(0, 4), slice(4, 7)):
+        low, high = found.indifferent[joints][0]
+        assert low <= found.springs[joints][0] * (1 + 1e-9)
+        assert high >= found.springs[joints][0] * (1 - 1e-9)
+        for end in (low, high):
+            springs = found.springs.copy()
+            springs[joints] = end
+            worst = max(simulated(found, i, springs) for i in found.active)
+            assert worst <= least * 1.005 * (1 + 2e-3)
+
+
+@pytest.mark.slow
+def test_the_price_of_accuracy_is_what_it_buys(study: Study, found: RobustDesign) -> None:
+    price = next(p for p in found.prices if p.bound == "accuracy.max_deflection")
+    assert price.room == "0.1 mm more"
+    more = Study(**{**vars(study), "max_deflection": study.max_deflection + 2e-5})
+    again = robust_design(more, found.scenarios, InProcess())
+    saved = found.worst.force * (1 - again.worst.share / found.worst.share)
+    assert saved == pytest.approx(0.2 * price.newtons, rel=0.3)
+
+
+def test_a_list_of_scenarios(tmp_path: Path) -> None:
+    content = changed({"motors": {"kind": "driven"}}, ("q9", "q18"))
+    path = written(tmp_path, content)
+    text = path.read_text(encoding="utf-8")
+    more = '[[scenarios]]\npose = "q18"\nregion = "hand"\n[[scenarios]]\npayload = 1.5\n'
+    path.write_text(f"{text}\n{more}", encoding="utf-8")
+    scenarios = scenarios_of(load_study(path))
+    assert len(scenarios) == 2
+    first, second = (scenarios.describe(scenarios[i]) for i in range(2))
+    assert (first["pose"], first["region"], first["payload"]) == ("q18", "hand", 0.0)
+    assert (second["pose"], second["region"], second["payload"]) == ("q9", "chest", 1.5)
+
+
+def test_scenarios_are_not_held_in_memory(study: Study) -> None:
+    scenarios = scenarios_of(study)
+    many = type(scenarios)(**{**vars(scenarios), "speeds": tuple(np.linspace(0.1, 1, 10**6))})
+    assert len(many) == 16 * 10**6
+    assert many.describe(many[len(many) - 1])["speed"] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("scenarios", "reason"),
+    [
+        ({"points": ["elbow"]}, "elbow"),
+        ({"regions": ["toe"]}, "unknown body region 'toe'"),
+        ({"poses": ["q99"]}, "q99"),
+        ({"directions": []}, "scenarios"),
+        ({"points": ["link1"], "directions": [[0.0, 0.0, 1.0]]}, "pose 'q9', point 'link1'"),
+    ],
+)
+def test_scenarios_that_cannot_be(tmp_path: Path, scenarios: dict[str, Any], reason: str) -> None:
+    with pytest.raises(InvalidValue, match=reason) as caught:
+        scenarios_of(study_of(tmp_path, {"scenarios": scenarios}, ("q9",)))
+    assert "scenarios" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("groups", "reason"),
+    [
+        ([["joint1"], ["joint1", "joint2"]], "joint 'joint1' is in two groups"),
+        ([["joint1"]], "joint 'joint2' is in no group"),
+        ([["elbow"]], "elbow"),
+    ],
+)
+def test_groups_that_cannot_be(tmp_path: Path, groups: list[list[str]], reason: str) -> None:
+    with pytest.raises(InvalidValue, match=reason):
+        study_of(tmp_path, {"hardware": {"joint_stiffness": groups}}, ("q9",))
+
+
+@pytest.mark.parametrize("robust", [True, False])
+def test_accuracy_beyond_reach_is_told_at_once(tmp_path: Path, robust: bool) -> None:
+    bound = {"accuracy": {"max_deflection": 1e-5}}
+    study = study_of(tmp_path, {**ASKED, **bound}, ("q9", "q18"))
+    scenarios = scenarios_of(study)
+
+    def searched() -> object:
+        if robust:
+            return robust_design(study, scenarios, InProcess())
+        return design(study, executor=InProcess())
+
+    with pytest.raises(Infeasible, match="the least that can be reached is") as caught:
+        searched()
+    failure = caught.value
+    assert failure.exit_code == 3
+    assert failure.least.deflection > 1e-5
+    assert "accuracy.max_deflection" in failure.conflicts
+
+
+def test_motors_that_are_held_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InvalidValue, match="held' cannot give a design"):
+        study_of(tmp_path, {"motors": {"kind": "held"}}, ("q9",))
+    with pytest.raises(InvalidValue, match="is needed: a servo acts by its gains"):
+        study_of(tmp_path, {"motors": {"kind": "servo"}}, ("q9",))
+
+
+def test_without_a_table_the_worse_end_counts(tmp_path: Path) -> None:
+    assert [m.kind for m in study_of(tmp_path, None, ("q9",)).motors] == ["free", "driven"]
+    gains: dict[str, dict[str, Any]] = {"robot": {"position_gain": 2000.0}}
+    assert [m.kind for m in study_of(tmp_path, gains, ("q9",)).motors] == ["servo"]
