@@ -117,7 +117,7 @@ def _rotors(robot: Robot) -> str:
     if unknown:
         lines += [
             f"# TODO: the model has no rotor inertia of {', '.join(unknown)};",
-            "# give it reflected to the joints, kg m², and motors may be other than driven:",
+            "# give it, reflected to the joints, kg m²:",
             f"# rotor_inertia = {[0.1] * robot.n}",
         ]
     else:
@@ -130,9 +130,8 @@ def _rotors(robot: Robot) -> str:
 
 
 def _motors(robot: Robot) -> str:
-    """The table of motors: driven, which needs no rotors, where nothing is known of these."""
-    off = "" if _unknown(robot) else "# "
-    lines = [f"{off}[motors]", f'{off}kind = "driven"  # free, servo or driven']
+    """Return lines on what the motors do, with the gains of the file's servos."""
+    lines = ["# [motors]", '# kind = "servo"  # free, servo or driven']
     if robot.position_gains.any():
         lines += [
             f"# position_gain = {robot.position_gains.tolist()}  # N·m/rad, the model's servo",
