@@ -30,7 +30,7 @@ FEW = 25
 """Tests that a fault meets first: those that pass through the fewest lines, so the closest ones."""
 MANY = 200
 """Tests that a fault meets at most."""
-SECONDS = 600
+SECONDS = 300
 """Time after which a run counts as endless, so the fault as noticed."""
 
 
