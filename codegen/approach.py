@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Velocities with which a robot arrives at an impact, also where its tip moves in a plane."""
+"""Directions in which a robot can arrive at an impact, also where its tip moves in a plane."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import random
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, Matrix, Robot, least_velocity
+from softimpact.symbolic import ImpactModel, Robot
 from softimpact.symbolic.robot.rigid import Array
 
 from .closed_samples import closed_configurations
@@ -53,26 +53,3 @@ def _along_axes(projector: Array) -> Array:
         if np.linalg.norm(rest) > NOTHING:
             basis.append(np.round(rest / np.linalg.norm(rest), 12) + 0.0)
     return np.array(basis)
-
-
-def approach_rates(model: ImpactModel, q: Matrix, n: Matrix, directions: Array) -> Matrix:
-    """Return the link velocities of least norm that move the contact point by 1 m/s along n.
-
-    Of a closed chain they are the velocities of the independent joints.
-
-    Args:
-        model: whose motors move.
-        q: link angles, SX.
-        n: unit vector among ``directions``, SX.
-        directions: from ``directions_of_motion``.
-    """
-    motors = ca.sparsify(ca.DM(np.diag(np.array(model.actuated, dtype=float))))
-    basis = ca.sparsify(ca.DM(directions))
-    J = ca.mtimes([basis, model.jacobian(q), motors])
-    return least_velocity(J, ca.mtimes(basis, n))
-
-
-def share_outside(n: Matrix, directions: Array) -> Matrix:
-    """Return the squared share of a unit vector that no motion reaches."""
-    rest = ca.DM.eye(3) - ca.DM(directions).T @ ca.DM(directions)
-    return ca.sumsqr(ca.mtimes(ca.sparsify(rest), n))

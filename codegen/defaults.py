@@ -58,12 +58,16 @@ def defaults_of(
         "joint_stiffness": None,
         "rotor_inertia": robot.armature.tolist(),
         "position_gain": [0.0] * robot.n,
+        "damping_gain": [0.0] * robot.n,
     }
     if drives_ is not None:
         known = {
             "joint_stiffness": np.array(drives_.springs).ravel().tolist(),
             "rotor_inertia": np.array(drives_.rotors).ravel().tolist(),
             "position_gain": np.array(drives_.gains).ravel().tolist(),
+            "damping_gain": [0.0] * robot.n
+            if drives_.damping_gains is None
+            else np.array(drives_.damping_gains).ravel().tolist(),
         }
     if payload is not None:
         _check(robot, payload)

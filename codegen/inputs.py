@@ -120,6 +120,13 @@ def _drives_of(robot: Robot) -> tuple[Parameter, ...]:
             NOT_NEGATIVE,
             joints,
         ),
+        Parameter(
+            "damping_gain",
+            "N m s/rad",
+            "gain of the same on the motor's rate",
+            NOT_NEGATIVE,
+            joints,
+        ),
     )
     if not elastic:
         return drives

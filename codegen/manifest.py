@@ -42,32 +42,23 @@ class FunctionRecord:
 
 @dataclass(frozen=True)
 class ImpactRecord:
-    """Accuracy of peak forces and safe speeds.
+    """What peak forces and safe speeds are of.
 
     Attributes:
-        order: masses of the chain that stands for the robot in them.
-        flops: operations that make the chain, before any step in time.
-        chain_error_mean: of peak forces against those of the whole linear robot, on average over
-            random configurations, directions, parameters, body regions and speeds.
-        chain_error_usual: the same, not exceeded by 95 of 100 impacts.
-        chain_error_worst: largest found.
-        unresolved: share of those impacts that do not end within the steps; errors are the others'.
-        double_error: what integration adds, in double.
-        float_error: the same in float.
-        steps: most steps of an impact.
-        trials: most impacts for a safe speed.
+        points: contact points, the package's tip first.
+        flops: operations that make masses and Jacobians, before any step in time.
+        accuracy: bound of a peak force's error, in double and in float.
+        horizon: default time in which forces count [s].
+        reaction_time: default time until motors are released [s].
+        steps: default budget of steps of a call.
     """
 
-    order: int
+    points: tuple[str, ...]
     flops: int
-    chain_error_mean: float
-    chain_error_usual: float
-    chain_error_worst: float
-    unresolved: float
-    double_error: float
-    float_error: float
+    accuracy: float
+    horizon: float
+    reaction_time: float
     steps: int
-    trials: int
 
 
 @dataclass(frozen=True)

@@ -20,14 +20,17 @@ from .costs import Costs
 from .defaults import Payload, defaults_of, frozen_parameters
 from .description import CFunction
 from .files import replace_package, require_place, sha256
-from .functions import functions_of, symbols_of
-from .impact_source import impact_source, longest_chain
+from .functions import coordinates_of, functions_of, symbols_of
+from .impact_source import impact_source
 from .inputs import parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .poses import checked_poses
 from .render import MEASURED_SAMPLES, Package, render
 from .samples import Sample, draw_samples
 from .source import CSource
+
+LONGEST_CHAIN = 8
+"""Most masses of a generated chain; longer ones lose their last masses to rounding."""
 
 GOLDEN_CASES = 12
 """Inputs in a package's own test."""
@@ -37,11 +40,14 @@ CHAIN_ORDER = 3
 
 TAKEN = frozenset((
     "assert", "complex", "ctype", "errno", "fenv", "float", "inttypes", "iso646", "limits",
-    "locale", "math", "setjmp", "signal", "stdarg", "stdbool", "stddef", "stdint", "stdio",
-    "stdlib", "string", "tgmath", "time", "wchar", "wctype",
+    "locale", "math", "setjmp", "signal", "stdalign", "stdarg", "stdatomic", "stdbit", "stdbool",
+    "stdckdint", "stddef", "stdint", "stdio", "stdlib", "stdnoreturn", "string", "tgmath",
+    "threads", "time", "uchar", "wchar", "wctype",
+    "arm",
     "all", "clean", "edit_cache", "help", "install", "package", "rebuild_cache", "test",
 ))  # fmt: skip
-"""Names that a package cannot have: headers of C, then targets of CMake."""
+"""Names that a package cannot have: headers of C, what DSP libraries use (``arm_status``), then
+targets of CMake."""
 
 
 def generate_package(
@@ -54,7 +60,6 @@ def generate_package(
     drives_: Drives | None = None,
     gravity: tuple[float, float, float] | None = None,
     chain_order: int | None = None,
-    impact_order: int | None = None,
     payload: Payload | None = None,
     freeze: Collection[str] = (),
     floating: bool = False,
@@ -74,8 +79,6 @@ def generate_package(
             chains, whose passive joints rest where springs and gravity balance, the standard one.
         chain_order: number of masses of the chain; None takes ``CHAIN_ORDER``, or as many as there
             are coordinates.
-        impact_order: the same of the chain behind peak forces and safe speeds; None takes the
-            fewest that are right for most impacts.
         payload: adds the parameters of a point mass that the robot carries; its numbers are their
             defaults. Not for closed chains.
         freeze: names of parameters whose defaults are built in instead of read at run time, or
@@ -102,9 +105,7 @@ def generate_package(
     frame = robot.frame(tip or robot.tip or "").name
     if gravity is None:
         gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
-    _check(
-        robot, real, gravity, {"chain_order": chain_order, "impact_order": impact_order}, floating
-    )
+    _check(robot, real, gravity, chain_order, floating)
     chain_order = chain_order or min(CHAIN_ORDER, longest_chain(robot))
     checked = checked_poses(robot, poses or {})
     prefix = c_name(name or robot.name)
@@ -139,7 +140,7 @@ def generate_package(
         tables=tables,
         configuration=configuration,
         floating=floating,
-        impact=impact_source(prefix, symbols, impact_order),
+        impact=impact_source(prefix, symbols, (frame,)),
         poses=checked,
     )
     if package.poses and not package.impact:
@@ -148,6 +149,11 @@ def generate_package(
     manifest = _manifest(package, costs, {path: sha256(text) for path, text in files.items()})
     replace_package(folder, {**files, MANIFEST: manifest.to_json()})
     return manifest
+
+
+def longest_chain(robot: Robot) -> int:
+    """Return the most masses that a generated chain of a robot may have."""
+    return min(LONGEST_CHAIN, coordinates_of(robot))
 
 
 def c_name(name: str) -> str:
@@ -161,7 +167,7 @@ def _check(
     robot: Robot,
     real: str,
     gravity: Sequence[float],
-    orders: Mapping[str, int | None],
+    chain_order: int | None,
     floating: bool,
 ) -> None:
     if real not in ("double", "float"):
@@ -171,9 +177,8 @@ def _check(
     if floating and robot.loops:
         raise InvalidValue("floating", "closed chains have no such function; leave it out")
     longest = longest_chain(robot)
-    for field, order in orders.items():
-        if order is not None and not 1 <= order <= longest:
-            raise InvalidValue(field, f"must be from 1 to {longest}, not {order}")
+    if chain_order is not None and not 1 <= chain_order <= longest:
+        raise InvalidValue("chain_order", f"must be from 1 to {longest}, not {chain_order}")
 
 
 def _regular(functions: Sequence[CFunction], samples: Sequence[Sample], tip: str) -> list[Sample]:

@@ -13,13 +13,12 @@ import softimpact
 from softimpact.symbolic import REGIONS, JointKind, Robot, closed_chain
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 
-from . import impact, sine, tridiagonal
+from . import sine
 from .configuration_source import ConfigurationSource
 from .costs import Costs, stored_costs
 from .defaults import Default
 from .files import sha256
-from .functions import CHAIN_ENDS, coordinates_of
-from .impact_error import FINER
+from .functions import coordinates_of
 from .impact_source import ImpactSource
 from .inputs import SCALARS, Parameter, is_elastic
 from .manifest import Real
@@ -28,15 +27,8 @@ from .source import CSource
 
 TEMPLATES = Path(__file__).parent / "templates"
 
-IMPACT_PARTS = (
-    "impact.h",
-    "impact_modes.c",
-    "impact.c",
-    "peak_force.c",
-    "safe_speed.c",
-    "select_configuration.c",
-)
-"""Sources of a package that has impacts."""
+RUNTIME = Path(__file__).parent / "runtime"
+"""C that is the same for every robot but for its prefix, which is ``robot_`` there."""
 
 MEASURED_SAMPLES = 16384
 """Inputs over which float errors are measured."""
@@ -105,6 +97,11 @@ class Package:
         """Fields of the parameter struct: all parameters that are not frozen."""
         return [p for p in self.parameters if p.frozen is None]
 
+    @property
+    def has_params(self) -> bool:
+        """Whether there is a parameter struct: for fields, or for the motion of impacts."""
+        return bool(self.fields) or self.impact is not None
+
     def fields_of(self, sample: Sample) -> list[tuple[Parameter, Sequence[float]]]:
         """Return the fields with a sample's values."""
         pairs = zip(self.parameters, sample.parameters, strict=True)
@@ -143,10 +140,6 @@ def render(package: Package) -> tuple[dict[str, str], Costs | None]:
         "version": softimpact.__version__,
         "scalars": SCALARS,
         "sine": sine,
-        "impact": impact,
-        "tridiagonal": tridiagonal,
-        "finer": int(FINER),
-        "chain_ends": CHAIN_ENDS,
         "regions": list(REGIONS.values()),
         "hertz_stiffness": HERTZ_STIFFNESS,
         "measured": MEASURED_SAMPLES,
@@ -163,16 +156,18 @@ def render(package: Package) -> tuple[dict[str, str], Costs | None]:
         "LICENSE": "LICENSE",
     }
     if package.impact:
-        for part in IMPACT_PARTS:
+        for part in ("model.c", "candidates.c")[: 2 if package.poses else 1]:
             files[f"src/{name}_{part}"] = part
     rendered = {
         path: environment.get_template(f"{template}.jinja").render(context)
         for path, template in files.items()
     }
     function = environment.get_template("function.c.jinja")
-    internal = [package.impact.chain] if package.impact else []
+    internal = [package.impact.links] if package.impact else []
     for source in [*package.functions, *internal]:
         rendered[f"src/{source.name}.c"] = function.render(context, f=source)
+    if package.impact:
+        rendered |= runtime(name)
     if package.configuration:
         solver = environment.get_template("configuration.c.jinja")
         rendered[f"src/{name}_configuration.c"] = solver.render(context, c=package.configuration)
@@ -183,6 +178,20 @@ def render(package: Package) -> tuple[dict[str, str], Costs | None]:
     readme = environment.get_template("README.md.jinja")
     rendered["README.md"] = readme.render(context, costs=costs)
     return dict(sorted(rendered.items())), costs
+
+
+def runtime(name: str) -> dict[str, str]:
+    """Return the runtime's sources for a package by path."""
+    sources = sorted(path for path in RUNTIME.iterdir() if path.suffix in (".c", ".h"))
+    return {
+        f"src/{_renamed(path.name, name)}": _renamed(path.read_text(encoding="utf-8"), name)
+        for path in sources
+    }
+
+
+def _renamed(text: str, name: str) -> str:
+    """Return the runtime's text with a package's prefix."""
+    return text.replace("ROBOT_", f"{name.upper()}_").replace("robot_", f"{name}_")
 
 
 def _number(value: float) -> str:

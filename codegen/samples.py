@@ -32,6 +32,7 @@ FARTHEST = 128.0
 DRAWN = {
     "rotor_inertia": (4, 64, 64),
     "position_gain": (0, 4096, 1),
+    "damping_gain": (0, 64, 1),
     "payload_mass": (0, 128, 16),
     "payload_com": (-64, 64, 256),
     "speed": (1, 128, 64),

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, as_completed
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,7 @@ from .solve import IN_TURN, Mode, Outcome, Start, better, minimise, solve
 from .stiffest import stiffest
 from .study import Study
 from .timing import Timing
-from .workers import workers
+from .workers import as_completed, workers
 
 MODES: tuple[Mode, ...] = ("table", "free")
 

@@ -140,7 +140,7 @@ def _naming(source: Path, section: str, field: str) -> Iterator[None]:
 
 def build_study(file: StudyFile, source: Path) -> Study:
     """Return the study that a file describes; raises InvalidValue, which names file and field."""
-    robot = _robot(file.robot, source)
+    robot = robot_of_study(file.robot, source)
     with _naming(source, "stiffness", "lower"):
         lower, upper, nominal = _stiffness(robot, file.stiffness)
     with _naming(source, "robot", "rotor_inertia"):
@@ -181,7 +181,7 @@ def build_study(file: StudyFile, source: Path) -> Study:
     )
 
 
-def _robot(section: RobotSection, source: Path) -> Robot:
+def robot_of_study(section: RobotSection, source: Path) -> Robot:
     """Load the robot, a chain to its tip; a path is taken relative to the study file."""
     beside = source.parent / section.model
     with _naming(source, "robot", "model"):

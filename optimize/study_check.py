@@ -15,8 +15,8 @@ from pydantic import BaseModel, ValidationError
 
 from softimpact.symbolic import InvalidValue
 
-from .study import build_study
-from .study_file import StudyFile, read_toml
+from .study import build_study, robot_of_study
+from .study_file import RobotSection, StudyFile, read_toml
 
 ROUNDS = 100
 """Most problems that are looked for one behind the other."""
@@ -62,8 +62,11 @@ def study_problems(path: str | Path) -> list[Problem]:
     try:
         content = read_toml(source)
     except InvalidValue as error:
-        line = re.search(r"at line (\d+)", error.reason)
-        return [Problem(int(line[1]) if line else None, "", error.reason)]
+        at = re.search(r"at line (\d+)", error.reason)
+        line = int(at[1]) if at else None
+        if "at end of document" in error.reason:
+            line = len(source.read_text(encoding="utf-8-sig").splitlines()) or None
+        return [Problem(line, "", error.reason)]
     text = source.read_text(encoding="utf-8-sig")
     found: list[Problem] = []
     poses = content.get("poses")
@@ -77,6 +80,8 @@ def study_problems(path: str | Path) -> list[Problem]:
         mended = [_replaced(content, place, order) for place, _ in faults]
         if not all(mended):
             break
+    if not any(problem.field.startswith("robot") for problem in found):
+        found += [Problem(*_shown(fault, order, text)) for fault in _of_robot(content, source)]
     return sorted(dict.fromkeys(found), key=lambda problem: problem.line or 0)
 
 
@@ -94,6 +99,18 @@ def _faults(content: dict[str, Any], source: Path) -> list[Fault]:
     except InvalidValue as error:
         field = error.field.removeprefix(f"{source}: ")
         return [(_place(content, field), error.reason)]
+    return []
+
+
+def _of_robot(content: dict[str, Any], source: Path) -> list[Fault]:
+    """Look at the robot alone, where other sections stop the study before it."""
+    try:
+        section = RobotSection.model_validate(content.get("robot"))
+        robot_of_study(section, source)
+    except ValidationError:
+        return []  # said before
+    except InvalidValue as error:
+        return [(tuple(error.field.removeprefix(f"{source}: ").split(".")), error.reason)]
     return []
 
 
@@ -133,7 +150,7 @@ def _place(content: dict[str, Any], field: str) -> tuple[str | int, ...]:
     if parts[0] == "poses" and len(parts) > 2:
         named = ".".join(parts[1:-1])
     if named is not None:
-        names = [entry.get("name") for entry in content.get("poses", [])]
+        names = [entry.get("name") for entry in content["poses"]]
         if named in names:
             return ("poses", names.index(named), "q")
     return tuple(parts)
@@ -145,9 +162,11 @@ def _replaced(content: dict[str, Any], place: Sequence[str | int], order: list[i
     if names[:1] == ("poses",):
         return _without_pose(content, place, order)
     if names[:1] == ("task",):
-        poses = content.get("poses") or [{}]
-        content["task"] = {"pose_of": poses[0].get("name", "")}
-        return bool(poses[0])
+        poses = content.get("poses")
+        first = poses[0] if isinstance(poses, list) and poses else None
+        name = first.get("name") if isinstance(first, dict) else None
+        content["task"] = {"pose_of": name}
+        return isinstance(name, str)
     if not names or names[:2] in (("robot",), ("robot", "model"), ("robot", "tip")):
         return False
     section = content.get(names[0])

@@ -7,12 +7,18 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from collections.abc import Iterable, Iterator
+from concurrent import futures
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing.context import SpawnContext, SpawnProcess
-from typing import Any
+from typing import Any, TypeVar
+
+Result = TypeVar("Result")
+
+AWAKE = 0.5
+"""Time [s] that is waited without a look at whether Ctrl-C was pressed."""
 
 
 class WorkerLost(Exception):
@@ -54,6 +60,21 @@ def workers(jobs: int, given: Executor | None = None) -> Iterator[Executor]:
         raise
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def as_completed(jobs: Iterable[Future[Result]]) -> Iterator[Future[Result]]:
+    """Yield jobs as they end, like ``concurrent.futures.as_completed``, and hear every Ctrl-C.
+
+    Python sleeps through a signal that comes while it goes to sleep, on a busy machine often.
+    """
+    waiting = set(jobs)
+    while waiting:
+        try:
+            for job in futures.as_completed(waiting, timeout=AWAKE):
+                waiting.remove(job)
+                yield job
+        except TimeoutError:
+            continue
 
 
 def _cores() -> int:

@@ -2,7 +2,8 @@
 """Time simulation of impacts: full nonlinear, linearised, chain, two masses, one mass."""
 
 from .approach import Approach
-from .assessment import Assessment, assess_impact, bracket
+from .assessment import Assessment, assess_impact
+from .bracket import bracket
 from .controller import Controller, Reference
 from .decoupling import Decoupling, decoupling_stiffness, is_isolated, scaled_springs
 from .history import HORIZON, Fidelity, ImpactHistory, PeakDefinition

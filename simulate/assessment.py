@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 
 import numpy as np
@@ -13,15 +13,17 @@ from numpy.typing import NDArray
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors
 from softimpact.symbolic.body.shapes import Shape
 from softimpact.symbolic.body.verdict import Limits, Verdict, judge, limits_of
-from softimpact.symbolic.impact.motors import KINDS, refuse_held
+from softimpact.symbolic.impact.motors import refuse_held
 from softimpact.symbolic.impact.two_body import TwoBody, moving_mass, two_body
 from softimpact.symbolic.robot.rigid import Array
 
 from .approach import Approach, arrival_of
 from .band import ImpactBand, impact_band
+from .bracket import bracket
 from .controller import Controller
 from .history import HORIZON, Fidelity, ImpactHistory
 from .impact import simulate_impact
+from .linear_error import linear_error
 from .safe_speed import ForceLimits, largest_safe_speed
 from .tolerances import Tolerances
 
@@ -44,6 +46,9 @@ class Assessment:
         torque_limit_exceeded: names of joints on which a servo asks for more than its motor has,
             in a linear model, which lets it have that.
         band: of the impact for what is not known exactly; None if not asked for.
+        linear_error: share of the force by which a linear model may be off, see ``linear_error``;
+            None for other models and closed chains. Beyond ``TRUSTED`` the nonlinear robot was
+            simulated, too, and the worse of both counts.
         warnings: what was assumed for want of a number, a line each.
     """
 
@@ -58,6 +63,7 @@ class Assessment:
     joint_speed_limit_exceeded: tuple[str, ...]
     torque_limit_exceeded: tuple[str, ...]
     band: ImpactBand | None
+    linear_error: float | None
     warnings: tuple[str, ...]
 
     @property
@@ -118,6 +124,13 @@ def assess_impact(
         name: simulate_impact(model, approach, contact, motors=end, **run)  # type: ignore[arg-type]
         for name, end in ends.items()
     }
+    error = _largest_linear_error(model, approach, found)
+    check = False
+    if error is not None and error > TRUSTED:
+        check = True
+        warnings.append(f"the linear model may be off by {100 * error:.0f} %: {CHECKED}")
+        by_full = _by_full(model, approach, contact, ends, horizon, tolerance)
+        found = {k: max(h, by_full[k], key=lambda each: each.peak) for k, h in found.items()}
     limits = limits_of(contact.region, contact.clamped, shape)
     worst = max(found, key=lambda name: (_verdict(limits, found[name]).share, found[name].peak))
     formula = two_body(contact.region, contact.clamped, moving_mass(model.robot) - payload, payload)
@@ -128,6 +141,11 @@ def assess_impact(
             name: largest_safe_speed(model, approach, contact, allowed, motors=end, **run)  # type: ignore[arg-type]
             for name, end in ends.items()
         }
+        if check:
+            run["fidelity"] = "full"
+            for name, end in ends.items():
+                slower = largest_safe_speed(model, approach, contact, allowed, motors=end, **run)  # type: ignore[arg-type]
+                speeds[name] = min(speeds[name], slower)
     return Assessment(
         ends=found,
         worst=worst,
@@ -140,8 +158,46 @@ def assess_impact(
         joint_speed_limit_exceeded=_too_fast(model, arrival.speed * arrival.link_velocity),
         torque_limit_exceeded=_too_strong(model, found[worst]),
         band=_band(model, approach, contact, ends, limits, tolerances, horizon),
+        linear_error=error,
         warnings=(*warnings, *_of_the_file(model, lumped)),
     )
+
+
+TRUSTED = 0.1
+"""Error that a linear model may have before the nonlinear one is asked, too: what is not known of
+robots and people makes for more (see ``Tolerances``)."""
+
+CHECKED = "the nonlinear robot was simulated, too, and the worse of both counts"
+
+
+def _largest_linear_error(
+    model: ImpactModel, approach: Approach, found: Mapping[str, ImpactHistory]
+) -> float | None:
+    """Return the share by which a linear model may be off; None where that is not known."""
+    errors = []
+    for history in found.values():
+        if history.fidelity not in ("chain", "linearised") or model.robot.loops:
+            return None
+        reaction = 0.0 if history.motors is None else history.motors.reaction_time
+        late = max(history.time_of_peak, reaction if reaction < inf else 0.0)
+        errors.append(linear_error(model, approach, late))
+    return max(errors)
+
+
+def _by_full(
+    model: ImpactModel,
+    approach: Approach,
+    contact: Contact,
+    ends: Mapping[str, Motors | Controller | None],
+    horizon: float,
+    tolerance: float,
+) -> dict[str, ImpactHistory]:
+    return {
+        name: simulate_impact(
+            model, approach, contact, "full", motors=end, horizon=horizon, tolerance=tolerance
+        )
+        for name, end in ends.items()
+    }
 
 
 def _band(
@@ -163,48 +219,6 @@ def _band(
     )
 
 
-def bracket(
-    model: ImpactModel,
-    motors: Motors | Controller | None,
-    reaction: Motors | None = None,
-    lumped: bool = False,
-) -> tuple[dict[str, Motors | Controller | None], list[str]]:
-    """Return what motors may do, by kind, and what had to be assumed.
-
-    Args:
-        model: the robot.
-        motors: what they do, if that is known.
-        reaction: reaction time and what follows, if it is not.
-        lumped: whether the model of the robot has no motors.
-
-    Raises:
-        InvalidValue: motors are free or a servo, and a rotor's inertia is unknown.
-    """
-    if lumped:
-        return {"free": motors}, []
-    if isinstance(motors, Controller):
-        return {"controller": motors}, []
-    kind = motors.kind if motors else ("servo" if model.drives.has_gains else None)
-    how = motors or reaction or Motors()
-    unknown = unknown_rotors(model)
-    names = ", ".join(f"'{name}'" for name in unknown)
-    if unknown and kind in ("free", "servo", "held"):
-        raise InvalidValue(
-            "rotor_inertia",
-            f"of joint {names} is unknown, and zero would make the robot look safer than it is; "
-            f"give it (0 if there is no rotor), or choose driven motors, which need none",
-        )
-    if unknown:
-        line = (
-            f"rotor inertia of joint {names} is unknown: motors are taken to keep their speed, "
-            "without an end, as the worse case; give the rotor inertia"
-        )
-        return {"driven": replace(how, kind="driven", reaction_time=inf)}, [line]
-    if kind is None:
-        return {k: replace(how, kind=k) for k in KINDS if k in ("free", "driven")}, []
-    return {kind: replace(how, kind=kind)}, []
-
-
 def _of_the_file(model: ImpactModel, lumped: bool) -> Iterator[str]:
     """Yield what of the file is used in a way to know of, or not used."""
     robot = model.robot
@@ -218,18 +232,6 @@ def _of_the_file(model: ImpactModel, lumped: bool) -> Iterator[str]:
         yield f"dry friction of joints {', '.join(rubbing)} is not used; it would lower the force"
     if robot.position_gains.any() and not model.drives.has_gains:
         yield "the file's servos are not used; 'servo' motors take their gains from it"
-
-
-def unknown_rotors(model: ImpactModel) -> list[str]:
-    """Return the names of joints with a motor whose rotor inertia nobody has stated."""
-    known = model.drives.rotors_known
-    if known is None:
-        return []
-    return [
-        joint.name
-        for joint, is_known in zip(model.robot.joints, known, strict=True)
-        if joint.actuated and not is_known
-    ]
 
 
 def force_limits(limits: Limits) -> ForceLimits:

@@ -5,10 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
-from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors, generalised_velocity
+from softimpact.symbolic import (
+    Contact,
+    ImpactModel,
+    InvalidValue,
+    Motors,
+    Robot,
+    generalised_velocity,
+)
 from softimpact.symbolic.body.verdict import Limits
 from softimpact.symbolic.impact.motors import MotorLaw
 from softimpact.symbolic.robot.rigid import Array, Inertia
@@ -175,16 +183,21 @@ def _bodies(contact: Contact, varied: Factors) -> Bodies:
 
 def _mass_of_each_link(model: ImpactModel, arrival: Arrival) -> Array:
     """Return what each link adds to the mass matrix over the independent joints, n×m×m."""
-    robot = model.robot
-    found = []
-    for i, own in enumerate(robot.joints):
-        joints = tuple(
-            own if k == i else replace(joint, inertia=Inertia.zero())
-            for k, joint in enumerate(robot.joints)
-        )
-        alone = replace(model, robot=replace(robot, joints=joints, payload=None))
-        found.append(np.array(alone.mass_matrix(arrival.q), dtype=float))
-    return np.array(found)
+    found = [replace(model, robot=alone).mass_matrix(arrival.q) for alone in _links(model.robot)]
+    return np.array([np.array(M, dtype=float) for M in found])
+
+
+@lru_cache(maxsize=8)
+def _links(robot: Robot) -> tuple[Robot, ...]:
+    """Return the robot with one of its links at a time, the same ones for the same robot.
+
+    Their expressions are then derived once.
+    """
+    massless = [replace(joint, inertia=Inertia.zero()) for joint in robot.joints]
+    return tuple(
+        replace(robot, joints=(*massless[:i], own, *massless[i + 1 :]), payload=None)
+        for i, own in enumerate(robot.joints)
+    )
 
 
 def _varied(

@@ -22,7 +22,8 @@ from .scene import Leg, Run, Scene
 from .simulator import NODES
 
 SPAN, LATER_SPAN = 0.02, 0.05
-"""Longest single run [s]: while most contacts have their peaks, and later."""
+"""Longest single run [s]: while most contacts have their peaks, and later; a run to the end of the
+first contact goes on in short ones, as a robot may not get far beyond it."""
 
 EARLY = 0.1
 """Until when runs are short [s]."""
@@ -124,7 +125,7 @@ def course_of(scene: Scene, until: float | None) -> Course:
         leg = stage.enter(motion)
         body = scene.body_of(pieces[-1].leg, pieces[-1].run.state[:, -1]) if pieces else None
         state = scene.state_of(leg, scene.at_rest(leg) if body is None else body)
-        for start, stop in pairwise(_starts(stage.begin, end)):
+        for start, stop in pairwise(_starts(stage.begin, end, LATER_SPAN if until else SPAN)):
             run = scene.run(leg, state, stop - start, start)
             pieces.append(Piece(leg, stage.begin, run))
             state = run.state[:, -1]
@@ -136,10 +137,10 @@ def course_of(scene: Scene, until: float | None) -> Course:
     return _joined(scene, pieces)
 
 
-def _starts(begin: float, end: float) -> Array:
+def _starts(begin: float, end: float, later: float) -> Array:
     """Return when runs start and the last one ends."""
     marks = [begin, *([EARLY] if begin < EARLY < end else []), end]
-    spans = [SPAN if a < EARLY else LATER_SPAN for a in marks[:-1]]
+    spans = [SPAN if a < EARLY else later for a in marks[:-1]]
     parts = [
         np.linspace(a, b, math.ceil((b - a) / span), endpoint=False)
         for (a, b), span in zip(pairwise(marks), spans, strict=True)

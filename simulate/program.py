@@ -30,6 +30,9 @@ from .sampled import Samples
 from .sampled_speeds import safe_speeds
 from .trajectory import Trajectory, passes, time_at_speeds
 
+MOMENTS_APART = 0.05
+"""Least share of a program's time between two of its worst moments."""
+
 STILL = 1e-4
 """Speed below which a point does not hit anything [m/s]."""
 
@@ -103,7 +106,7 @@ def program_dangers(
     *,
     horizon: float = HORIZON,
     payload: float = 0.0,
-    seen: Callable[[], None] = lambda: None,
+    seen: Callable[[int], None] = lambda count: None,
 ) -> list[Danger]:
     """Return what each point may do to each body.
 
@@ -115,7 +118,8 @@ def program_dangers(
         ends: what the motors may do, by kind; the worst of them counts.
         horizon: up to which the largest force counts [s].
         payload: mass that the model holds, for the standard's formula [kg].
-        seen: called after each point, body and kind of motors.
+        seen: called with the number of samples that were looked at for a point, a body and a kind
+            of motors, every few thousand.
 
     Raises:
         InvalidValue: a point that never moves.
@@ -166,17 +170,22 @@ def safe_program(motion: Trajectory, dangers: Sequence[Danger]) -> SafeProgram:
     )
 
 
-def worst_moments(program: SafeProgram, count: int = 5) -> list[int]:
-    """Return the worst samples, each the worst of its neighbours, then others; worst first."""
-    known = [(k, worst) for k, worst in enumerate(program.worst) if worst is not None]
+def worst_moments(motion: Trajectory, program: SafeProgram, count: int = 5) -> list[int]:
+    """Return the worst samples, some way apart in time while there are others; worst first."""
     severity = np.full(len(program.factor), -np.inf)
-    for k, (danger, row) in known:
-        factor = program.factor[k]
-        severity[k] = 2 - factor if factor < 1 else min(danger.share[row], 1.0)
-    beside = np.concatenate([[-np.inf], severity, [-np.inf]])
-    peaks = (severity > -np.inf) & (severity >= beside[:-2]) & (severity > beside[2:])
-    order = np.lexsort((-severity, ~peaks))
-    return [int(k) for k in order[:count] if severity[k] > -np.inf]
+    for k, worst in enumerate(program.worst):
+        if worst is not None:
+            danger, row = worst
+            slowed = program.factor[k] < 1
+            severity[k] = 2 - program.factor[k] if slowed else min(danger.share[row], 1.0)
+    order = [int(k) for k in np.argsort(-severity, kind="stable") if severity[k] > -np.inf]
+    apart = MOMENTS_APART * program.time_before
+    chosen: list[int] = []
+    for k in order:
+        if all(abs(motion.time[k] - motion.time[other]) > apart for other in chosen):
+            chosen.append(k)
+    more = [k for k in order if k not in chosen[:count]]
+    return sorted([*chosen[:count], *more][:count], key=order.index)
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,13 +222,13 @@ def _danger(
     ends: Mapping[str, Motors],
     horizon: float,
     by_formula: float,
-    seen: Callable[[], None],
+    seen: Callable[[int], None],
 ) -> Danger:
     count = len(at.speed)
     safe, peak, share = np.full(count, np.inf), np.zeros(count), np.zeros(count)
     limit, motors = np.full(count, "", dtype="<U24"), np.full(count, "", dtype="<U8")
     for kind, end in ends.items():
-        found = safe_speeds(at.model, at.samples, at.speed, body, end, horizon)
+        found = safe_speeds(at.model, at.samples, at.speed, body, end, horizon, seen)
         speed, name, used = found.safe, found.limit, found.share
         worse = (speed < safe) | ((speed == safe) & (used > share))
         limit[worse], motors[worse] = name[worse], kind
@@ -228,7 +237,6 @@ def _danger(
             np.maximum(peak, found.peak),
             np.maximum(share, used),
         )
-        seen()
     return Danger(
         point=at.point,
         region=body.region.name,

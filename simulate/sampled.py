@@ -21,7 +21,16 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import LinearSystem, given_motion, modes
-from .stepping import Bodies, LargestForces, ManyPeaks, Stage, at_first_touch, faster, slower
+from .stepping import (
+    PHASE,
+    Bodies,
+    LargestForces,
+    ManyPeaks,
+    Stage,
+    at_first_touch,
+    faster,
+    slower,
+)
 
 AT_ONCE = 2000
 """Most samples that are stepped together, for the memory's sake."""
@@ -83,6 +92,7 @@ class SampledImpacts:
         contact: Contact,
         motors: Motors,
         horizon: float = HORIZON,
+        phase: float = PHASE,
     ) -> None:
         """Prepare them.
 
@@ -92,12 +102,13 @@ class SampledImpacts:
             contact: with the body.
             motors: what they do.
             horizon: up to which the largest force counts [s].
+            phase: most radians of the contact's vibration in a step.
         """
         self.count, self.horizon, self.contact, self.motors = len(at), horizon, contact, motors
         self.until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
         bodies = Bodies.of([contact.region], contact.clamped, contact.law)
         self.groups = [
-            (rows, _Group(model, at.taken(rows), bodies, motors, self.until))
+            (rows, _Group(model, at.taken(rows), bodies, motors, self.until, phase))
             for rows in _alike(model, at, bodies)
         ]
 
@@ -131,7 +142,13 @@ class _Group:
     """Impacts that are stepped together."""
 
     def __init__(
-        self, model: ImpactModel, at: Samples, bodies: Bodies, motors: Motors, until: float
+        self,
+        model: ImpactModel,
+        at: Samples,
+        bodies: Bodies,
+        motors: Motors,
+        until: float,
+        phase: float,
     ) -> None:
         self.bodies, self.size, self.stopping_time = bodies, model.size, motors.stopping_time
         free = model.with_drives(model.drives.without_gains())
@@ -147,7 +164,7 @@ class _Group:
                 whole = with_gains if law in ("servo", "held") else without
                 system = _system(model.moving(law), whole, drift)
                 span = np.array(begin), np.array(min(end, until))
-                self.stages.append((law, Stage.of(system, modes(system), bodies, *span)))
+                self.stages.append((law, Stage.of(system, modes(system), bodies, *span, phase)))
 
     def run(self, speeds: Array, found: LargestForces) -> None:
         """Step through all stages."""

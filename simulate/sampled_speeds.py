@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from softimpact.symbolic.body.verdict import Limits
 from softimpact.symbolic.robot.rigid import Array
 
 from .history import HORIZON
-from .sampled import SampledImpacts, Samples
+from .sampled import AT_ONCE, SampledImpacts, Samples
 
 MARGIN = 3e-3
 """Share of a limit that is kept free, as forces of many impacts are right to 2e-3."""
@@ -78,6 +79,7 @@ def safe_speeds(
     body: Contact,
     motors: Motors,
     horizon: float = HORIZON,
+    seen: Callable[[int], None] = lambda count: None,
 ) -> SafeSpeeds:
     """Return how fast many impacts may be.
 
@@ -90,7 +92,29 @@ def safe_speeds(
         body: that they hit.
         motors: what they do.
         horizon: up to which the largest force counts [s].
+        seen: called with the number of impacts that were looked at, every few thousand.
     """
+    parts = []
+    for first in range(0, max(len(at), 1), AT_ONCE):
+        rows = np.arange(first, min(first + AT_ONCE, len(at)))
+        parts.append(_safe_speeds(model, at.taken(rows), speeds[rows], body, motors, horizon))
+        seen(len(rows))
+    return SafeSpeeds(
+        *(
+            np.concatenate([vars(part)[field.name] for part in parts])
+            for field in fields(SafeSpeeds)
+        )
+    )
+
+
+def _safe_speeds(
+    model: ImpactModel,
+    at: Samples,
+    speeds: Array,
+    body: Contact,
+    motors: Motors,
+    horizon: float,
+) -> SafeSpeeds:
     limits = limits_of(body.region, body.clamped)
     pressing = "force" if limits.quasi_static is None else limits.quasi_static.quantity
     names = np.array([f"transient {limits.transient.quantity}", f"quasi-static {pressing}"])

@@ -67,7 +67,8 @@ class LargestForces:
         self.peak, self.first_contact, self.pressing = (np.zeros(count) for _ in range(3))
         self.first_peak = np.zeros(count)
         self._touched, self._fallen, self._parted = (np.zeros(count, dtype=bool) for _ in range(3))
-        self._last, self._before, self._time = np.zeros(count), np.zeros(count), np.zeros(1)
+        self._last, self._before = np.zeros(count), np.zeros(count)
+        self._time = np.zeros(count)
 
     def see(self, time: Array, force: Array) -> None:
         """Take in the forces at a node; tops are those of parabolas through three nodes."""
@@ -77,11 +78,9 @@ class LargestForces:
         rise = np.where(is_top, lean * lean / np.where(bend < 0, -8 * bend, 1.0), 0.0)
         top = np.maximum(force, self._last + rise)
         early = time <= self.horizon * (1 + 1e-9)
-        share = np.clip((self.horizon - self._time) / (time - self._time), 0.0, 1.0)
-        at_horizon = self._last + share * (force - self._last)
-        crosses = self._time < self.horizon
-        seen = np.where(early, top, np.where(crosses, at_horizon, 0.0))
-        self.peak = np.maximum(self.peak, seen)
+        crosses = ~early & (self._time < self.horizon)
+        until = np.where(crosses, self._force_at(self.horizon, time, force), top)
+        self.peak = np.where(early | crosses, np.maximum(self.peak, until), self.peak)
         self.first_peak = np.where(self._fallen, self.first_peak, top)
         self._fallen |= is_top & (force > 0) | self._touched & ~(force > 0)
         self._touched |= force > 0
@@ -89,9 +88,22 @@ class LargestForces:
             self._parted, self.first_contact, np.maximum(self.first_contact, top)
         )
         self._parted |= self._touched & ~(force > 0)
-        late = self.clamped & (time >= HORIZON * (1 - 1e-9))
-        self.pressing = np.where(late, np.maximum(self.pressing, force), self.pressing)
-        self._before, self._last, self._time = self._last, force, time
+        self.pressing = np.where(
+            self.clamped & (time >= HORIZON * (1 - 1e-9)),
+            np.maximum(self.pressing, self._pressing(time, force, top)),
+            self.pressing,
+        )
+        self._before, self._last, self._time = self._last, force, time + 0.0 * force
+
+    def _pressing(self, time: Array, force: Array, top: Array) -> Array:
+        """Return the largest force since the node before, or since ``HORIZON`` if that is later."""
+        at_horizon = self._force_at(HORIZON, time, force)
+        return np.where(self._time < HORIZON, np.maximum(force, at_horizon), top)
+
+    def _force_at(self, when: float, time: Array, force: Array) -> Array:
+        """Return the force at a time since the node before, as on a line."""
+        share = np.clip((time - when) / np.maximum(time - self._time, SHORTEST), 0.0, 1.0)
+        return np.asarray(force + share * (self._last - force))
 
     @property
     def found(self) -> ManyPeaks:
@@ -206,7 +218,14 @@ class Stage:
     _solver: LawSolver
 
     @staticmethod
-    def of(system: LinearSystem, found: Modes, bodies: Bodies, begin: Array, end: Array) -> Stage:
+    def of(
+        system: LinearSystem,
+        found: Modes,
+        bodies: Bodies,
+        begin: Array,
+        end: Array,
+        phase: float = PHASE,
+    ) -> Stage:
         """Prepare the steps of a stage.
 
         Args:
@@ -215,10 +234,11 @@ class Stage:
             bodies: that they hit.
             begin: of the stage, one number or one for each impact [s since first touch].
             end: of the stage, likewise.
+            phase: most radians of the contact's vibration in a step.
         """
         span = np.maximum(np.asarray(end - begin), SHORTEST)
         rate = bodies.frequency((found.shape**2).sum(axis=-1))
-        steps = max(FEWEST_STEPS, int(np.ceil((span * rate).max() / PHASE)))
+        steps = max(FEWEST_STEPS, int(np.ceil((span * rate).max() / phase)))
         h = span / steps
         robot = robot_steps(found.squared_frequency, found.shape, found.damping, h)
         body = dense_step(*bodies.system, h)

@@ -85,6 +85,7 @@ def record_of(answer: Answer) -> dict[str, Any]:
         "band": None if found.band is None else found.band.peak,
         "bands": found.band,
         "tolerances": Tolerances() if found.band else None,
+        "linear_error": found.linear_error,
         "safe_speed": found.safe_speed,
         "safe_speeds": found.safe_speeds,
         "warnings": warnings_of(answer),

@@ -59,7 +59,7 @@ def read_motion(
     found = trajectory(table[:, columns.index("t")], table[:, order])
     idle = [name for name in columns if name in also]
     warnings = [f"column '{name}' is of no joint of the arm and does not count" for name in idle]
-    return found, warnings + _limits_left(path, found, robot)
+    return found, warnings + limits_left(path, found, robot)
 
 
 def _text(path: Path) -> str:
@@ -102,7 +102,7 @@ def _numbers(path: Path, body: str, delimiter: str, columns: int) -> Array:
     return np.asarray(table)
 
 
-def _limits_left(path: Path, found: Trajectory, robot: Robot) -> list[str]:
+def limits_left(path: Path, found: Trajectory, robot: Robot) -> list[str]:
     """Return warnings about angles past their limits; raise MotionFileError if they are degrees."""
     lower, upper = robot.limits
     low, high = found.q.min(axis=0), found.q.max(axis=0)

@@ -3,22 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from softimpact.simulate import HORIZON, Approach
-from softimpact.simulate.assessment import bracket
+from softimpact.simulate import HORIZON, Approach, bracket
 from softimpact.simulate.band import Band, impact_band
 from softimpact.simulate.program import (
     Danger,
     SafeProgram,
     program_dangers,
     safe_program,
-    worst_moments,
 )
 from softimpact.simulate.trajectory import Trajectory, passes
 from softimpact.symbolic import (
@@ -37,12 +36,12 @@ from softimpact.symbolic.body.body_file import load_cover
 from softimpact.symbolic.impact.motors import refuse_held
 from softimpact.symbolic.robot.robot import BASE
 
-from .motion_file import read_motion
-from .output import print_table
+from .motion_file import limits_left, read_motion
+from .program_record import ProgramResult, program_record
+from .progress import progress_bar
 from .situation import TypedArm, TypedDrives, drives_of, gravity_of, loaded_arm
 from .typed_motors import TypedMotors, motors_of
-
-GENERATOR = "softimpact program"
+from .waypoints import read_waypoints
 
 APART = 0.15
 """Distance between points that are watched by default [m]."""
@@ -67,23 +66,6 @@ class TypedProgram:
     band: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class ProgramResult:
-    """A program that was looked at.
-
-    Attributes:
-        motion: of the joints.
-        dangers: of each point and region.
-        safe: the program slowed down.
-        record: for machines.
-    """
-
-    motion: Trajectory
-    dangers: Sequence[Danger]
-    safe: SafeProgram
-    record: dict[str, Any]
-
-
 def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     """Return how fast a program may run; raises SoftImpactError."""
     motors, reaction = motors_of(how.motors, how.drives)
@@ -92,8 +74,7 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     whole = load_robot(how.arm.model)
     arm = loaded_arm(replace(how.arm, tip=None if whole.tip else _end(whole, how)))
     robot = arm.robot
-    others = tuple(name for name in whole.joint_names if name not in robot.joint_names)
-    motion, told = read_motion(path, robot, others)
+    motion, told = _motion(path, robot, whole)
     model = impact_model(
         robot, drives_=drives_of(robot, how.drives), gravity=gravity_of(how.gravity)
     )
@@ -104,16 +85,39 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     horizon = HORIZON if how.horizon is None else how.horizon
     if not 0 < horizon < np.inf:
         raise InvalidValue("horizon", f"must be finite and greater than 0 s, not {horizon:g}")
-    dangers = program_dangers(
-        model, motion, points, bodies, ends, horizon=horizon, payload=arm.load
-    )
+    with _progress(len(motion.time) * len(points) * len(bodies) * len(ends)) as seen:
+        dangers = program_dangers(
+            model, motion, points, bodies, ends, horizon=horizon, payload=arm.load, seen=seen
+        )
     safe = safe_program(motion, dangers)
     warnings = [*arm.warnings, *told, *assumed, *_cautions(robot, motion, bodies, dangers)]
-    record = _record(path, how, model, motion, points, ends, horizon, dangers, safe, warnings)
+    record = program_record(
+        path, how.clamped, model, motion, points, ends, horizon, dangers, safe, warnings
+    )
     if how.band:
         for moment in record["worst"]:
             moment["band"] = _band(model, motion, safe, moment["sample"], bodies, ends, horizon)
     return ProgramResult(motion, dangers, safe, record)
+
+
+@contextmanager
+def _progress(total: int) -> Iterator[Callable[[int], None]]:
+    """Show a bar on stderr if somebody looks at it."""
+    if not sys.stderr.isatty():
+        yield lambda count: None
+        return
+    with progress_bar() as progress:
+        task = progress.add_task("impacts", total=total)
+        yield lambda count: progress.advance(task, count)
+
+
+def _motion(path: Path, robot: Robot, whole: Robot) -> tuple[Trajectory, list[str]]:
+    """Return a motion from a table, or from waypoints in a ``.json`` file, and warnings."""
+    if path.suffix.lower() == ".json":
+        motion = read_waypoints(path, robot)
+        return motion, limits_left(path, motion, robot)
+    others = tuple(name for name in whole.joint_names if name not in robot.joint_names)
+    return read_motion(path, robot, others)
 
 
 def _band(
@@ -198,109 +202,3 @@ def _cautions(
             f"watched points move up to {100 * way:.0f} cm between samples, and what is between is "
             "not looked at; give the motion with more samples"
         )
-
-
-def _record(
-    path: Path,
-    how: TypedProgram,
-    model: ImpactModel,
-    motion: Trajectory,
-    points: Sequence[str],
-    ends: dict[str, Motors],
-    horizon: float,
-    dangers: Sequence[Danger],
-    safe: SafeProgram,
-    warnings: list[str],
-) -> dict[str, Any]:
-    """Return everything that an answer depends on, and the answer."""
-    return {
-        "generator": GENERATOR,
-        "motion": path,
-        "robot": model.robot.name,
-        "joints": model.robot.joint_names,
-        "points": points,
-        "regions": [*dict.fromkeys(danger.region for danger in dangers)],
-        "clamped": how.clamped,
-        "motors": ends,
-        "horizon": horizon,
-        "joint_stiffness": how.drives.joint_stiffness,
-        "rotor_inertia": model.drives.rotors,
-        "time": motion.time,
-        "factor": safe.factor,
-        "binding": [
-            moment_of(motion, safe, k) if factor < 1 else None
-            for k, factor in enumerate(safe.factor)
-        ],
-        "time_before": safe.time_before,
-        "time_after": safe.time_after,
-        "worst": [
-            {**(moment_of(motion, safe, k) or {}), "q": motion.q[k]} for k in worst_moments(safe)
-        ],
-        "iso": {"factor": safe.two_body, "time_after": safe.time_by_formula},
-        "warnings": warnings,
-    }
-
-
-def moment_of(motion: Trajectory, safe: SafeProgram, sample: int) -> dict[str, Any] | None:
-    """Return what is worst at a sample, None where nothing moves."""
-    worst = safe.worst[sample]
-    if worst is None:
-        return None
-    danger, row = worst
-    return {
-        "sample": sample,
-        "t": motion.time[sample],
-        "factor": safe.factor[sample],
-        "point": danger.point,
-        "region": danger.region,
-        "limit": str(danger.limit[row]),
-        "motors": str(danger.motors[row]),
-        "speed": danger.speed[row],
-        "direction": danger.direction[row],
-        "safe_speed": danger.safe_speed[row],
-        "peak": danger.peak[row],
-        "share_of_limit": danger.share[row],
-        "iso_safe_speed": danger.two_body,
-    }
-
-
-def print_program(found: ProgramResult, out: Path | None) -> None:
-    """Print what limits a program as a table."""
-    safe, record = found.safe, found.record
-    longer = safe.time_after / safe.time_before - 1
-    slowed = int((safe.factor < 1).sum())
-    bands = {"band N": None} if any("band" in moment for moment in record["worst"]) else {}
-    print_table(
-        f"{record['robot']}: {safe.time_before:.4g} s become {safe.time_after:.4g} s "
-        f"(+{100 * longer:.3g} %; by the two-body formula {safe.time_by_formula:.4g} s); "
-        f"{slowed} of {len(safe.factor)} samples slow down",
-        (
-            "worst at",
-            "factor",
-            "point",
-            "region",
-            "limit",
-            "motors",
-            "m/s",
-            "safe m/s",
-            "N",
-            *bands,
-        ),
-        [
-            (
-                f"{moment['t']:.4g} s",
-                moment["factor"],
-                moment["point"],
-                moment["region"],
-                moment["limit"],
-                moment["motors"],
-                moment["speed"],
-                moment["safe_speed"] if np.isfinite(moment["safe_speed"]) else None,
-                moment["peak"],
-                *(f"{moment['band'].low:.0f} to {moment['band'].high:.0f}" for _ in bands),
-            )
-            for moment in record["worst"]
-        ],
-    )
-    if out is not None:
-        print(f"wrote {out}")

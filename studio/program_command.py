@@ -42,8 +42,9 @@ class SeveralValues(TyperCommand):
 Motion = Annotated[
     Path,
     typer.Argument(
-        metavar="MOTION.csv",
-        help="Columns t (s) and one for each joint of the arm, by name (rad, m).",
+        metavar="MOTION",
+        help="CSV: columns t (s) and one for each joint of the arm, by name (rad, m); or JSON: "
+        "waypoints, each with q and a speed (m/s) or time (s).",
         show_default=False,
     ),
 ]
@@ -111,7 +112,8 @@ def program(
 ) -> None:
     """Find the factor by which to slow a motion down, so that no watched point can hurt."""
     from .output import print_json, print_warnings
-    from .program import GENERATOR, TypedProgram, print_program, run_program
+    from .program import TypedProgram, run_program
+    from .program_record import GENERATOR, print_program
     from .results_folder import replaced_folder, require_replaceable
     from .situation import TypedArm, TypedDrives
     from .typed_motors import TypedMotors

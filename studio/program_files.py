@@ -10,7 +10,7 @@ from typing import Any
 
 from .figures.program import program_figure
 from .output import plain, write_json
-from .program import ProgramResult, moment_of
+from .program_record import ProgramResult, moment_of
 from .results_folder import RESULTS
 
 MOMENT = ("sample", "t", "factor", "point", "region", "limit", "motors", "speed", "safe_speed")

@@ -30,13 +30,12 @@ def robots(json: Json = False) -> None:
         return
     print_table(
         "Built-in robots",
-        ("name", "joints", "tip", "frames", "rotor inertia sets", "source"),
+        ("name", "joints", "tip", "rotor inertia sets", "source"),
         [
             (
                 name,
                 str(robot.n),
                 robot.tip,
-                str(len(robot.frames)),
                 "\n".join(robot.rotor_inertia_sets) or None,
                 path.name,
             )

@@ -151,7 +151,7 @@ def situation(typed: Typed) -> Situation:
 
 def unknown_rotors(model: ImpactModel) -> list[str]:
     """Return a line if rotors of which nothing is known count as zero in masses and factors."""
-    from softimpact.simulate.assessment import unknown_rotors
+    from softimpact.simulate.bracket import unknown_rotors
 
     names = ", ".join(f"'{name}'" for name in unknown_rotors(model))
     line = (

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,15 +12,38 @@ from typing import Any
 import numpy as np
 from compiled_packages import KINDS, Generated
 
-from softimpact.codegen.impact_error import Impact
-from softimpact.codegen.manifest import ImpactRecord
+from softimpact.codegen.impacts import Impact
 from softimpact.codegen.samples import Sample
 from softimpact.symbolic import REGIONS
 from softimpact.symbolic.robot.rigid import Array
 
 OK, NULL_POINTER, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR = range(6)
-UNRESOLVED = 8
+UNRESOLVED, BOUNDED = 8, 9
+FREE_OR_DRIVEN, FREE, DRIVEN, SERVO = range(4)
 PARTS = list(REGIONS)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What motors do, for how long forces count, and the budget: the end of a parameter struct."""
+
+    motors: int = FREE
+    reaction_time: float = 0.02
+    horizon: float = 0.1
+    steps: int = 4000
+
+    def packed(self, real: str) -> bytes:
+        """Return the bytes of the struct's last fields."""
+        times = np.array([self.reaction_time, self.horizon], dtype=KINDS[real][1])
+        return times.tobytes() + np.array([self.motors, self.steps], dtype=np.int32).tobytes()
+
+
+def packed_params(
+    parameters: Sequence[Sequence[float]], motion: Motion, real: str
+) -> ctypes.Array[ctypes.c_char]:
+    """Return a parameter struct."""
+    fields = np.concatenate([(), *parameters]).astype(KINDS[real][1])
+    return ctypes.create_string_buffer(fields.tobytes() + motion.packed(real))
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,34 +58,50 @@ class Impacts:
         """The compiled package."""
         return self.package.load(self.real).library
 
+    def entry(self, function: str) -> Any:
+        """Return a function."""
+        return getattr(self.library, f"{self.package.manifest.name}_{function}")
+
     def region(self, name: str, clamped: bool) -> Any:
         """Return a region's struct."""
         region = region_type(self.real)()
-        entry = getattr(self.library, f"{self.package.manifest.name}_body_region")
+        entry = self.entry("body_region")
         assert entry(PARTS.index(name), int(clamped), ctypes.byref(region)) == OK
         return region
 
-    def call(self, function: str, sample: Sample, number: float, region: Any) -> tuple[int, Array]:
+    def call(
+        self,
+        function: str,
+        sample: Sample,
+        number: float,
+        region: Any,
+        motion: Motion | None = None,
+    ) -> tuple[int, Array]:
         """Return the status and the two numbers written, NaN if none were."""
         real, kind = KINDS[self.real]
         out = np.full(2, np.nan, dtype=kind)
-        vectors = [np.array(v, dtype=kind) for v in (sample.q, sample.n)]
-        p = np.array(sample.parameters, dtype=kind).ravel()
-        entry = getattr(self.library, f"{self.package.manifest.name}_{function}")
-        pointers = [ctypes.c_void_p(v.ctypes.data) for v in (*vectors, p, out)]
-        place = ctypes.byref(region)
-        status = entry(*pointers[:2], real(number), place, *pointers[2:])
+        q, n = (np.array(v, dtype=kind) for v in (sample.q, sample.n))
+        p = packed_params(sample.parameters, motion or Motion(), self.real)
+        status = self.entry(function)(
+            *(ctypes.c_void_p(v.ctypes.data) for v in (q, n)),
+            real(number),
+            ctypes.byref(region),
+            p,
+            ctypes.c_void_p(out.ctypes.data),
+        )
         return status, out.astype(float)
 
-    def peak_force(self, case: Impact) -> tuple[int, Array]:
+    def peak_force(self, case: Impact, steps: int = 4000) -> tuple[int, Array]:
         """Return status, peak force [N] and its time [s]."""
         region = self.region(case.region.name, case.clamped)
-        return self.call("peak_force", case.sample, case.speed, region)
+        motion = Motion(case.kind, case.reaction_time, case.horizon, steps)
+        return self.call("peak_force", case.sample, case.speed, region, motion)
 
-    def safe_speed(self, case: Impact, limit: float) -> tuple[int, Array]:
+    def safe_speed(self, case: Impact, limit: float, steps: int = 4000) -> tuple[int, Array]:
         """Return status, safe speed [m/s] and its force [N]."""
         region = self.region(case.region.name, case.clamped)
-        return self.call("safe_speed", case.sample, limit, region)
+        motion = Motion(case.kind, case.reaction_time, case.horizon, steps)
+        return self.call("safe_speed", case.sample, limit, region, motion)
 
 
 def region_type(real: str) -> type[ctypes.Structure]:
@@ -87,27 +127,21 @@ def choose(
     speed: float,
     parameters: Array,
     allowed: Array | None = None,
+    motion: Motion | None = None,
 ) -> tuple[int, ctypes.Structure]:
     """Return status and choice among poses that strike a held chest."""
     real, kind = KINDS[compiled.real]
     out = selection(compiled.real)
-    rows, along, p = (np.ascontiguousarray(x, kind) for x in (poses, n, parameters))
+    rows, along = (np.ascontiguousarray(x, kind) for x in (poses, n))
     mask = None if allowed is None else allowed.astype(np.uint8)
-    entry = getattr(compiled.library, f"{compiled.package.manifest.name}_select_configuration")
-    status = entry(
+    status = compiled.entry("select_configuration")(
         ctypes.c_void_p(rows.ctypes.data),
         len(rows),
         None if mask is None else ctypes.c_void_p(mask.ctypes.data),
         ctypes.c_void_p(along.ctypes.data),
         real(speed),
         ctypes.byref(compiled.region("chest", clamped=True)),
-        ctypes.c_void_p(p.ctypes.data),
+        packed_params(list(parameters), motion or Motion(), compiled.real),
         ctypes.byref(out),
     )
     return status, out
-
-
-def record_of(package: Generated) -> ImpactRecord:
-    """Return what a package states of its impacts."""
-    assert package.manifest.impact
-    return package.manifest.impact

@@ -81,9 +81,9 @@ def arm_of(model: ImpactModel, approach: Approach, *, full: bool) -> Arm:
     def numbers(vector: object) -> Array:
         return nothing if vector is None else np.array(vector, dtype=float).ravel()
 
-    drives, velocity = model.drives, approach.link_velocity
-    if velocity is None:
-        velocity = np.linalg.pinv(oracle.jacobian(model.tip, q0)[:3]) @ n
+    drives, given = model.drives, approach.link_velocity
+    least = np.linalg.pinv(oracle.jacobian(model.tip, q0)[:3]) @ n
+    velocity = np.asarray(least if given is None else given)
     gains = np.diag(numbers(drives.gains))
     if drives.computed_torque_gain is not None:
         gains = gains + float(drives.computed_torque_gain) * (M0 + np.diag(numbers(drives.rotors)))
@@ -145,7 +145,7 @@ def _rate(
 ) -> Callable[[float, Array], Array]:
     """Return the rate of y, θ, ẏ, θ̇, x_h, ẋ_h and x_0; ``at_begin`` is θ̇ as the law begins."""
     n, v, E = len(arm.velocity), arm.velocity, arm.elastic
-    R, region = ~E, contact.region
+    R, region = np.logical_not(E), contact.region
     prescribed = {
         "driven": np.zeros(n),
         "braking": -at_begin / motors.stopping_time,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What impacts start from: a chain or the whole linear robot, and the velocities at touch."""
+"""What impacts start from: masses, the model's own springs and the contact points' motions."""
 
 from __future__ import annotations
 
@@ -7,56 +7,39 @@ from dataclasses import replace
 
 import casadi as ca
 
-from softimpact.symbolic import Matrix
+from softimpact.symbolic import Matrix, contact_point_jacobian, loop_tangent
 
-from ..approach import approach_rates, directions_of_motion
 from ..description import CFunction, Output
-from .guards import arriving
+from ..inputs import is_elastic
 from .symbols import Symbols, function_over
 
 
-def impact_chain_of(s: Symbols, order: int) -> CFunction | None:
-    """Return what a package's impacts start from: masses, springs and velocities of a chain.
+def has_potential(s: Symbols) -> bool:
+    """Whether gravity or springs of the model file pull on the links."""
+    return s.robot.has_springs or any(s.model.gravity)
 
-    None if motors cannot move the contact point along n alone, or only in directions that depend
-    on the configuration.
+
+def links_of(s: Symbols, points: tuple[str, ...]) -> CFunction:
+    """Return M, the curvature K of the model's own potential, and J of each contact point.
+
+    They are over the independent joints. M is the links' own where springs are between them and
+    the rotors, and holds the rotors where joints are rigid.
+
+    Args:
+        s: symbols of the package.
+        points: frames of the contact points.
     """
-    directions = directions_of_motion(s.model)
-    if directions is None:
-        return None
-    chain = s.model.chain(s.q, s.n, order, reorthogonalise="once")
-    mass: Matrix = ca.vertcat(*chain.mass)
-    rates = approach_rates(s.model, s.q, s.n, directions)
-    motors = chain.displacement[: rates.numel(), :]
-    velocity = ca.mtimes(motors.T, rates)
-    outputs = (
-        Output("mass", mass, "kg", "the contact force acts on the first"),
-        Output("stiffness", ca.vertcat(*chain.stiffness), "N/m", "to the next, last to ground"),
-        Output("velocity", velocity, "m/s", "at first touch, for an approach of 1 m/s"),
-    )
-    guards = arriving(s.model, s.n, mass[0], rates, directions)
-    summary = f"Chain of {order} masses as it arrives at an impact; it may end before its last."
-    built = function_over(s, "impact_chain", summary, outputs, guards)
+    M = s.model.mass_matrix(s.q) if is_elastic(s.robot) else s.model.generalised_mass(s.q).matrix
+    outputs = [Output("M", ca.densify(M), "kg m^2", "over the joints", symmetric=True)]
+    if has_potential(s):
+        K = ca.densify(ca.SX(s.model.potential_stiffness(s.q)))
+        outputs.append(Output("K", K, "N m/rad", "of springs and gravity", symmetric=True))
+    J = ca.vertcat(*[_jacobian(s, point) for point in points])
+    outputs.append(Output("J", ca.densify(J), "m/rad", "three rows a contact point, base axes"))
+    built = function_over(s, "links", "Links as they arrive at an impact.", tuple(outputs))
     return replace(built, open_ended=True)
 
 
-def linear_model_of(s: Symbols) -> CFunction | None:
-    """Return M0, K0, J_c and all velocities, by which chains are judged.
-
-    None as ``impact_chain_of``.
-    """
-    directions = directions_of_motion(s.model)
-    if directions is None:
-        return None
-    linear = s.model.linear(s.q, s.n)
-    rates = approach_rates(s.model, s.q, s.n, directions)
-    velocity = ca.vertcat(rates, ca.SX(s.model.size - rates.numel(), 1))
-    outputs = (
-        Output("M0", ca.densify(linear.mass.matrix), "kg m^2", ""),
-        Output("K0", ca.densify(linear.stiffness), "N m/rad", ""),
-        Output("J_c", ca.densify(linear.jacobian), "m/rad", ""),
-        Output("velocity", ca.densify(velocity), "rad/s", ""),
-    )
-    m_c = s.model.reflected_mass(s.q, s.n)
-    guards = arriving(s.model, s.n, m_c, rates, directions)
-    return function_over(s, "linear_model", "Linear model.", outputs, guards)
+def _jacobian(s: Symbols, point: str) -> Matrix:
+    J = contact_point_jacobian(s.robot, point, s.q)
+    return ca.mtimes(J, loop_tangent(s.robot, s.q)) if s.robot.loops else J

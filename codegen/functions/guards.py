@@ -7,9 +7,8 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import ImpactModel, Matrix, Robot, loop_gaps
-from softimpact.symbolic.robot.rigid import Array
 
-from ..approach import share_outside, some_configurations
+from ..approach import some_configurations
 from ..description import Guard
 
 IMMOVABLE = 1e3
@@ -17,9 +16,6 @@ IMMOVABLE = 1e3
 
 LOOP_OPEN = 1e-3
 """Gap of a loop, over the size of the robot, from which on a configuration is refused."""
-
-OUTSIDE = 1e-6
-"""Squared share of n that may point where the contact point never moves."""
 
 FASTEST = 100.0
 """Joint velocity for 1 m/s, times the largest entry of J, from which on an approach is singular."""
@@ -35,10 +31,15 @@ def loops_closed(robot: Robot, q: Matrix) -> tuple[Guard, ...]:
     return (Guard(widest - ca.dot(gap, gap), 0.0, status="LOOP_OPEN"),)
 
 
+def heaviest(robot: Robot) -> float:
+    """Return the mass [kg] that a contact point feels at most before a pose counts as singular."""
+    moved = sum(joint.inertia.mass for joint in robot.joints)
+    return float(f"{IMMOVABLE * moved:.2g}")
+
+
 def movable(robot: Robot, mass: Matrix) -> Guard:
     """Guard a mass [kg] that is felt at the contact point: finite, and not of a singular pose."""
-    moved = sum(joint.inertia.mass for joint in robot.joints)
-    return Guard(mass, 0.0, float(f"{IMMOVABLE * moved:.2g}"))
+    return Guard(mass, 0.0, heaviest(robot))
 
 
 def movable_in_space(robot: Robot, inertia: Matrix) -> Guard:
@@ -46,18 +47,8 @@ def movable_in_space(robot: Robot, inertia: Matrix) -> Guard:
     return movable(robot, ca.trace(inertia))
 
 
-def arriving(
-    model: ImpactModel, n: Matrix, m_c: Matrix, rates: Matrix, directions: Array
-) -> tuple[Guard, ...]:
-    """Guard an approach: along n alone, and without wild joint velocities."""
-    slow = Guard(ca.sumsqr(rates), 0.0, _too_fast(model))
-    guards = (movable(model.robot, m_c), slow)
-    if len(directions) == 3:
-        return guards
-    return (*guards, Guard(1 - share_outside(n, directions), 1 - OUTSIDE))
-
-
-def _too_fast(model: ImpactModel) -> float:
+def fastest_arrival(model: ImpactModel) -> float:
+    """Return the squared joint velocity [rad²/s²] from which on an arrival at 1 m/s is singular."""
     seen = some_configurations(model.robot, seed=3)
     arm = max(float(abs(np.array(model.jacobian(ca.DM(q)))).max()) for q in seen)
     return float(f"{(FASTEST / arm) ** 2:.2g}")

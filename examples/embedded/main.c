@@ -2,9 +2,9 @@
 /*
  * A 1 kHz control loop that never moves faster than a collision with a chest allows.
  *
- * The arm follows a joint trajectory. In every cycle the contact point's velocity tells what would
- * be hit and how fast; panda_safe_speed tells how fast it may be, and the trajectory's clock slows
- * down where the plan is faster. Uses nothing but the generated package, so that the loop's body
+ * The arm follows a joint trajectory. In every cycle panda_speed_factor tells by how much the planned
+ * motion has to be slowed down for the contact point to stay below the limit in the direction in which
+ * it moves, whether motors turn freely in an impact or drive on, and the trajectory's clock slows down. Uses nothing but the generated package, so that the loop's body
  * runs on a microcontroller as it is.
  */
 #include <math.h>
@@ -14,7 +14,6 @@
 
 #define JOINTS PANDA_JOINTS
 #define CYCLE ((panda_real)0.001) /* s */
-#define CREEP ((panda_real)0.05)  /* m/s, where no safe speed is known */
 #define PI ((panda_real)3.14159265358979)
 
 /* What the controller knows: its drives, and whom it may hit. */
@@ -39,47 +38,21 @@ static void plan(panda_real time, panda_real q[JOINTS], panda_real rate[JOINTS])
     }
 }
 
-/* Velocity of the contact point; returns its size [m/s], not finite if q is not. */
-static panda_real tip_velocity(const panda_real q[JOINTS], const panda_real rate[JOINTS],
-    panda_real velocity[3])
-{
-    panda_real J[3][JOINTS];
-    panda_real square = 0;
-    if (panda_jacobian(q, J) != PANDA_OK) {
-        return (panda_real)NAN;
-    }
-    for (int k = 0; k < 3; ++k) {
-        velocity[k] = 0;
-        for (int i = 0; i < JOINTS; ++i) {
-            velocity[k] += J[k][i]*rate[i];
-        }
-        square += velocity[k]*velocity[k];
-    }
-    return (panda_real)sqrt((double)square);
-}
-
-/* Share of the planned velocity that is allowed now; *force is what it leads to [N]. */
+/*
+ * Share of the planned velocity that is allowed now; *force is what it leads to at most [N]. Whatever
+ * gives no answer stops the arm: a state that makes no sense, or an impact that cannot be bounded.
+ */
 static panda_real allowed_share(const guard *g, const panda_real q[JOINTS], const panda_real rate[JOINTS],
     panda_real *force)
 {
-    panda_real direction[3];
-    const panda_real planned = tip_velocity(q, rate, direction);
-    *force = 0;
-    if (!isfinite(planned)) {
-        return 0; /* a state that makes no sense stops the arm */
+    panda_speed_factor_t found;
+    const int status = panda_speed_factor(q, rate, g->limit, &g->body, &g->drives, &found);
+    if (status != PANDA_OK && status != PANDA_BOUNDED) {
+        *force = 0;
+        return 0;
     }
-    if (planned < (panda_real)1e-6) {
-        return 1; /* as good as at rest */
-    }
-    panda_safe_speed_t safe;
-    const int status = panda_safe_speed(q, direction, g->limit, &g->body, &g->drives, &safe);
-    const panda_real allowed = status == PANDA_OK ? safe.speed : CREEP;
-    const panda_real share = planned > allowed ? allowed/planned : 1;
-    panda_peak_force_t peak;
-    if (panda_peak_force(q, direction, share*planned, &g->body, &g->drives, &peak) == PANDA_OK) {
-        *force = peak.force;
-    }
-    return share;
+    *force = found.force;
+    return found.factor;
 }
 
 static int prepare(guard *g)
@@ -92,7 +65,8 @@ static int prepare(guard *g)
         g->drives.joint_stiffness[i] = 3000; /* N m/rad; yours */
         g->drives.rotor_inertia[i] = (panda_real)0.3; /* kg m^2; yours */
     }
-    g->limit = g->body.force_limit*(1 - (panda_real)PANDA_IMPACT_MARGIN);
+    g->drives.horizon = (panda_real)0.1; /* s; what comes later is for the quasi-static limit */
+    g->limit = g->body.force_limit;
     return 1;
 }
 

@@ -17,7 +17,6 @@
 #include "panda.h"
 
 #define JOINTS PANDA_JOINTS
-#define CREEP 0.05 /* m/s, where no safe speed is known */
 
 /* The part of a robot's state that a speed limit needs. */
 typedef struct {
@@ -47,8 +46,8 @@ static int prepare(guard *g)
     for (int i = 0; i < JOINTS; ++i) {
         g->drives.joint_stiffness[i] = 3000; /* N m/rad; yours */
     }
-    /* the package keeps limits for its chain of masses; this covers what the chain leaves out */
-    g->limit = g->body.force_limit*(1 - PANDA_IMPACT_MARGIN);
+    g->drives.horizon = 0.1; /* s; what comes later is for the quasi-static limit */
+    g->limit = g->body.force_limit;
     return 1;
 }
 
@@ -79,7 +78,8 @@ static verdict control(const guard *g, const robot_state *state, double command[
         panda_safe_speed_t safe;
         const int status =
             panda_safe_speed(state->q, direction, g->limit, &g->body, &g->drives, &safe);
-        v.allowed = status == PANDA_OK ? safe.speed : CREEP;
+        /* where nothing is known to be safe, nothing is */
+        v.allowed = status == PANDA_OK || status == PANDA_BOUNDED ? safe.speed : 0;
         v.share = fmin(1, v.allowed/v.planned);
     }
     for (int i = 0; i < JOINTS; ++i) {

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, as_completed
+from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from softimpact.optimize.workers import workers
+from softimpact.optimize.workers import as_completed, workers
 from softimpact.simulate import Decoupling, decoupling_stiffness
 from softimpact.symbolic import Contact, InvalidValue, body_region, static_stiffness
 from softimpact.symbolic.robot.rigid import Array

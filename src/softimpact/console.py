@@ -6,6 +6,7 @@ from __future__ import annotations
 import codecs
 import sys
 import unicodedata
+from html.entities import codepoint2name
 
 PLAIN = "softimpact.plain"
 
@@ -40,7 +41,6 @@ def _plain(character: str) -> str:
     base = word if word.isascii() else unicodedata.normalize("NFKD", word)[0].translate(WORDS)
     if base.isascii():
         return base
-    name = unicodedata.name(base, "").split()
-    if name[:1] == ["GREEK"]:
-        return name[-1].title() if base.isupper() else name[-1].lower()
+    if unicodedata.name(base, "").startswith("GREEK"):
+        return codepoint2name.get(ord(base), "?")
     return "" if unicodedata.combining(base) else "?"

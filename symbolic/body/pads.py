@@ -36,15 +36,20 @@ def young_modulus(hardness: float) -> float:
     return 1e6 * 0.0981 * (56 + 7.62336 * hardness) / (0.137505 * (254 - 2.54 * hardness))
 
 
-PADS = {
-    row["name"]: Pad(
-        row["name"],
-        float(row["hardness"]) + float(row["tolerance"]),
-        1e-3 * float(row["thickness"]),
-        PowerLaw(float(row["stiffness"])),
-    )
-    for row in rows("pads.csv")
-}
+def read_pads() -> dict[str, Pad]:
+    """Return the pads of the table by name."""
+    return {
+        row["name"]: Pad(
+            row["name"],
+            float(row["hardness"]) + float(row["tolerance"]),
+            1e-3 * float(row["thickness"]),
+            PowerLaw(float(row["stiffness"])),
+        )
+        for row in rows("pads.csv")
+    }
+
+
+PADS = read_pads()
 """Every pad by name."""
 
 HARDEST = PADS["sh70"]

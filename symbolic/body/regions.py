@@ -64,7 +64,8 @@ class BodyRegion:
         return self.quasi_static_limit if self.transient_limit is None else self.transient_limit
 
 
-def _regions() -> dict[str, BodyRegion]:
+def read_regions() -> dict[str, BodyRegion]:
+    """Return the regions of the table by name, without pressures."""
     return {
         row["name"]: BodyRegion(
             name=row["name"],
@@ -81,7 +82,8 @@ def _regions() -> dict[str, BodyRegion]:
     }
 
 
-def _areas(regions: dict[str, BodyRegion]) -> dict[str, BodyRegion]:
+def read_areas(regions: dict[str, BodyRegion]) -> dict[str, BodyRegion]:
+    """Return the areas of the table by name, each on its region."""
     return {
         row["name"]: replace(
             regions[row["region"]],
@@ -108,8 +110,8 @@ def _with_least_pressure(region: BodyRegion) -> BodyRegion:
     )
 
 
-AREAS = _areas(_regions())
+AREAS = read_areas(read_regions())
 """The 29 areas by name, each with its region's spring, mass and force limits."""
 
-REGIONS = {name: _with_least_pressure(region) for name, region in _regions().items()}
+REGIONS = {name: _with_least_pressure(region) for name, region in read_regions().items()}
 """The 12 regions by name."""

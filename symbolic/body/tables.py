@@ -7,10 +7,13 @@ import csv
 from collections.abc import Iterator
 from importlib.resources import files
 
+DATA = files(__package__) / "data"
+"""Where the tables are."""
+
 
 def rows(name: str) -> Iterator[dict[str, str]]:
     """Yield the rows of ``data/NAME`` by column."""
-    text = (files(__package__) / "data" / name).read_text(encoding="utf-8")
+    text = (DATA / name).read_text(encoding="utf-8")
     yield from csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
 
 

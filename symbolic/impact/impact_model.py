@@ -102,7 +102,9 @@ class ImpactModel:
     def generalised_stiffness(self, q: Matrix) -> Matrix:
         """Return K0 over motors and deflections (MSM Eq. 45)."""
         springs = self.drives.springs[list(self.independent)]
-        return elastic_stiffness(springs, self.position_gains(q), self._potential(q), self.elastic)
+        return elastic_stiffness(
+            springs, self.position_gains(q), self.potential_stiffness(q), self.elastic
+        )
 
     def generalised_damping(self, q: Matrix) -> Matrix | None:
         """Return D over motors and deflections: K_d on the motors, the joints' own on the links.
@@ -207,7 +209,8 @@ class ImpactModel:
         block = ca.mtimes([motors, self.rotor_mass_matrix(q), motors])
         return gains + self.drives.computed_torque_gain * block
 
-    def _potential(self, q: Matrix) -> Matrix:
+    def potential_stiffness(self, q: Matrix) -> Matrix:
+        """Return the curvature of gravity and of the model's own springs over the links, n×n."""
         if not self.robot.has_springs and not any(self.gravity):
             return ca.DM(len(self.independent), len(self.independent))
         if self.robot.loops:

@@ -6,15 +6,21 @@ Readers of file formats make descriptions, ``assembly`` makes robots of them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from ..errors import ModelFileError
 from .constraints import Constraint, Tendon
-from .rigid import Inertia, Placement
+from .rigid import Array, Inertia, Placement
 from .robot import Frame, Joint
 
 WORLD = 0
 """Index of the body that all others stand on."""
+
+LARGEST = 1e15
+"""Number beyond which a length [m], mass [kg] or inertia [kg m²] is no robot's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,3 +78,32 @@ class Description:
     independent: tuple[str, ...] = ()
     rotors_stated: bool = False
     warnings: tuple[str, ...] = ()
+
+
+def require_finite(description: Description) -> None:
+    """Raise ModelFileError if a length, mass or inertia is not finite or beyond all reason."""
+    for name, numbers in _numbers(description):
+        if np.isnan(numbers).any():
+            raise ModelFileError(description.source, f"a number is NaN ({name})")
+        if not (abs(numbers) < LARGEST).all():
+            raise ModelFileError(description.source, f"a number is infinite or too large ({name})")
+
+
+def _numbers(description: Description) -> Iterator[tuple[str, Array]]:
+    for body in description.bodies:
+        yield f"place of body '{body.name}'", _of_placement(body.placement)
+        inertia = body.inertia
+        yield (
+            f"inertia of body '{body.name}'",
+            np.array([inertia.mass, *inertia.first_moment, *inertia.about_origin.flat]),
+        )
+        for joint in body.joints:
+            own = [joint.offset, joint.armature, joint.stiffness, joint.spring_reference]
+            own += [joint.damping, joint.friction, *_of_placement(joint.placement)]
+            yield f"joint '{joint.name}'", np.array(own)
+    for site in description.sites:
+        yield f"place of site '{site.name}'", _of_placement(site.placement)
+
+
+def _of_placement(placement: Placement) -> Array:
+    return np.concatenate([placement.rotation.ravel(), placement.translation])

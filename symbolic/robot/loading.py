@@ -9,6 +9,8 @@ import importlib.util
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from softimpact.robots import built_in_robots
 
 from ..errors import (
@@ -19,7 +21,7 @@ from ..errors import (
     UnsupportedModel,
 )
 from .assembly import Base, assemble
-from .description import Description
+from .description import Description, require_finite
 from .mjcf import read_mjcf
 from .plausibility import implausible, require_sound_masses
 from .robot import Robot
@@ -78,7 +80,9 @@ def load_robot(
     if floating and hold_base:
         raise InvalidValue("hold_base", "excludes floating; give one of them")
     base: Base = "free" if floating else "held" if hold_base else "fixed"
-    description = describe(model_path(model))
+    with np.errstate(all="ignore"):  # what is not finite is refused by its name
+        description = describe(model_path(model))
+    require_finite(description)
     chosen = tip or description.tip
     robot = assemble(description, toward or chosen, base)
     doubts = () if str(model) in built_in_robots() else implausible(robot)  # those cite sources

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -19,7 +20,7 @@ from .description import Body, Description
 from .mjcf_drives import Motors, motors_of
 from .mjcf_equalities import constraints_of
 from .mjcf_inertia import Rules, body_inertias, placement, scaled, stated_inertia
-from .rigid import Array, Inertia, Placement, rotation_from_axis
+from .rigid import Array, Inertia, frame_along
 from .robot import BASE, Frame, Joint, JointKind
 
 ROTOR_SET = "rotor_inertia:"
@@ -52,7 +53,7 @@ def read_mjcf(path: Path) -> Description:
         _require_sound_joints(spec, str(path))
         try:
             bodies, stated, measured, rules = body_inertias(spec, lambda: _parsed(path), str(path))
-            warnings = _cleared(spec)
+            unread = _cleared(spec)
             if any("NaN" in warning for warning in heard):
                 raise ModelFileError(str(path), "a number is NaN")
             model = spec.compile()
@@ -60,7 +61,7 @@ def read_mjcf(path: Path) -> Description:
             raise ModelFileError(str(path), one_line(error)) from None
     _require_finite(model, path)
     inertias = _by_compiled_body(model, bodies, stated, measured, rules)
-    return _Reader(model, path, inertias, warnings, keys).description()
+    return _Reader(model, path, inertias, unread, keys).description()
 
 
 @contextmanager
@@ -70,7 +71,9 @@ def _warnings() -> Iterator[list[str]]:
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(heard.append)
     try:
-        yield heard
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of the inertias that stand in for the file's
+            yield heard
     finally:
         mujoco.set_mju_user_warning(before)
 
@@ -95,7 +98,7 @@ def one_line(error: Exception) -> str:
 
 def _cleared(spec: mujoco.MjSpec) -> list[str]:
     """Drop what only rendering, contact and sensors need, and with it every file beside it."""
-    warnings = ["soft bodies (flex) do not count"] if list(spec.flexes) else []
+    unread = ["soft bodies (flex) do not count"] if list(spec.flexes) else []
     for item in (*spec.geoms, *spec.sites, *spec.tendons):
         item.material = ""
     for geom in [geom for geom in spec.geoms if geom.meshname or geom.hfieldname]:
@@ -104,7 +107,7 @@ def _cleared(spec: mujoco.MjSpec) -> list[str]:
     for group in (spec.sensors, *files, spec.pairs, spec.excludes, spec.tuples, spec.keys):
         for item in list(group):
             spec.delete(item)
-    return warnings
+    return unread
 
 
 def _require_sound_joints(spec: mujoco.MjSpec, source: str) -> None:
@@ -182,7 +185,7 @@ class _Reader:
         model: mujoco.MjModel,
         path: Path,
         inertias: list[Inertia],
-        warnings: list[str],
+        unread: list[str],
         keys: list[list[float]],
     ) -> None:
         self.model, self.path, self.inertias, self.keys = model, path, inertias, keys
@@ -193,7 +196,7 @@ class _Reader:
         movable = [j for j in range(model.njnt) if int(model.jnt_type[j]) != FREE]
         speeds = self.values.get(SPEED_LIMIT, (math.inf,) * len(movable))
         self.speed_limits = dict(zip(movable, speeds, strict=True))
-        self.warnings = [*warnings, *self.motors.warnings, *self.ties.warnings]
+        self.warnings = [*unread, *self.motors.warnings, *self.ties.warnings]
 
     def description(self) -> Description:
         """Walk the bodies, which MuJoCo keeps parents before children."""
@@ -381,13 +384,3 @@ def _custom_texts(model: mujoco.MjModel) -> dict[str, str]:
         text = bytes(model.text_data[first : first + size]).rstrip(b"\0")
         texts[name] = text.decode(errors="replace")
     return texts
-
-
-def frame_along(axis: Array, position: Array) -> Placement:
-    """Frame at ``position`` whose z axis is ``axis``, turned the shortest way."""
-    axis = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
-    swing = np.cross([0.0, 0.0, 1.0], axis)
-    sine = float(np.linalg.norm(swing))
-    if sine < np.finfo(float).eps:
-        return Placement(np.diag([1.0, np.sign(axis[2]), np.sign(axis[2])]), position)
-    return Placement(rotation_from_axis(swing / sine, math.atan2(sine, axis[2])), position)

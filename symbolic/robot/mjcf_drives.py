@@ -77,7 +77,7 @@ def motors_of(model: mujoco.MjModel) -> Motors:
         if len(terms) > 1:
             shared[target] = shared.get(target, 0.0) + _armature(model, i)
     for joint, values in limits.items():
-        motors.drives[joint] = replace(motors.drives[joint], torque_limit=sum(values))
+        motors.drives[joint] = replace(motors.drives[joint], torque_limit=sum(values) or np.inf)
     _limit_joints(motors, model)
     motors.tendons = tuple(_tendons(motors, model, fixed, shared))
     return motors
@@ -103,12 +103,12 @@ def _gear(model: mujoco.MjModel, actuator: int) -> float:
 def _armature(model: mujoco.MjModel, actuator: int) -> float:
     """Inertia of a motor seen from what it acts on: armature × gear²."""
     own = getattr(model, "actuator_armature", np.zeros(model.nu))
-    return float(np.ravel(own)[actuator]) * _gear(model, actuator) ** 2
+    return float(np.ravel(own)[actuator]) * _gear(model, actuator) * _gear(model, actuator)
 
 
 def _damping(model: mujoco.MjModel, actuator: int) -> float:
     own = getattr(model, "actuator_damping", np.zeros(model.nu))
-    return float(np.ravel(own)[actuator]) * _gear(model, actuator) ** 2
+    return float(np.ravel(own)[actuator]) * _gear(model, actuator) * _gear(model, actuator)
 
 
 def _add_motor(
@@ -135,10 +135,10 @@ def _add_motor(
         motors.drives[joint] = replace(
             before,
             actuated=True,
-            armature=before.armature + (_armature(model, i) * weight**2 if alone else 0.0),
-            damping=before.damping + _damping(model, i) * weight**2,
-            position_gain=before.position_gain + position * ratio**2,
-            velocity_gain=before.velocity_gain + velocity * ratio**2,
+            armature=before.armature + (_armature(model, i) * (weight * weight) if alone else 0.0),
+            damping=before.damping + _damping(model, i) * (weight * weight),
+            position_gain=before.position_gain + position * (ratio * ratio),
+            velocity_gain=before.velocity_gain + velocity * (ratio * ratio),
         )
         limits.setdefault(joint, []).append(force * abs(ratio) if ratio else 0.0)
 
@@ -177,7 +177,7 @@ def _limit_joints(motors: Motors, model: mujoco.MjModel) -> None:
         if model.jnt_actfrclimited[joint]:
             limit = float(abs(model.jnt_actfrcrange[joint]).max())
             drive = motors.drives.get(joint, Drive())
-            limit = min(limit, drive.torque_limit)
+            limit = min(limit or np.inf, drive.torque_limit)  # a limit of 0 is none
             motors.drives[joint] = replace(drive, torque_limit=limit)
 
 
@@ -220,10 +220,10 @@ def _tendons(
         before = motors.drives.get(joint, Drive())
         motors.drives[joint] = replace(
             before,
-            armature=before.armature + armature * weight**2,
-            damping=before.damping + number("damping") * weight**2,
+            armature=before.armature + armature * (weight * weight),
+            damping=before.damping + number("damping") * (weight * weight),
             friction=before.friction + number("frictionloss") * abs(weight),
-            spring=before.spring + spring * weight**2,
+            spring=before.spring + spring * (weight * weight),
             spring_reference=rest / weight,
         )
 

@@ -68,6 +68,7 @@ def test_own_test_fails_on_a_wrong_result(
     assert "FAILED rr_reflected_mass: error within its bound" in run(binary, ok=False)
 
 
+@pytest.mark.slow
 def test_gravity_enters_the_stiffness(package: Callable[[str], Generated], tmp_path: Path) -> None:
     weightless = package("gantry")
     robot, tip, folder = weightless.robot, weightless.tip, tmp_path / "heavy"

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from compiled_impacts import Impacts, choose
-from compiled_packages import KINDS, Generated, Library
+from compiled_packages import KINDS, Generated, Library, mostly_slow
 from mechanisms import FIVE_BAR, SIX_BAR, SPATIAL, four_bar, robot_of
 
 from softimpact.codegen import generate_package
@@ -74,7 +74,9 @@ def test_rmin_from_its_motors(package: Callable[[str], Generated], real: str) ->
         last = q
 
 
-@pytest.mark.parametrize("name", ["four_bar", "six_bar", "five_bar", "spatial"])
+@pytest.mark.parametrize(
+    "name", mostly_slow(["four_bar", "six_bar", "five_bar", "spatial"], ["four_bar"])
+)
 def test_other_mechanisms(name: str, tmp_path: Path) -> None:
     robot = mechanism(name, tmp_path)
     built = generated(robot, tmp_path / name, (1.0, -2.0, -9.0))
@@ -109,6 +111,7 @@ def upside_down(k_s: float, folder: Path) -> Generated:
     return generated(replace(robot, joints=joints), folder, (0.0, 0.0, 9.81))
 
 
+@pytest.mark.slow
 def test_unstable_rest_is_refused(tmp_path: Path) -> None:
     """With the arms spread out they need less stiffness than with the arms together."""
     built = upside_down(1.0, tmp_path / "rmin")

@@ -16,7 +16,9 @@ EXAMPLE = Path(__file__).parents[2] / "examples/embedded/main.c"
 SOFT_FLOAT = ("__aeabi_d", "__aeabi_f2d", "__aeabi_i2d", "__aeabi_ui2d", "__aeabi_l2d")
 """What double operations become on a core that has none."""
 
-FLOAT_CALLS = {"sinf", "cosf", "sqrtf", "fmaxf", "powf", "logf", "memset", "memcpy"}
+FLOAT_CALLS = {
+    *("sinf", "cosf", "sqrtf", "fmaxf", "fminf", "powf", "logf", "expf", "memset", "memcpy"),
+}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -44,7 +46,7 @@ def test_own_test_passes_on_the_core(
 def test_control_loop_runs_on_the_core(package: Callable[[str], Generated], tmp_path: Path) -> None:
     said = emulate(package("panda"), "m7", "float", [EXAMPLE], tmp_path)
     force, limit = map(float, re.findall(r"force ([\d.]+) N, limit ([\d.]+) N", said)[0])
-    assert 0.995 * limit < force < limit
+    assert 0.975 * limit < force < limit
 
 
 @pytest.mark.parametrize("robot", COMMITTED)

@@ -7,14 +7,14 @@ import re
 import subprocess
 import tarfile
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from compiled_packages import WARNINGS, run, tool
+from compiled_packages import WARNINGS, Generated, run, tool
+from impact_search import BRACKET, Case, Robot
 
-from softimpact.simulate import Approach
-from softimpact.simulate.safe_speed import largest_safe_speed
-from softimpact.symbolic import Contact, body_region, drives, impact_model, load_robot
+from softimpact.symbolic import body_region, load_robot
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE, PACKAGE = ROOT / "examples/host", ROOT / "generated/panda"
@@ -55,7 +55,9 @@ def test_own_motion_is_slowed_down_where_it_must_be(program: Path) -> None:
     check_own_motion(run(program))
 
 
-def test_states_from_a_file_get_the_speed_that_simulation_allows(program: Path) -> None:
+def test_states_from_a_file_get_the_speed_that_an_integrator_allows(
+    program: Path, tmp_path: Path
+) -> None:
     q = np.array([0.1, -0.3, 0.2, -2.0, 0.3, 2.0, 0.5])
     rate = np.array([1.5, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0])
     line = ",".join(f"{x:.17g}" for x in [0.5, *q, *rate])
@@ -63,15 +65,18 @@ def test_states_from_a_file_get_the_speed_that_simulation_allows(program: Path) 
     assert done.returncode == 0, done.stderr
     ((time, planned, allowed, share, first),) = rows(done.stdout)
 
-    panda = load_robot("panda")
-    model = impact_model(panda, drives_=drives(panda, 3e3))
-    velocity = np.array(model.jacobian(q)).reshape(3, 7) @ rate
-    approach = Approach(q, velocity / np.linalg.norm(velocity), 1.0)
-    chest = body_region("chest")
-    right = largest_safe_speed(model, approach, Contact(chest, False), chest.force_limit)
+    panda, chest = load_robot("panda"), body_region("chest")
+    manifest = Mock(name="panda", tip="hand_tcp")
+    robot = Robot(Generated(panda, str(panda.tip), PACKAGE, manifest), tmp_path)
+    velocity = np.array(robot.model(q)[1]) @ rate
+    none = np.zeros(7)
+    case = Case(
+        q, velocity, np.full(7, 3e3), panda.armature, none, none, BRACKET, 0.02, 0.1, "chest",
+        False, chest.stiffness, chest.damping, chest.force_limit,
+    )  # fmt: skip
     assert time == 0.5
     assert planned == pytest.approx(np.linalg.norm(velocity), abs=1e-3)
-    assert allowed == pytest.approx(right, rel=5e-3)
+    assert 0.97 < robot.right_force(case, allowed) / chest.force_limit < 1.001  # of 3 decimals
     assert first == pytest.approx(share * rate[0], abs=2e-3)
 
 

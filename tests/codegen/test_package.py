@@ -82,6 +82,7 @@ def test_planar_robots_have_no_operational_space_inertia(
     assert not names & {"rr_osim", "rr_giaf", "rr_directional_giaf"}
 
 
+@pytest.mark.slow
 def test_every_robot_number_comes_from_the_model(tmp_path: Path, panda: Robot) -> None:
     values = drives(panda, joint_stiffness=1234.5, rotor_inertia=0.25, position_gain=7)
     generate_package(panda, tmp_path / "p", drives_=values, name="My Arm-2")
@@ -192,6 +193,7 @@ def test_float_builds_hold_no_double_operation(
         assert not re.search(r"\b(cvtss2sd|cvtsd2ss|mulsd|addsd|fcvt)\b", code)
 
 
+@pytest.mark.slow
 def test_names_of_the_model_cannot_end_a_comment(tmp_path: Path, panda: Robot) -> None:
     named = replace(panda.joints[0], name="*/ #error /* joint")
     robot = replace(panda, name="x */ #error", joints=(named, *panda.joints[1:]))

@@ -42,6 +42,7 @@ def test_graphs_without_shared_divisors_stay_as_they_are() -> None:
     assert with_reciprocals(plain) == plain
 
 
+@pytest.mark.slow
 def test_no_function_of_a_package_divides_twice_by_a_number(
     package: Callable[[str], Generated],
 ) -> None:

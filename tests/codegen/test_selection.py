@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from compiled_impacts import OK, SINGULAR, Impacts, choose, record_of
+from compiled_impacts import OK, SINGULAR, Impacts, choose
 from compiled_packages import KINDS, Generated
 
 from softimpact.codegen import generate_package
@@ -28,7 +28,7 @@ def select(
     """Return status and choice for the study's impact, which is on a held chest."""
     study = load_study(STUDY)
     rotors = np.array(study.model.drives.rotors).ravel()
-    parameters = np.array([np.broadcast_to(study.nominal, 7), rotors, np.zeros(7)])
+    parameters = np.array([np.broadcast_to(study.nominal, 7), rotors, *np.zeros((2, 7))])
     return choose(compiled, poses, study.direction, study.speed, parameters, allowed)
 
 
@@ -65,15 +65,15 @@ def test_choice_is_that_of_the_whole_linear_robot(
     generated = package("panda")
     compiled, poses = Impacts(generated, real), table(generated, real)
     names, order = list(generated.manifest.poses), list(ranked)
-    left, usual = np.ones(24, dtype=bool), record_of(generated).chain_error_usual
+    left = np.ones(24, dtype=bool)
     for name in order:  # the best of those left, again and again
         status, found = select(compiled, poses, left)
         assert status == OK
         assert found.usable == left.sum()
         force = ranked[names[found.best]].peak_force
-        assert found.force == pytest.approx(force, rel=usual + 1e-3)
+        assert found.force == pytest.approx(force, rel=2e-3)
         best = ranked[name].peak_force
-        assert force == pytest.approx(best, rel=2 * (usual + 1e-3))  # the same but for near ties
+        assert force == pytest.approx(best, rel=4e-3)  # the same but for near ties
         left[names.index(name)] = False
     assert select(compiled, poses, left)[0] == SINGULAR
 
@@ -93,7 +93,7 @@ def test_margin_is_the_distance_to_the_second(package: Callable[[str], Generated
 def test_singular_poses_are_left_out(package: Callable[[str], Generated]) -> None:
     compiled = Impacts(package("rr"), "double")
     stretched, bent = [0.0] * 4, [0.3, 0.0, 1.2, 0.0]
-    along, parameters = np.array([1.0, 0.0, 0.0]), np.array([[0.5] * 4, [0.0] * 4])
+    along, parameters = np.array([1.0, 0.0, 0.0]), np.array([[0.5] * 4, *np.zeros((2, 4))])
     assert choose(compiled, np.array([stretched]), along, 0.5, parameters)[0] == SINGULAR
     poses = np.array([stretched, bent, stretched])
     status, found = choose(compiled, poses, along, 0.5, parameters)

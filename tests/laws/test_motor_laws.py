@@ -193,3 +193,23 @@ def test_held_motors_give_no_safe_speed(panda: Robot, gain: float) -> None:
     model = impact_model(panda, drives_=drives(panda, 1e4, position_gain=gain))
     with pytest.raises(InvalidValue, match="'held' cannot give a safe speed"):
         largest_safe_speed(model, Approach(POSE, ALONG_Y, 0.5), CHEST, 100.0, motors=Motors("held"))
+
+
+def test_a_safe_first_contact_is_safe_at_all_lower_speeds() -> None:
+    """At lower speed a contact may merge with the next hit and be the harder one for it."""
+    q = [-1.044873, -1.101723, 0.999723, -2.486088, 0.45017, 2.252942, 2.679557]
+    approach = Approach(q, [0.848110, -0.501178, 0.171844], 0.12)
+    model, motors = impact_model(PANDA, drives_=drives(PANDA, 365.507)), Motors("free")
+    speeds = np.linspace(0.05, 0.12, 29)
+    found = many_peaks(model, approach, HEAD, speeds, motors=motors, horizon=0.06).first_contact
+    fall = int(np.argmin(np.diff(found)))
+    assert found[fall + 1] < 0.95 * found[fall]
+    limit = 0.5 * (found[fall] + found[fall + 1])  # met twice
+    safe = largest_safe_speed(
+        model, approach, HEAD, float(limit), definition="first_contact", motors=motors
+    )
+    below = many_peaks(
+        model, approach, HEAD, np.linspace(0.2, 1, 40) * safe, motors=motors, horizon=0.06
+    )
+    assert safe < speeds[fall]
+    assert below.first_contact.max() < limit * 1.002

@@ -143,6 +143,7 @@ def test_forces_grow_with_speed(case: Case) -> None:
     assert all(faster > slower for slower, faster in pairwise(peaks))
 
 
+@pytest.mark.slow
 def test_stiff_joints_hit_like_rigid_ones(panda: Robot) -> None:
     """As k_s → ∞ the peak tends to that of the rigid robot's reflected mass, rotors included."""
     n = np.array([0.4, 1.0, -0.3])

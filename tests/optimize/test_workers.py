@@ -10,21 +10,22 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from studies import InProcess
 
-from softimpact.optimize.workers import WorkerLost, workers
+from softimpact.optimize.workers import WorkerLost, as_completed, workers
 
 SCRIPT = """
 import os
 import signal
-from concurrent.futures import as_completed
 
-from softimpact.optimize.workers import workers
+from softimpact.optimize.workers import as_completed, workers
 
 
 def say(word):
@@ -97,6 +98,18 @@ def test_a_worker_that_is_killed_is_named(tmp_path: Path) -> None:
         _, words = parent.communicate(timeout=100)
     assert parent.returncode == 1
     assert f"{WorkerLost.__name__}: a worker process was ended from outside" in words
+
+
+def test_all_jobs_are_heard_of_also_those_that_take_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("softimpact.optimize.workers.AWAKE", 1e-3)
+    first, last = threading.Event(), threading.Event()
+    with ThreadPoolExecutor(2) as pool:
+        late = pool.submit(last.wait)
+        jobs = as_completed([late, pool.submit(first.wait)])
+        threading.Timer(0.05, first.set).start()  # after some looks at the jobs
+        assert next(jobs) is not late
+        last.set()
+        assert list(jobs) == [late]
 
 
 def test_the_callers_executor_stays_open() -> None:

@@ -78,7 +78,7 @@ def test_points_move_where_and_as_fast_as_they_do(
 def test_worst_moment_has_its_impacts_own_safe_speed(
     model: ImpactModel, motion: Trajectory, program: SafeProgram
 ) -> None:
-    k = worst_moments(program)[0]
+    k = worst_moments(motion, program)[0]
     worst = program.worst[k]
     assert worst is not None
     danger, row = worst
@@ -117,11 +117,12 @@ def test_times(motion: Trajectory, program: SafeProgram) -> None:
     assert program.time_by_formula > program.time_before
 
 
-def test_worst_moments_are_worst_first(program: SafeProgram) -> None:
-    moments = worst_moments(program)
+def test_worst_moments_are_worst_first(motion: Trajectory, program: SafeProgram) -> None:
+    moments = worst_moments(motion, program)
     assert len(moments) == 5
     assert len(set(moments)) == 5
     assert program.factor[moments[0]] == program.factor.min()
+    assert list(program.factor[moments]) == sorted(program.factor[moments])
 
 
 def test_a_slow_program_is_left_alone(model: ImpactModel, motion: Trajectory) -> None:
@@ -130,7 +131,7 @@ def test_a_slow_program_is_left_alone(model: ImpactModel, motion: Trajectory) ->
     found = safe_program(slow, at)
     assert (found.factor == 1).all()
     assert found.time_after == pytest.approx(found.time_before)
-    assert worst_moments(found)
+    assert worst_moments(slow, found)
 
 
 def test_points_that_do_not_move_or_do_not_exist(model: ImpactModel, motion: Trajectory) -> None:

@@ -89,6 +89,7 @@ def test_gains_add_up(results: Results) -> None:
     assert gains["before"] >= gains["springs"]
 
 
+@pytest.mark.slow
 def test_tables_say_what_was_found(tmp_path: Path) -> None:
     outcome = run("design", small_study(tmp_path), "--out", tmp_path / "out", "--mode", "table")
     assert outcome.code == 0
@@ -97,6 +98,7 @@ def test_tables_say_what_was_found(tmp_path: Path) -> None:
     assert "2 of 2 solved" in outcome.out
 
 
+@pytest.mark.slow
 def test_region_and_speed_override_the_study(tmp_path: Path) -> None:
     record = run_json_without_progress(
         *("design", small_study(tmp_path), "--out", tmp_path / "out", "--mode", "table"),
@@ -156,6 +158,7 @@ def test_the_answer_says_what_it_rests_on(results: Results) -> None:
         assert pose["keeps_bounds_before"] == kept
 
 
+@pytest.mark.slow
 def test_one_machine_for_all_scenarios(tmp_path: Path) -> None:
     study = small_study(tmp_path)
     text = study.read_text(encoding="utf-8")

@@ -41,6 +41,7 @@ def test_analyze_panda(tmp_path: Path) -> None:
         assert speed == pytest.approx(expected["safe_speed"], abs=0.006)
 
 
+@pytest.mark.slow
 def test_pareto_panda(tmp_path: Path) -> None:
     lines = printed(EXAMPLES / "pareto_panda.py", tmp_path)
     numbers = [[float(number) for number in re.findall(r"\d+\.\d+", line)] for line in lines]

@@ -15,6 +15,7 @@ HEAD = """
 import os
 import signal
 import sys
+import time
 
 from softimpact import cli
 
@@ -29,7 +30,7 @@ WAITING = """
 def endless():
     ready()
     while True:
-        signal.pause()
+        time.sleep(0.1)
 """
 
 SOLVER = """
@@ -55,10 +56,11 @@ def job():
 
 @cli.app.command()
 def endless():
-    from softimpact.optimize.workers import workers
+    from softimpact.optimize.workers import as_completed, workers
 
     with workers(2) as pool:
-        pool.submit(job).result()
+        for done in as_completed([pool.submit(job)]):
+            done.result()
 """
 
 TAIL = """

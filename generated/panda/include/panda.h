@@ -9,7 +9,7 @@
  *   - takes joint coordinates q of the links in the order
  *     joint1, joint2, joint3, joint4, joint5, joint6, joint7;
  *   - takes the direction of impact n at any length but zero, where it has one;
- *   - returns PANDA_OK or another status, and then has written nothing;
+ *   - returns PANDA_OK or another status, and then has written nothing (but for PANDA_BOUNDED);
  *   - refuses inputs that are not finite or outside the ranges stated here, but knows no joint limits;
  *   - never writes a number that is not finite;
  *   - holds no state, allocates nothing and may be called from any thread.
@@ -51,17 +51,35 @@ typedef enum {
     PANDA_LOOP_OPEN = 6,      /* the joint coordinates do not close the chain (closed chains) */
     PANDA_NO_EQUILIBRIUM = 7, /* Newton's method found no stable rest at these motor angles
                                 (closed chains) */
-    PANDA_UNRESOLVED = 8      /* an impact that does not end, or a speed that is not found, within
-                                the bounded number of steps */
+    PANDA_UNRESOLVED = 8,     /* the budget of steps is used up, and no bound is known */
+    PANDA_BOUNDED = 9         /* the budget of steps is used up; what was written is a bound on the
+                                safe side */
 } panda_status;
 
 /* Text of a status, in English; never NULL. */
 const char *panda_status_text(int status);
 
+/*
+ * What motors do from first touch until reaction_time; then they are released. Free ones turn with
+ * what pulls on them, driven ones keep their speed whatever pulls, servos follow a reference that moves on,
+ * by position_gain and damping_gain. Where that is not known the worse of free and driven is taken.
+ */
+typedef enum {
+    PANDA_MOTORS_FREE_OR_DRIVEN = 0,
+    PANDA_MOTORS_FREE = 1,
+    PANDA_MOTORS_DRIVEN = 2,
+    PANDA_MOTORS_SERVO = 3
+} panda_motors;
+
 typedef struct {
     panda_real joint_stiffness[7]; /* N m/rad, > 0; stiffness of the joint's spring */
     panda_real rotor_inertia[7]; /* kg m^2, > 0; rotor inertia, reflected to the joint */
     panda_real position_gain[7]; /* N m/rad, >= 0; proportional gain of the motor's controller */
+    panda_real damping_gain[7]; /* N m s/rad, >= 0; gain of the same on the motor's rate */
+    panda_real reaction_time; /* s, >= 0; from first touch until motors are released */
+    panda_real horizon; /* s, > 0; forces count until then */
+    int motors; /* panda_motors */
+    int steps; /* > 0; budget of a call of peak_force, safe_speed or speed_factor */
 } panda_params;
 
 /*
@@ -89,7 +107,7 @@ int panda_jacobian(const panda_real q[7], panda_real J[3][7]);
  * Mass matrix M0 over the generalised coordinates (MSM Eq. 42).
  * M0: kg m^2.
  * Of p it reads rotor_inertia.
- * 327 operations, 12 sines and cosines. Error: 1e-12 in double, 1e-06 in float.
+ * 327 operations, 12 sines and cosines. Error: 1e-12 in double, 2e-06 in float.
  */
 int panda_generalised_mass_matrix(
     const panda_real q[7],
@@ -126,6 +144,7 @@ typedef struct {
 
 /*
  * Two masses and a spring that stand for the robot along n (MSM Eq. 36-38).
+ * Of p it reads joint_stiffness and rotor_inertia and position_gain.
  * 1001 operations, 14 sines and cosines. Error: 1e-12 in double, 2e-05 in float.
  */
 int panda_reduced_model(
@@ -141,7 +160,8 @@ typedef struct {
 
 /*
  * Chain of 3 masses that stands for the robot along n.
- * 1147 operations, 14 sines and cosines. Error: 1e-12 in double, 0.0005 in float.
+ * Of p it reads joint_stiffness and rotor_inertia and position_gain.
+ * 1147 operations, 14 sines and cosines. Error: 1e-12 in double, 0.0006 in float.
  */
 int panda_chain(
     const panda_real q[7],
@@ -169,7 +189,7 @@ typedef struct {
 /*
  * Generalised impact factors.
  * Of p it reads rotor_inertia.
- * 1174 operations, 12 sines and cosines. Error: 1e-12 in double, 4e-06 in float.
+ * 1174 operations, 12 sines and cosines. Error: 1e-12 in double, 3e-06 in float.
  */
 int panda_giaf(const panda_real q[7], const panda_params *p, panda_giaf_t *out);
 
@@ -195,7 +215,7 @@ typedef struct {
 /*
  * Directions of least and greatest absorption, base axes (GIAF Eq. 29).
  * Of p it reads rotor_inertia.
- * 1882 operations, 14 sines and cosines. Error: 1e-12 in double, 8e-05 in float.
+ * 1882 operations, 14 sines and cosines. Error: 1e-12 in double, 6e-05 in float.
  */
 int panda_absorption_extremes(
     const panda_real q[7],
@@ -216,7 +236,7 @@ int panda_manipulability(const panda_real q[7], panda_manipulability_t *out);
 /*
  * Force measure 1/omega_m (GIAF Eq. 3).
  * omega_f: rad^3/m^3.
- * 296 operations, 12 sines and cosines. Error: 1e-12 in double, 8e-06 in float.
+ * 296 operations, 12 sines and cosines. Error: 1e-12 in double, 7e-06 in float.
  */
 int panda_force_measure(const panda_real q[7], panda_real *omega_f);
 
@@ -228,7 +248,7 @@ typedef struct {
 /*
  * Dynamic impact measure and the matrix of its ellipsoid, with rotors (GIAF Eq. 15).
  * Of p it reads rotor_inertia.
- * 1122 operations, 14 sines and cosines. Error: 1e-12 in double, 9e-05 in float.
+ * 1122 operations, 14 sines and cosines. Error: 1e-12 in double, 0.0001 in float.
  */
 int panda_impact_measure(const panda_real q[7], const panda_params *p, panda_impact_measure_t *out);
 
@@ -240,7 +260,7 @@ typedef struct {
 /*
  * What each rotor and gear does to the absorption factor (GIAF III).
  * Of p it reads rotor_inertia.
- * 1530 operations, 14 sines and cosines. Error: 1e-12 in double, 8e-05 in float.
+ * 1530 operations, 14 sines and cosines. Error: 1e-12 in double, 9e-05 in float.
  */
 int panda_rotor_influence(
     const panda_real q[7],
@@ -268,7 +288,7 @@ typedef struct {
  * restitution: dimensionless, from 0 to 1; e: 0 no rebound, 1 elastic.
  * other_mobility: 1/kg, >= 0; 1/mass of what is hit; 0 if it is held.
  * Of p it reads rotor_inertia.
- * 696 operations, 14 sines and cosines. Error: 1e-12 in double, 6e-06 in float.
+ * 696 operations, 14 sines and cosines. Error: 1e-12 in double, 5e-06 in float.
  */
 int panda_joint_impulse(
     const panda_real q[7],
@@ -311,53 +331,49 @@ typedef enum {
  */
 int panda_body_region(int part, int clamped, panda_region *region);
 
-/*
- * Masses of the chain that stands for the robot in impacts. Against the whole linear robot its
- * peak forces are off by 0.0009 on average over random impacts, in 95 of 100 by less than
- * PANDA_IMPACT_MARGIN, at worst by PANDA_IMPACT_WORST. A limit multiplied by 1 minus either is kept
- * for as many of them; what the linear robot leaves out of the real one comes on top.
- */
-#define PANDA_IMPACT_CHAIN_ORDER 7
-#define PANDA_IMPACT_MARGIN 0.0008
-#define PANDA_IMPACT_WORST 0.07
+#define PANDA_POINTS 1 /* contact points: hand_tcp */
 
 typedef struct {
-    panda_real force; /* N; largest contact force until separation */
+    panda_real force; /* N; largest contact force up to the horizon */
     panda_real time;  /* s; of it since first touch */
 } panda_peak_force_t;
 
 /*
- * Peak force of the first contact with a body region.
+ * Largest force over all contacts with a body region, from first touch to p->horizon.
  * speed: m/s, > 0; of the contact point along n. Joints arrive with the velocities of least norm
- * that move it along n alone; springs are at rest. Where all gains are 0 the motors are free.
- * Bounded: 1024 steps. Integration error: 0.001 in double, 0.001 in float.
+ * that move it along n alone; springs are at rest. Motors do as p->motors and p->reaction_time say.
+ * Error: 0.002 in double and in float. PANDA_BOUNDED: the force is a bound that none exceeds.
  */
-int panda_peak_force(
-    const panda_real q[7],
-    const panda_real n[3],
-    panda_real speed,
-    const panda_region *region,
-    const panda_params *p,
-    panda_peak_force_t *out);
+int panda_peak_force(const panda_real q[PANDA_JOINTS], const panda_real n[3], panda_real speed,
+    const panda_region *region, const panda_params *p, panda_peak_force_t *out);
 
 typedef struct {
     panda_real speed; /* m/s */
-    panda_real force; /* N; peak force at about this speed, below the limit */
+    panda_real force; /* N; largest at this speed, below the limit */
 } panda_safe_speed_t;
 
 /*
- * Largest speed along n at which the peak force of the first contact stays below a limit.
- * limit: N, > 0. The force at the speed found is 0.2 % below the limit, or 0.4 % where contact
- * lasts for many vibrations, unless the peak jumps there with speed; then the speed is just below.
- * Bounded: 16 impacts of 1024 steps; two do.
+ * Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the speed
+ * that is returned is 0.25 to 2 % below the limit, or jumps over it with little more speed.
+ * limit: N, > 0. PANDA_BOUNDED: the speed is safe, but slower ones only were looked at, or none.
  */
-int panda_safe_speed(
-    const panda_real q[7],
-    const panda_real n[3],
-    panda_real limit,
-    const panda_region *region,
-    const panda_params *p,
-    panda_safe_speed_t *out);
+int panda_safe_speed(const panda_real q[PANDA_JOINTS], const panda_real n[3], panda_real limit,
+    const panda_region *region, const panda_params *p, panda_safe_speed_t *out);
+
+typedef struct {
+    panda_real factor; /* of all joint velocities, 0 to 1 */
+    int point; /* contact point that needs it, -1 if none moves */
+    panda_real speed; /* m/s; that this point may have */
+    panda_real force; /* N; largest at that speed */
+} panda_speed_factor_t;
+
+/*
+ * By how much to slow down the present motion so that no contact point exceeds a limit, each hitting in
+ * the direction in which it moves. One call a control cycle.
+ * dq: joint velocities. limit: N, > 0. PANDA_BOUNDED: as for panda_safe_speed.
+ */
+int panda_speed_factor(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    panda_real limit, const panda_region *region, const panda_params *p, panda_speed_factor_t *out);
 
 /*
  * Built-in candidates for panda_select_configuration:
@@ -403,17 +419,11 @@ typedef struct {
  * allowed: `count` entries, 0 for poses to be left out (out of reach, in collision); NULL allows all.
  * Poses that are singular or not resolved are left out too; if none is left, PANDA_SINGULAR.
  * Anything else that is wrong with an input is returned as panda_peak_force returns it.
- * A margin of less than 2 PANDA_IMPACT_MARGIN of the force is none: the chain cannot tell.
+ * A margin of less than 0.004 of the force is none.
  */
-int panda_select_configuration(
-    const panda_real poses[][7],
-    int count,
-    const unsigned char *allowed,
-    const panda_real n[3],
-    panda_real speed,
-    const panda_region *region,
-    const panda_params *p,
-    panda_selection_t *out);
+int panda_select_configuration(const panda_real poses[][PANDA_JOINTS], int count,
+    const unsigned char *allowed, const panda_real n[3], panda_real speed, const panda_region *region,
+    const panda_params *p, panda_selection_t *out);
 
 #ifdef __cplusplus
 }

@@ -18,10 +18,12 @@
 #define PANDA_R(x) x##f
 #define PANDA_F(function) function##f
 #define PANDA_REAL_MAX FLT_MAX
+#define PANDA_EPSILON FLT_EPSILON
 #else
 #define PANDA_R(x) x
 #define PANDA_F(function) function
 #define PANDA_REAL_MAX DBL_MAX
+#define PANDA_EPSILON DBL_EPSILON
 #endif
 
 #define PANDA_SIN(x) PANDA_F(sin)(x)
@@ -120,5 +122,34 @@ static inline int panda_unit_vector(const panda_real n[3], panda_real u[3])
     u[2] = z*scale;
     return PANDA_OK;
 }
+
+/* What the impacts' runtime knows of this robot. */
+#define PANDA_N 7 /* independent joints */
+#define PANDA_ELASTIC 1 /* a spring behind every motor */
+#define PANDA_POTENTIAL 0 /* gravity, or springs of the model file */
+#define PANDA_STRUCTURED (PANDA_ELASTIC && !PANDA_POTENTIAL)
+#define PANDA_REACH 3 /* directions in which motors move contact points */
+#define PANDA_FASTEST PANDA_R(27000.0) /* squared joint velocity for 1 m/s: singular */
+#define PANDA_LEAST_MOBILITY PANDA_R(5.88e-05) /* 1/kg; below: singular */
+
+typedef struct {
+    panda_real M[7][7]; /* kg m^2; over the joints */
+    panda_real J[3][7]; /* m/rad; three rows a contact point, base axes */
+} panda_links_t;
+
+/* Links as they arrive at an impact. */
+int panda_links(const panda_real q[7], panda_links_t *out);
+
+extern const panda_real panda_directions[PANDA_REACH][3];
+extern const bool panda_has_motor[PANDA_N];
+
+#define PANDA_INDEPENDENT(i) (i)
+#define PANDA_SPRING(p, i) ((p)->joint_stiffness[PANDA_INDEPENDENT(i)])
+#define PANDA_ROTOR(p, i) ((p)->rotor_inertia[PANDA_INDEPENDENT(i)])
+#define PANDA_GAIN(p, i) (panda_has_motor[i] ? (p)->position_gain[PANDA_INDEPENDENT(i)] : PANDA_R(0.0))
+#define PANDA_DAMPING_GAIN(p, i) (panda_has_motor[i] ? (p)->damping_gain[PANDA_INDEPENDENT(i)] : PANDA_R(0.0))
+#define PANDA_REACTION_TIME(p) ((p)->reaction_time)
+#define PANDA_HORIZON(p) ((p)->horizon)
+#define PANDA_LINKS_OF(q, p) q
 
 #endif

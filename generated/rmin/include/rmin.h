@@ -9,7 +9,7 @@
  *   - takes joint coordinates q of the links in the order
  *     q11, q12, q13, q21, q22, q23;
  *   - takes the direction of impact n at any length but zero, where it has one;
- *   - returns RMIN_OK or another status, and then has written nothing;
+ *   - returns RMIN_OK or another status, and then has written nothing (but for RMIN_BOUNDED);
  *   - refuses inputs that are not finite or outside the ranges stated here, but knows no joint limits;
  *   - never writes a number that is not finite;
  *   - holds no state, allocates nothing and may be called from any thread.
@@ -52,16 +52,34 @@ typedef enum {
     RMIN_LOOP_OPEN = 6,      /* the joint coordinates do not close the chain (closed chains) */
     RMIN_NO_EQUILIBRIUM = 7, /* Newton's method found no stable rest at these motor angles
                                 (closed chains) */
-    RMIN_UNRESOLVED = 8      /* an impact that does not end, or a speed that is not found, within
-                                the bounded number of steps */
+    RMIN_UNRESOLVED = 8,     /* the budget of steps is used up, and no bound is known */
+    RMIN_BOUNDED = 9         /* the budget of steps is used up; what was written is a bound on the
+                                safe side */
 } rmin_status;
 
 /* Text of a status, in English; never NULL. */
 const char *rmin_status_text(int status);
 
+/*
+ * What motors do from first touch until reaction_time; then they are released. Free ones turn with
+ * what pulls on them, driven ones keep their speed whatever pulls, servos follow a reference that moves on,
+ * by position_gain and damping_gain. Where that is not known the worse of free and driven is taken.
+ */
+typedef enum {
+    RMIN_MOTORS_FREE_OR_DRIVEN = 0,
+    RMIN_MOTORS_FREE = 1,
+    RMIN_MOTORS_DRIVEN = 2,
+    RMIN_MOTORS_SERVO = 3
+} rmin_motors;
+
 typedef struct {
     rmin_real rotor_inertia[6]; /* kg m^2, >= 0; rotor inertia, reflected to the joint; may be 0 */
     rmin_real position_gain[6]; /* N m/rad, >= 0; proportional gain of the motor's controller */
+    rmin_real damping_gain[6]; /* N m s/rad, >= 0; gain of the same on the motor's rate */
+    rmin_real reaction_time; /* s, >= 0; from first touch until motors are released */
+    rmin_real horizon; /* s, > 0; forces count until then */
+    int motors; /* rmin_motors */
+    int steps; /* > 0; budget of a call of peak_force, safe_speed or speed_factor */
 } rmin_params;
 
 /*
@@ -137,6 +155,7 @@ typedef struct {
 
 /*
  * Two masses and a spring that stand for the robot along n (MSM Eq. 36-38).
+ * Of p it reads rotor_inertia and position_gain.
  * 998 operations, 12 sines and cosines. Error: 1e-12 in double, 7e-05 in float.
  */
 int rmin_reduced_model(
@@ -152,6 +171,7 @@ typedef struct {
 
 /*
  * Chain of 3 masses that stands for the robot along n.
+ * Of p it reads rotor_inertia and position_gain.
  * 987 operations, 12 sines and cosines. Error: 1e-12 in double, 0.0003 in float.
  */
 int rmin_chain(const rmin_real q[6], const rmin_real n[3], const rmin_params *p, rmin_chain_t *out);
@@ -188,53 +208,49 @@ typedef enum {
  */
 int rmin_body_region(int part, int clamped, rmin_region *region);
 
-/*
- * Masses of the chain that stands for the robot in impacts. Against the whole linear robot its
- * peak forces are off by 0.0002 on average over random impacts, in 95 of 100 by less than
- * RMIN_IMPACT_MARGIN, at worst by RMIN_IMPACT_WORST. A limit multiplied by 1 minus either is kept
- * for as many of them; what the linear robot leaves out of the real one comes on top.
- */
-#define RMIN_IMPACT_CHAIN_ORDER 3
-#define RMIN_IMPACT_MARGIN 0.0002
-#define RMIN_IMPACT_WORST 0.02
+#define RMIN_POINTS 1 /* contact points: P */
 
 typedef struct {
-    rmin_real force; /* N; largest contact force until separation */
+    rmin_real force; /* N; largest contact force up to the horizon */
     rmin_real time;  /* s; of it since first touch */
 } rmin_peak_force_t;
 
 /*
- * Peak force of the first contact with a body region.
+ * Largest force over all contacts with a body region, from first touch to p->horizon.
  * speed: m/s, > 0; of the contact point along n. Motors arrive with the velocities of least norm
- * that move it along n alone; springs are at rest. Where all gains are 0 the motors are free.
- * Bounded: 1024 steps. Integration error: 0.001 in double, 0.001 in float.
+ * that move it along n alone; springs are at rest. Motors do as p->motors and p->reaction_time say.
+ * Error: 0.002 in double and in float. RMIN_BOUNDED: the force is a bound that none exceeds.
  */
-int rmin_peak_force(
-    const rmin_real q[6],
-    const rmin_real n[3],
-    rmin_real speed,
-    const rmin_region *region,
-    const rmin_params *p,
-    rmin_peak_force_t *out);
+int rmin_peak_force(const rmin_real q[RMIN_JOINTS], const rmin_real n[3], rmin_real speed,
+    const rmin_region *region, const rmin_params *p, rmin_peak_force_t *out);
 
 typedef struct {
     rmin_real speed; /* m/s */
-    rmin_real force; /* N; peak force at about this speed, below the limit */
+    rmin_real force; /* N; largest at this speed, below the limit */
 } rmin_safe_speed_t;
 
 /*
- * Largest speed along n at which the peak force of the first contact stays below a limit.
- * limit: N, > 0. The force at the speed found is 0.2 % below the limit, or 0.4 % where contact
- * lasts for many vibrations, unless the peak jumps there with speed; then the speed is just below.
- * Bounded: 16 impacts of 1024 steps; two do.
+ * Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the speed
+ * that is returned is 0.25 to 2 % below the limit, or jumps over it with little more speed.
+ * limit: N, > 0. RMIN_BOUNDED: the speed is safe, but slower ones only were looked at, or none.
  */
-int rmin_safe_speed(
-    const rmin_real q[6],
-    const rmin_real n[3],
-    rmin_real limit,
-    const rmin_region *region,
-    const rmin_params *p,
-    rmin_safe_speed_t *out);
+int rmin_safe_speed(const rmin_real q[RMIN_JOINTS], const rmin_real n[3], rmin_real limit,
+    const rmin_region *region, const rmin_params *p, rmin_safe_speed_t *out);
+
+typedef struct {
+    rmin_real factor; /* of all joint velocities, 0 to 1 */
+    int point; /* contact point that needs it, -1 if none moves */
+    rmin_real speed; /* m/s; that this point may have */
+    rmin_real force; /* N; largest at that speed */
+} rmin_speed_factor_t;
+
+/*
+ * By how much to slow down the present motion so that no contact point exceeds a limit, each hitting in
+ * the direction in which it moves. One call a control cycle.
+ * dq: joint velocities. limit: N, > 0. RMIN_BOUNDED: as for rmin_safe_speed.
+ */
+int rmin_speed_factor(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
+    rmin_real limit, const rmin_region *region, const rmin_params *p, rmin_speed_factor_t *out);
 
 typedef struct {
     int best;    /* row of the pose with the least peak force; the first of equals */
@@ -250,17 +266,11 @@ typedef struct {
  * allowed: `count` entries, 0 for poses to be left out (out of reach, in collision); NULL allows all.
  * Poses that are singular or not resolved are left out too; if none is left, RMIN_SINGULAR.
  * Anything else that is wrong with an input is returned as rmin_peak_force returns it.
- * A margin of less than 2 RMIN_IMPACT_MARGIN of the force is none: the chain cannot tell.
+ * A margin of less than 0.004 of the force is none.
  */
-int rmin_select_configuration(
-    const rmin_real poses[][6],
-    int count,
-    const unsigned char *allowed,
-    const rmin_real n[3],
-    rmin_real speed,
-    const rmin_region *region,
-    const rmin_params *p,
-    rmin_selection_t *out);
+int rmin_select_configuration(const rmin_real poses[][RMIN_JOINTS], int count,
+    const unsigned char *allowed, const rmin_real n[3], rmin_real speed, const rmin_region *region,
+    const rmin_params *p, rmin_selection_t *out);
 
 #ifdef __cplusplus
 }

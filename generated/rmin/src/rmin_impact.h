@@ -1,81 +1,164 @@
 /* SPDX-License-Identifier: 0BSD */
-/* What peak_force and safe_speed of rmin share; not for their users. */
+/*
+ * An impact of rmin_ on a part of the body; not for its users.
+ *
+ * The robot is a sum of modes that only meet in the contact force. While motors drive (or servo) the
+ * modes are those of links whose motors do; once motors are released they are those of links, springs
+ * and rotors. Each mode's step is exact for a force that is linear over the step.
+ * README.md of the package and docs/impacts-in-c.md of softimpact derive all of it.
+ */
 #ifndef RMIN_IMPACT_H
 #define RMIN_IMPACT_H
 
 #include "rmin_internal.h"
 
-#define RMIN_MASSES RMIN_IMPACT_CHAIN_ORDER
-#define RMIN_MODES (2*((RMIN_MASSES + 2)/2)) /* one for a body that gives way; even */
-#define RMIN_LEVELS 3
+#if RMIN_ELASTIC
+#define RMIN_SYSTEM (2*RMIN_N) /* links, then motors */
+#else
+#define RMIN_SYSTEM RMIN_N
+#endif
+#define RMIN_MODES (RMIN_SYSTEM + 1) /* one for a body that gives way */
+#define RMIN_LEVELS 7 /* lengths of steps, each half the one before */
 
+/* The robot about to touch at one of its points, along n. */
 typedef struct {
-    rmin_real mass[3]; /* kg; the contact force acts on the first */
-    rmin_real stiffness[3]; /* N/m; to the next, last to ground */
-    rmin_real velocity[3]; /* m/s; at first touch, for an approach of 1 m/s */
-} rmin_impact_chain_t;
+    rmin_links_t links;
+    rmin_real row[RMIN_N];   /* n'J */
+    rmin_real rates[RMIN_N]; /* joint velocities for an approach of 1 m/s */
+} rmin_arrival;
 
-/* Chain of 3 masses as it arrives at an impact; it may end before its last. */
-int rmin_impact_chain(
-    const rmin_real q[6],
-    const rmin_real n[3],
-    const rmin_params *p,
-    rmin_impact_chain_t *out);
-
-/* A mode's step h: 2 - 2 cos(omega h), and what the force at the node does. */
+/* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
 typedef struct {
-    rmin_real kappa;
-    rmin_real middle;
+    int count;
+    rmin_real squared[RMIN_MODES]; /* frequency, 1/s^2 */
+    rmin_real row[RMIN_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
+    rmin_real start[RMIN_MODES]; /* rates at first touch of an approach of 1 m/s */
+    rmin_real shape[RMIN_SYSTEM][RMIN_MODES];
+} rmin_modes;
+
+/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+typedef struct {
+    rmin_real cosine, sine; /* cos(wh), sin(wh)/w */
+    rmin_real back; /* -w sin(wh) */
+    rmin_real push[2]; /* on the amplitude, of the forces at start and end */
+    rmin_real kick[2]; /* on the rate */
 } rmin_mode_step;
 
-/* Steps of one length, of all modes and of the node between skin and body. */
+/* Steps of one length. */
 typedef struct {
-    rmin_real h;         /* step, s */
-    rmin_real rate;      /* the body's damping over it, N/m */
-    rmin_real soft;      /* what a force moves at once by the modes, m/N */
-    rmin_real hold[2];   /* compliance of the body for the two backward differences */
+    rmin_real h; /* s */
+    rmin_real relax; /* what is left of the body's own deflection after a step out of contact */
+    rmin_real push[2]; /* on the contact point */
+    rmin_real kick[2];
     rmin_mode_step mode[RMIN_MODES];
-    rmin_real edge[RMIN_MODES]; /* what forces at both ends do */
 } rmin_level;
 
-/*
- * Robot and body as modes that only meet in the contact force, ready to be stepped. All numbers
- * are for an approach of 1 m/s; spacing doubles from one level to the next.
- */
+/* A time in which the motors follow one law. */
 typedef struct {
-    int modes; /* an even number */
-    rmin_real stiffness; /* k_h */
-    rmin_real damping; /* c_h */
-    rmin_real skin; /* k_f */
+    rmin_modes modes; /* the first `active` ones move, the others stand, bent by the force */
+    int active;
+    rmin_real compliance; /* of those that stand, m/N */
+    rmin_real drift; /* velocity of the contact point that motors keep up, over the speed */
+    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
+    rmin_real damping[RMIN_N];
+    int steps; /* of the longest level until the time is over */
+    rmin_level level[RMIN_LEVELS];
+} rmin_phase;
+
+/* Everything that does not depend on the speed. */
+typedef struct {
+    rmin_arrival arrival;
+    rmin_real stiffness, damping, skin; /* k_h, c_h, k_f */
+    bool gives_way;
     rmin_real mobility; /* of the contact, 1/kg */
-    rmin_real compliance; /* of modes that stand, m/N */
-    rmin_real rate2; /* of the contact point's vibration, squared, 1/s^2 */
-    rmin_real fastest; /* squared frequency, 1/s^2 */
-    rmin_real squared[RMIN_MODES]; /* frequency, 1/s^2 */
-    rmin_real weight[RMIN_MODES]; /* share of the mobility */
-    rmin_real velocity[RMIN_MODES]; /* share of the velocity at first touch */
-    rmin_real start[RMIN_MODES]; /* displacement at the first node */
-    rmin_real start_edge[RMIN_MODES]; /* share of the force there */
-    rmin_level level[RMIN_LEVELS + 1];
+    rmin_real scale; /* of forces, N: what bends are measured by */
+    rmin_real smooth; /* 1, or less where the damper makes forces jump */
+    int phases; /* one, or two where motors are released */
+    rmin_phase phase[2];
+#if RMIN_ELASTIC
+    rmin_real springs[RMIN_N]; /* k_s */
+    rmin_real rotors[RMIN_N]; /* B */
+#endif
+    rmin_real carried[RMIN_N]; /* what deflections move of the contact point, rotors being free */
+    rmin_real bound; /* no force is larger than this times the speed, N s/m; 0: no bound */
 } rmin_impact;
 
-/* Prepares the impacts of a configuration, but for their steps; checks everything but the speed. */
-int rmin_impact_prepare(const rmin_real q[6], const rmin_real n[3],
-    const rmin_region *region, const rmin_params *p, rmin_impact *impact);
-
-/* Chooses the steps; `rough` ones are about twice as long. */
-void rmin_impact_steps(rmin_impact *impact, bool rough);
-
-/* Largest force of an impact. */
+/* What may be spent, and how exactly. */
 typedef struct {
-    rmin_real force; /* N */
-    rmin_real time; /* since first touch, s */
-    rmin_real until; /* as long as forces of impacts at about this speed may be the largest, s */
-    int nodes; /* it took */
-} rmin_impact_peak;
+    int steps; /* that are left */
+    bool rough; /* steps twice as long do */
+    rmin_real stop_above; /* force after whose passing the rest does not matter, N */
+} rmin_budget;
 
-/* Integrates one impact until robot and body part, or to a time after which the force is small. */
-int rmin_impact_run(const rmin_impact *impact, rmin_real speed, rmin_real until,
-    rmin_impact_peak *out);
+typedef struct {
+    rmin_real force; /* largest, N */
+    rmin_real time; /* of it since first touch, s */
+    int contact; /* in which contact, the first is 1 */
+    int contacts; /* how many there were */
+    bool ended; /* within the budget */
+} rmin_peak;
+
+/* Checks what says who hits whom, and how, but for the robot's own numbers. */
+int rmin_check_impact(const rmin_region *region, const rmin_params *p);
+
+/* The contact point's row along n, and the joint velocities of least norm that move it along n. */
+int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival);
+
+/*
+ * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about
+ * a size (or, if that is negative, for a speed of its size).
+ */
+int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int motors,
+    rmin_real force, rmin_impact *impact);
+
+/* No force is larger than this times the speed, N s/m; 0 where none is known. */
+rmin_real rmin_bound(const rmin_params *p, int motors, const rmin_impact *impact);
+
+/* Least and largest kind of motors that parameters stand for: two for the bracket. */
+void rmin_kinds_of_motors(const rmin_params *p, int *first, int *last);
+
+/* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
+rmin_real rmin_two_body_force(const rmin_region *region, rmin_real mobility, rmin_real speed);
+rmin_real rmin_two_body_speed(const rmin_region *region, rmin_real mobility, rmin_real force);
+
+/*
+ * Largest speed, at most `cap` where that is positive, up to which an impact keeps a limit: OK,
+ * BOUNDED or another status.
+ */
+int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real limit,
+    rmin_real cap, rmin_impact *impact, rmin_safe_speed_t *found);
+
+/* Largest force over all contacts of an impact at a speed. */
+void rmin_impact_run(const rmin_impact *impact, rmin_real speed, rmin_budget *budget,
+    rmin_peak *peak);
+
+/* Modes of links whose motors follow `motors`, and of released ones; 0 or a status. */
+int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
+    rmin_real *drift);
+int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
+    rmin_real *drift);
+int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
+    rmin_real carried[RMIN_N]);
+
+/*
+ * Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`; one in which
+ * motors have just been `released` starts with modes that swing.
+ */
+void rmin_phase_steps(const rmin_region *region, rmin_real mobility, rmin_real skin_rate,
+    rmin_real time, bool released, rmin_phase *phase);
+
+/* Linear algebra on matrices of up to RMIN_SYSTEM rows. */
+typedef rmin_real rmin_matrix[RMIN_SYSTEM][RMIN_SYSTEM];
+
+/* L of A = L L' in place, below and on the diagonal; false unless A is positive definite. */
+bool rmin_cholesky(int size, rmin_matrix A);
+/* x = L^-1 x and x = L^-T x. */
+void rmin_forward(int size, rmin_matrix L, rmin_real *x);
+void rmin_backward(int size, rmin_matrix L, rmin_real *x);
+/*
+ * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
+ * below `noise` count as none. False if that does not end.
+ */
+bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X, rmin_real noise);
 
 #endif

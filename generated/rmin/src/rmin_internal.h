@@ -18,10 +18,12 @@
 #define RMIN_R(x) x##f
 #define RMIN_F(function) function##f
 #define RMIN_REAL_MAX FLT_MAX
+#define RMIN_EPSILON FLT_EPSILON
 #else
 #define RMIN_R(x) x
 #define RMIN_F(function) function
 #define RMIN_REAL_MAX DBL_MAX
+#define RMIN_EPSILON DBL_EPSILON
 #endif
 
 #define RMIN_SIN(x) RMIN_F(sin)(x)
@@ -120,5 +122,34 @@ static inline int rmin_unit_vector(const rmin_real n[3], rmin_real u[3])
     u[2] = z*scale;
     return RMIN_OK;
 }
+
+/* What the impacts' runtime knows of this robot. */
+#define RMIN_N 4 /* independent joints */
+#define RMIN_ELASTIC 0 /* a spring behind every motor */
+#define RMIN_POTENTIAL 1 /* gravity, or springs of the model file */
+#define RMIN_STRUCTURED (RMIN_ELASTIC && !RMIN_POTENTIAL)
+#define RMIN_REACH 2 /* directions in which motors move contact points */
+#define RMIN_FASTEST RMIN_R(110000.0) /* squared joint velocity for 1 m/s: singular */
+#define RMIN_LEAST_MOBILITY RMIN_R(6.67e-05) /* 1/kg; below: singular */
+
+typedef struct {
+    rmin_real M[4][4]; /* kg m^2; over the joints */
+    rmin_real K[4][4]; /* N m/rad; of springs and gravity */
+    rmin_real J[3][4]; /* m/rad; three rows a contact point, base axes */
+} rmin_links_t;
+
+/* Links as they arrive at an impact. */
+int rmin_links(const rmin_real q[6], const rmin_params *p, rmin_links_t *out);
+
+extern const rmin_real rmin_directions[RMIN_REACH][3];
+extern const bool rmin_has_motor[RMIN_N];
+extern const int rmin_independent[RMIN_N];
+
+#define RMIN_INDEPENDENT(i) (rmin_independent[i])
+#define RMIN_GAIN(p, i) (rmin_has_motor[i] ? (p)->position_gain[RMIN_INDEPENDENT(i)] : RMIN_R(0.0))
+#define RMIN_DAMPING_GAIN(p, i) (rmin_has_motor[i] ? (p)->damping_gain[RMIN_INDEPENDENT(i)] : RMIN_R(0.0))
+#define RMIN_REACTION_TIME(p) ((p)->reaction_time)
+#define RMIN_HORIZON(p) ((p)->horizon)
+#define RMIN_LINKS_OF(q, p) q, p
 
 #endif

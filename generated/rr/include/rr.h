@@ -9,7 +9,7 @@
  *   - takes joint coordinates q of the links in the order
  *     q1, q2, q3, q4;
  *   - takes the direction of impact n at any length but zero, where it has one;
- *   - returns RR_OK or another status, and then has written nothing;
+ *   - returns RR_OK or another status, and then has written nothing (but for RR_BOUNDED);
  *   - refuses inputs that are not finite or outside the ranges stated here, but knows no joint limits;
  *   - never writes a number that is not finite;
  *   - holds no state, allocates nothing and may be called from any thread.
@@ -50,16 +50,34 @@ typedef enum {
     RR_LOOP_OPEN = 6,      /* the joint coordinates do not close the chain (closed chains) */
     RR_NO_EQUILIBRIUM = 7, /* Newton's method found no stable rest at these motor angles
                                 (closed chains) */
-    RR_UNRESOLVED = 8      /* an impact that does not end, or a speed that is not found, within
-                                the bounded number of steps */
+    RR_UNRESOLVED = 8,     /* the budget of steps is used up, and no bound is known */
+    RR_BOUNDED = 9         /* the budget of steps is used up; what was written is a bound on the
+                                safe side */
 } rr_status;
 
 /* Text of a status, in English; never NULL. */
 const char *rr_status_text(int status);
 
+/*
+ * What motors do from first touch until reaction_time; then they are released. Free ones turn with
+ * what pulls on them, driven ones keep their speed whatever pulls, servos follow a reference that moves on,
+ * by position_gain and damping_gain. Where that is not known the worse of free and driven is taken.
+ */
+typedef enum {
+    RR_MOTORS_FREE_OR_DRIVEN = 0,
+    RR_MOTORS_FREE = 1,
+    RR_MOTORS_DRIVEN = 2,
+    RR_MOTORS_SERVO = 3
+} rr_motors;
+
 typedef struct {
     rr_real rotor_inertia[4]; /* kg m^2, >= 0; rotor inertia, reflected to the joint; may be 0 */
     rr_real position_gain[4]; /* N m/rad, >= 0; proportional gain of the motor's controller */
+    rr_real damping_gain[4]; /* N m s/rad, >= 0; gain of the same on the motor's rate */
+    rr_real reaction_time; /* s, >= 0; from first touch until motors are released */
+    rr_real horizon; /* s, > 0; forces count until then */
+    int motors; /* rr_motors */
+    int steps; /* > 0; budget of a call of peak_force, safe_speed or speed_factor */
 } rr_params;
 
 /*
@@ -100,7 +118,7 @@ int rr_stiffness_matrix(const rr_real q[4], const rr_params *p, rr_real K0[4][4]
 /*
  * Row J_c = n'J over the generalised coordinates (MSM Eq. 4).
  * J_c: m/rad.
- * 24 operations, 8 sines and cosines. Error: 1e-12 in double, 5e-06 in float.
+ * 24 operations, 8 sines and cosines. Error: 1e-12 in double, 7e-06 in float.
  */
 int rr_contact_jacobian(const rr_real q[4], const rr_real n[3], rr_real J_c[4]);
 
@@ -108,7 +126,7 @@ int rr_contact_jacobian(const rr_real q[4], const rr_real n[3], rr_real J_c[4]);
  * Mass m_c that the contact point feels along n (MSM Eq. 36).
  * m_c: kg; mass felt at the contact point.
  * Of p it reads rotor_inertia.
- * 92 operations, 8 sines and cosines. Error: 1e-12 in double, 8e-06 in float.
+ * 92 operations, 8 sines and cosines. Error: 1e-12 in double, 9e-06 in float.
  */
 int rr_reflected_mass(const rr_real q[4], const rr_real n[3], const rr_params *p, rr_real *m_c);
 
@@ -120,6 +138,7 @@ typedef struct {
 
 /*
  * Two masses and a spring that stand for the robot along n (MSM Eq. 36-38).
+ * Of p it reads rotor_inertia and position_gain.
  * 235 operations, 8 sines and cosines. Error: 1e-12 in double, 2e-05 in float.
  */
 int rr_reduced_model(
@@ -135,6 +154,7 @@ typedef struct {
 
 /*
  * Chain of 3 masses that stands for the robot along n.
+ * Of p it reads rotor_inertia and position_gain.
  * 255 operations, 8 sines and cosines. Error: 1e-12 in double, 0.0003 in float.
  */
 int rr_chain(const rr_real q[4], const rr_real n[3], const rr_params *p, rr_chain_t *out);
@@ -195,53 +215,49 @@ typedef enum {
  */
 int rr_body_region(int part, int clamped, rr_region *region);
 
-/*
- * Masses of the chain that stands for the robot in impacts. Against the whole linear robot its
- * peak forces are off by 7e-05 on average over random impacts, in 95 of 100 by less than
- * RR_IMPACT_MARGIN, at worst by RR_IMPACT_WORST. A limit multiplied by 1 minus either is kept
- * for as many of them; what the linear robot leaves out of the real one comes on top.
- */
-#define RR_IMPACT_CHAIN_ORDER 4
-#define RR_IMPACT_MARGIN 0.0002
-#define RR_IMPACT_WORST 0.0003
+#define RR_POINTS 1 /* contact points: P */
 
 typedef struct {
-    rr_real force; /* N; largest contact force until separation */
+    rr_real force; /* N; largest contact force up to the horizon */
     rr_real time;  /* s; of it since first touch */
 } rr_peak_force_t;
 
 /*
- * Peak force of the first contact with a body region.
+ * Largest force over all contacts with a body region, from first touch to p->horizon.
  * speed: m/s, > 0; of the contact point along n. Joints arrive with the velocities of least norm
- * that move it along n alone; springs are at rest. Where all gains are 0 the motors are free.
- * Bounded: 1024 steps. Integration error: 0.001 in double, 0.001 in float.
+ * that move it along n alone; springs are at rest. Motors do as p->motors and p->reaction_time say.
+ * Error: 0.002 in double and in float. RR_BOUNDED: the force is a bound that none exceeds.
  */
-int rr_peak_force(
-    const rr_real q[4],
-    const rr_real n[3],
-    rr_real speed,
-    const rr_region *region,
-    const rr_params *p,
-    rr_peak_force_t *out);
+int rr_peak_force(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real speed,
+    const rr_region *region, const rr_params *p, rr_peak_force_t *out);
 
 typedef struct {
     rr_real speed; /* m/s */
-    rr_real force; /* N; peak force at about this speed, below the limit */
+    rr_real force; /* N; largest at this speed, below the limit */
 } rr_safe_speed_t;
 
 /*
- * Largest speed along n at which the peak force of the first contact stays below a limit.
- * limit: N, > 0. The force at the speed found is 0.2 % below the limit, or 0.4 % where contact
- * lasts for many vibrations, unless the peak jumps there with speed; then the speed is just below.
- * Bounded: 16 impacts of 1024 steps; two do.
+ * Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the speed
+ * that is returned is 0.25 to 2 % below the limit, or jumps over it with little more speed.
+ * limit: N, > 0. RR_BOUNDED: the speed is safe, but slower ones only were looked at, or none.
  */
-int rr_safe_speed(
-    const rr_real q[4],
-    const rr_real n[3],
-    rr_real limit,
-    const rr_region *region,
-    const rr_params *p,
-    rr_safe_speed_t *out);
+int rr_safe_speed(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real limit,
+    const rr_region *region, const rr_params *p, rr_safe_speed_t *out);
+
+typedef struct {
+    rr_real factor; /* of all joint velocities, 0 to 1 */
+    int point; /* contact point that needs it, -1 if none moves */
+    rr_real speed; /* m/s; that this point may have */
+    rr_real force; /* N; largest at that speed */
+} rr_speed_factor_t;
+
+/*
+ * By how much to slow down the present motion so that no contact point exceeds a limit, each hitting in
+ * the direction in which it moves. One call a control cycle.
+ * dq: joint velocities. limit: N, > 0. RR_BOUNDED: as for rr_safe_speed.
+ */
+int rr_speed_factor(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    rr_real limit, const rr_region *region, const rr_params *p, rr_speed_factor_t *out);
 
 typedef struct {
     int best;    /* row of the pose with the least peak force; the first of equals */
@@ -257,17 +273,11 @@ typedef struct {
  * allowed: `count` entries, 0 for poses to be left out (out of reach, in collision); NULL allows all.
  * Poses that are singular or not resolved are left out too; if none is left, RR_SINGULAR.
  * Anything else that is wrong with an input is returned as rr_peak_force returns it.
- * A margin of less than 2 RR_IMPACT_MARGIN of the force is none: the chain cannot tell.
+ * A margin of less than 0.004 of the force is none.
  */
-int rr_select_configuration(
-    const rr_real poses[][4],
-    int count,
-    const unsigned char *allowed,
-    const rr_real n[3],
-    rr_real speed,
-    const rr_region *region,
-    const rr_params *p,
-    rr_selection_t *out);
+int rr_select_configuration(const rr_real poses[][RR_JOINTS], int count,
+    const unsigned char *allowed, const rr_real n[3], rr_real speed, const rr_region *region,
+    const rr_params *p, rr_selection_t *out);
 
 #ifdef __cplusplus
 }

@@ -1,81 +1,164 @@
 /* SPDX-License-Identifier: 0BSD */
-/* What peak_force and safe_speed of rr share; not for their users. */
+/*
+ * An impact of rr_ on a part of the body; not for its users.
+ *
+ * The robot is a sum of modes that only meet in the contact force. While motors drive (or servo) the
+ * modes are those of links whose motors do; once motors are released they are those of links, springs
+ * and rotors. Each mode's step is exact for a force that is linear over the step.
+ * README.md of the package and docs/impacts-in-c.md of softimpact derive all of it.
+ */
 #ifndef RR_IMPACT_H
 #define RR_IMPACT_H
 
 #include "rr_internal.h"
 
-#define RR_MASSES RR_IMPACT_CHAIN_ORDER
-#define RR_MODES (2*((RR_MASSES + 2)/2)) /* one for a body that gives way; even */
-#define RR_LEVELS 3
+#if RR_ELASTIC
+#define RR_SYSTEM (2*RR_N) /* links, then motors */
+#else
+#define RR_SYSTEM RR_N
+#endif
+#define RR_MODES (RR_SYSTEM + 1) /* one for a body that gives way */
+#define RR_LEVELS 7 /* lengths of steps, each half the one before */
 
+/* The robot about to touch at one of its points, along n. */
 typedef struct {
-    rr_real mass[4]; /* kg; the contact force acts on the first */
-    rr_real stiffness[4]; /* N/m; to the next, last to ground */
-    rr_real velocity[4]; /* m/s; at first touch, for an approach of 1 m/s */
-} rr_impact_chain_t;
+    rr_links_t links;
+    rr_real row[RR_N];   /* n'J */
+    rr_real rates[RR_N]; /* joint velocities for an approach of 1 m/s */
+} rr_arrival;
 
-/* Chain of 4 masses as it arrives at an impact; it may end before its last. */
-int rr_impact_chain(
-    const rr_real q[4],
-    const rr_real n[3],
-    const rr_params *p,
-    rr_impact_chain_t *out);
-
-/* A mode's step h: 2 - 2 cos(omega h), and what the force at the node does. */
+/* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
 typedef struct {
-    rr_real kappa;
-    rr_real middle;
+    int count;
+    rr_real squared[RR_MODES]; /* frequency, 1/s^2 */
+    rr_real row[RR_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
+    rr_real start[RR_MODES]; /* rates at first touch of an approach of 1 m/s */
+    rr_real shape[RR_SYSTEM][RR_MODES];
+} rr_modes;
+
+/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+typedef struct {
+    rr_real cosine, sine; /* cos(wh), sin(wh)/w */
+    rr_real back; /* -w sin(wh) */
+    rr_real push[2]; /* on the amplitude, of the forces at start and end */
+    rr_real kick[2]; /* on the rate */
 } rr_mode_step;
 
-/* Steps of one length, of all modes and of the node between skin and body. */
+/* Steps of one length. */
 typedef struct {
-    rr_real h;         /* step, s */
-    rr_real rate;      /* the body's damping over it, N/m */
-    rr_real soft;      /* what a force moves at once by the modes, m/N */
-    rr_real hold[2];   /* compliance of the body for the two backward differences */
+    rr_real h; /* s */
+    rr_real relax; /* what is left of the body's own deflection after a step out of contact */
+    rr_real push[2]; /* on the contact point */
+    rr_real kick[2];
     rr_mode_step mode[RR_MODES];
-    rr_real edge[RR_MODES]; /* what forces at both ends do */
 } rr_level;
 
-/*
- * Robot and body as modes that only meet in the contact force, ready to be stepped. All numbers
- * are for an approach of 1 m/s; spacing doubles from one level to the next.
- */
+/* A time in which the motors follow one law. */
 typedef struct {
-    int modes; /* an even number */
-    rr_real stiffness; /* k_h */
-    rr_real damping; /* c_h */
-    rr_real skin; /* k_f */
+    rr_modes modes; /* the first `active` ones move, the others stand, bent by the force */
+    int active;
+    rr_real compliance; /* of those that stand, m/N */
+    rr_real drift; /* velocity of the contact point that motors keep up, over the speed */
+    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
+    rr_real damping[RR_N];
+    int steps; /* of the longest level until the time is over */
+    rr_level level[RR_LEVELS];
+} rr_phase;
+
+/* Everything that does not depend on the speed. */
+typedef struct {
+    rr_arrival arrival;
+    rr_real stiffness, damping, skin; /* k_h, c_h, k_f */
+    bool gives_way;
     rr_real mobility; /* of the contact, 1/kg */
-    rr_real compliance; /* of modes that stand, m/N */
-    rr_real rate2; /* of the contact point's vibration, squared, 1/s^2 */
-    rr_real fastest; /* squared frequency, 1/s^2 */
-    rr_real squared[RR_MODES]; /* frequency, 1/s^2 */
-    rr_real weight[RR_MODES]; /* share of the mobility */
-    rr_real velocity[RR_MODES]; /* share of the velocity at first touch */
-    rr_real start[RR_MODES]; /* displacement at the first node */
-    rr_real start_edge[RR_MODES]; /* share of the force there */
-    rr_level level[RR_LEVELS + 1];
+    rr_real scale; /* of forces, N: what bends are measured by */
+    rr_real smooth; /* 1, or less where the damper makes forces jump */
+    int phases; /* one, or two where motors are released */
+    rr_phase phase[2];
+#if RR_ELASTIC
+    rr_real springs[RR_N]; /* k_s */
+    rr_real rotors[RR_N]; /* B */
+#endif
+    rr_real carried[RR_N]; /* what deflections move of the contact point, rotors being free */
+    rr_real bound; /* no force is larger than this times the speed, N s/m; 0: no bound */
 } rr_impact;
 
-/* Prepares the impacts of a configuration, but for their steps; checks everything but the speed. */
-int rr_impact_prepare(const rr_real q[4], const rr_real n[3],
-    const rr_region *region, const rr_params *p, rr_impact *impact);
-
-/* Chooses the steps; `rough` ones are about twice as long. */
-void rr_impact_steps(rr_impact *impact, bool rough);
-
-/* Largest force of an impact. */
+/* What may be spent, and how exactly. */
 typedef struct {
-    rr_real force; /* N */
-    rr_real time; /* since first touch, s */
-    rr_real until; /* as long as forces of impacts at about this speed may be the largest, s */
-    int nodes; /* it took */
-} rr_impact_peak;
+    int steps; /* that are left */
+    bool rough; /* steps twice as long do */
+    rr_real stop_above; /* force after whose passing the rest does not matter, N */
+} rr_budget;
 
-/* Integrates one impact until robot and body part, or to a time after which the force is small. */
-int rr_impact_run(const rr_impact *impact, rr_real speed, rr_real until,
-    rr_impact_peak *out);
+typedef struct {
+    rr_real force; /* largest, N */
+    rr_real time; /* of it since first touch, s */
+    int contact; /* in which contact, the first is 1 */
+    int contacts; /* how many there were */
+    bool ended; /* within the budget */
+} rr_peak;
+
+/* Checks what says who hits whom, and how, but for the robot's own numbers. */
+int rr_check_impact(const rr_region *region, const rr_params *p);
+
+/* The contact point's row along n, and the joint velocities of least norm that move it along n. */
+int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival);
+
+/*
+ * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about
+ * a size (or, if that is negative, for a speed of its size).
+ */
+int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
+    rr_real force, rr_impact *impact);
+
+/* No force is larger than this times the speed, N s/m; 0 where none is known. */
+rr_real rr_bound(const rr_params *p, int motors, const rr_impact *impact);
+
+/* Least and largest kind of motors that parameters stand for: two for the bracket. */
+void rr_kinds_of_motors(const rr_params *p, int *first, int *last);
+
+/* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
+rr_real rr_two_body_force(const rr_region *region, rr_real mobility, rr_real speed);
+rr_real rr_two_body_speed(const rr_region *region, rr_real mobility, rr_real force);
+
+/*
+ * Largest speed, at most `cap` where that is positive, up to which an impact keeps a limit: OK,
+ * BOUNDED or another status.
+ */
+int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
+    rr_real cap, rr_impact *impact, rr_safe_speed_t *found);
+
+/* Largest force over all contacts of an impact at a speed. */
+void rr_impact_run(const rr_impact *impact, rr_real speed, rr_budget *budget,
+    rr_peak *peak);
+
+/* Modes of links whose motors follow `motors`, and of released ones; 0 or a status. */
+int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
+    rr_real *drift);
+int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
+    rr_real *drift);
+int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
+    rr_real carried[RR_N]);
+
+/*
+ * Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`; one in which
+ * motors have just been `released` starts with modes that swing.
+ */
+void rr_phase_steps(const rr_region *region, rr_real mobility, rr_real skin_rate,
+    rr_real time, bool released, rr_phase *phase);
+
+/* Linear algebra on matrices of up to RR_SYSTEM rows. */
+typedef rr_real rr_matrix[RR_SYSTEM][RR_SYSTEM];
+
+/* L of A = L L' in place, below and on the diagonal; false unless A is positive definite. */
+bool rr_cholesky(int size, rr_matrix A);
+/* x = L^-1 x and x = L^-T x. */
+void rr_forward(int size, rr_matrix L, rr_real *x);
+void rr_backward(int size, rr_matrix L, rr_real *x);
+/*
+ * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
+ * below `noise` count as none. False if that does not end.
+ */
+bool rr_diagonalise(int size, rr_matrix A, rr_matrix X, rr_real noise);
 
 #endif

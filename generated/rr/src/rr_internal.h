@@ -18,10 +18,12 @@
 #define RR_R(x) x##f
 #define RR_F(function) function##f
 #define RR_REAL_MAX FLT_MAX
+#define RR_EPSILON FLT_EPSILON
 #else
 #define RR_R(x) x
 #define RR_F(function) function
 #define RR_REAL_MAX DBL_MAX
+#define RR_EPSILON DBL_EPSILON
 #endif
 
 #define RR_SIN(x) RR_F(sin)(x)
@@ -120,5 +122,33 @@ static inline int rr_unit_vector(const rr_real n[3], rr_real u[3])
     u[2] = z*scale;
     return RR_OK;
 }
+
+/* What the impacts' runtime knows of this robot. */
+#define RR_N 4 /* independent joints */
+#define RR_ELASTIC 0 /* a spring behind every motor */
+#define RR_POTENTIAL 1 /* gravity, or springs of the model file */
+#define RR_STRUCTURED (RR_ELASTIC && !RR_POTENTIAL)
+#define RR_REACH 2 /* directions in which motors move contact points */
+#define RR_FASTEST RR_R(10000.0) /* squared joint velocity for 1 m/s: singular */
+#define RR_LEAST_MOBILITY RR_R(3.85e-05) /* 1/kg; below: singular */
+
+typedef struct {
+    rr_real M[4][4]; /* kg m^2; over the joints */
+    rr_real K[4][4]; /* N m/rad; of springs and gravity */
+    rr_real J[3][4]; /* m/rad; three rows a contact point, base axes */
+} rr_links_t;
+
+/* Links as they arrive at an impact. */
+int rr_links(const rr_real q[4], const rr_params *p, rr_links_t *out);
+
+extern const rr_real rr_directions[RR_REACH][3];
+extern const bool rr_has_motor[RR_N];
+
+#define RR_INDEPENDENT(i) (i)
+#define RR_GAIN(p, i) (rr_has_motor[i] ? (p)->position_gain[RR_INDEPENDENT(i)] : RR_R(0.0))
+#define RR_DAMPING_GAIN(p, i) (rr_has_motor[i] ? (p)->damping_gain[RR_INDEPENDENT(i)] : RR_R(0.0))
+#define RR_REACTION_TIME(p) ((p)->reaction_time)
+#define RR_HORIZON(p) ((p)->horizon)
+#define RR_LINKS_OF(q, p) q, p
 
 #endif

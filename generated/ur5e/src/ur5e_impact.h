@@ -1,81 +1,164 @@
 /* SPDX-License-Identifier: 0BSD */
-/* What peak_force and safe_speed of ur5e share; not for their users. */
+/*
+ * An impact of ur5e_ on a part of the body; not for its users.
+ *
+ * The robot is a sum of modes that only meet in the contact force. While motors drive (or servo) the
+ * modes are those of links whose motors do; once motors are released they are those of links, springs
+ * and rotors. Each mode's step is exact for a force that is linear over the step.
+ * README.md of the package and docs/impacts-in-c.md of softimpact derive all of it.
+ */
 #ifndef UR5E_IMPACT_H
 #define UR5E_IMPACT_H
 
 #include "ur5e_internal.h"
 
-#define UR5E_MASSES UR5E_IMPACT_CHAIN_ORDER
-#define UR5E_MODES (2*((UR5E_MASSES + 2)/2)) /* one for a body that gives way; even */
-#define UR5E_LEVELS 3
+#if UR5E_ELASTIC
+#define UR5E_SYSTEM (2*UR5E_N) /* links, then motors */
+#else
+#define UR5E_SYSTEM UR5E_N
+#endif
+#define UR5E_MODES (UR5E_SYSTEM + 1) /* one for a body that gives way */
+#define UR5E_LEVELS 7 /* lengths of steps, each half the one before */
 
+/* The robot about to touch at one of its points, along n. */
 typedef struct {
-    ur5e_real mass[7]; /* kg; the contact force acts on the first */
-    ur5e_real stiffness[7]; /* N/m; to the next, last to ground */
-    ur5e_real velocity[7]; /* m/s; at first touch, for an approach of 1 m/s */
-} ur5e_impact_chain_t;
+    ur5e_links_t links;
+    ur5e_real row[UR5E_N];   /* n'J */
+    ur5e_real rates[UR5E_N]; /* joint velocities for an approach of 1 m/s */
+} ur5e_arrival;
 
-/* Chain of 7 masses as it arrives at an impact; it may end before its last. */
-int ur5e_impact_chain(
-    const ur5e_real q[6],
-    const ur5e_real n[3],
-    const ur5e_params *p,
-    ur5e_impact_chain_t *out);
-
-/* A mode's step h: 2 - 2 cos(omega h), and what the force at the node does. */
+/* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
 typedef struct {
-    ur5e_real kappa;
-    ur5e_real middle;
+    int count;
+    ur5e_real squared[UR5E_MODES]; /* frequency, 1/s^2 */
+    ur5e_real row[UR5E_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
+    ur5e_real start[UR5E_MODES]; /* rates at first touch of an approach of 1 m/s */
+    ur5e_real shape[UR5E_SYSTEM][UR5E_MODES];
+} ur5e_modes;
+
+/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+typedef struct {
+    ur5e_real cosine, sine; /* cos(wh), sin(wh)/w */
+    ur5e_real back; /* -w sin(wh) */
+    ur5e_real push[2]; /* on the amplitude, of the forces at start and end */
+    ur5e_real kick[2]; /* on the rate */
 } ur5e_mode_step;
 
-/* Steps of one length, of all modes and of the node between skin and body. */
+/* Steps of one length. */
 typedef struct {
-    ur5e_real h;         /* step, s */
-    ur5e_real rate;      /* the body's damping over it, N/m */
-    ur5e_real soft;      /* what a force moves at once by the modes, m/N */
-    ur5e_real hold[2];   /* compliance of the body for the two backward differences */
+    ur5e_real h; /* s */
+    ur5e_real relax; /* what is left of the body's own deflection after a step out of contact */
+    ur5e_real push[2]; /* on the contact point */
+    ur5e_real kick[2];
     ur5e_mode_step mode[UR5E_MODES];
-    ur5e_real edge[UR5E_MODES]; /* what forces at both ends do */
 } ur5e_level;
 
-/*
- * Robot and body as modes that only meet in the contact force, ready to be stepped. All numbers
- * are for an approach of 1 m/s; spacing doubles from one level to the next.
- */
+/* A time in which the motors follow one law. */
 typedef struct {
-    int modes; /* an even number */
-    ur5e_real stiffness; /* k_h */
-    ur5e_real damping; /* c_h */
-    ur5e_real skin; /* k_f */
+    ur5e_modes modes; /* the first `active` ones move, the others stand, bent by the force */
+    int active;
+    ur5e_real compliance; /* of those that stand, m/N */
+    ur5e_real drift; /* velocity of the contact point that motors keep up, over the speed */
+    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
+    ur5e_real damping[UR5E_N];
+    int steps; /* of the longest level until the time is over */
+    ur5e_level level[UR5E_LEVELS];
+} ur5e_phase;
+
+/* Everything that does not depend on the speed. */
+typedef struct {
+    ur5e_arrival arrival;
+    ur5e_real stiffness, damping, skin; /* k_h, c_h, k_f */
+    bool gives_way;
     ur5e_real mobility; /* of the contact, 1/kg */
-    ur5e_real compliance; /* of modes that stand, m/N */
-    ur5e_real rate2; /* of the contact point's vibration, squared, 1/s^2 */
-    ur5e_real fastest; /* squared frequency, 1/s^2 */
-    ur5e_real squared[UR5E_MODES]; /* frequency, 1/s^2 */
-    ur5e_real weight[UR5E_MODES]; /* share of the mobility */
-    ur5e_real velocity[UR5E_MODES]; /* share of the velocity at first touch */
-    ur5e_real start[UR5E_MODES]; /* displacement at the first node */
-    ur5e_real start_edge[UR5E_MODES]; /* share of the force there */
-    ur5e_level level[UR5E_LEVELS + 1];
+    ur5e_real scale; /* of forces, N: what bends are measured by */
+    ur5e_real smooth; /* 1, or less where the damper makes forces jump */
+    int phases; /* one, or two where motors are released */
+    ur5e_phase phase[2];
+#if UR5E_ELASTIC
+    ur5e_real springs[UR5E_N]; /* k_s */
+    ur5e_real rotors[UR5E_N]; /* B */
+#endif
+    ur5e_real carried[UR5E_N]; /* what deflections move of the contact point, rotors being free */
+    ur5e_real bound; /* no force is larger than this times the speed, N s/m; 0: no bound */
 } ur5e_impact;
 
-/* Prepares the impacts of a configuration, but for their steps; checks everything but the speed. */
-int ur5e_impact_prepare(const ur5e_real q[6], const ur5e_real n[3],
-    const ur5e_region *region, const ur5e_params *p, ur5e_impact *impact);
-
-/* Chooses the steps; `rough` ones are about twice as long. */
-void ur5e_impact_steps(ur5e_impact *impact, bool rough);
-
-/* Largest force of an impact. */
+/* What may be spent, and how exactly. */
 typedef struct {
-    ur5e_real force; /* N */
-    ur5e_real time; /* since first touch, s */
-    ur5e_real until; /* as long as forces of impacts at about this speed may be the largest, s */
-    int nodes; /* it took */
-} ur5e_impact_peak;
+    int steps; /* that are left */
+    bool rough; /* steps twice as long do */
+    ur5e_real stop_above; /* force after whose passing the rest does not matter, N */
+} ur5e_budget;
 
-/* Integrates one impact until robot and body part, or to a time after which the force is small. */
-int ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_real until,
-    ur5e_impact_peak *out);
+typedef struct {
+    ur5e_real force; /* largest, N */
+    ur5e_real time; /* of it since first touch, s */
+    int contact; /* in which contact, the first is 1 */
+    int contacts; /* how many there were */
+    bool ended; /* within the budget */
+} ur5e_peak;
+
+/* Checks what says who hits whom, and how, but for the robot's own numbers. */
+int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p);
+
+/* The contact point's row along n, and the joint velocities of least norm that move it along n. */
+int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival);
+
+/*
+ * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about
+ * a size (or, if that is negative, for a speed of its size).
+ */
+int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int motors,
+    ur5e_real force, ur5e_impact *impact);
+
+/* No force is larger than this times the speed, N s/m; 0 where none is known. */
+ur5e_real ur5e_bound(const ur5e_params *p, int motors, const ur5e_impact *impact);
+
+/* Least and largest kind of motors that parameters stand for: two for the bracket. */
+void ur5e_kinds_of_motors(const ur5e_params *p, int *first, int *last);
+
+/* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
+ur5e_real ur5e_two_body_force(const ur5e_region *region, ur5e_real mobility, ur5e_real speed);
+ur5e_real ur5e_two_body_speed(const ur5e_region *region, ur5e_real mobility, ur5e_real force);
+
+/*
+ * Largest speed, at most `cap` where that is positive, up to which an impact keeps a limit: OK,
+ * BOUNDED or another status.
+ */
+int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real limit,
+    ur5e_real cap, ur5e_impact *impact, ur5e_safe_speed_t *found);
+
+/* Largest force over all contacts of an impact at a speed. */
+void ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_budget *budget,
+    ur5e_peak *peak);
+
+/* Modes of links whose motors follow `motors`, and of released ones; 0 or a status. */
+int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
+    ur5e_real *drift);
+int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
+    ur5e_real *drift);
+int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
+    ur5e_real carried[UR5E_N]);
+
+/*
+ * Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`; one in which
+ * motors have just been `released` starts with modes that swing.
+ */
+void ur5e_phase_steps(const ur5e_region *region, ur5e_real mobility, ur5e_real skin_rate,
+    ur5e_real time, bool released, ur5e_phase *phase);
+
+/* Linear algebra on matrices of up to UR5E_SYSTEM rows. */
+typedef ur5e_real ur5e_matrix[UR5E_SYSTEM][UR5E_SYSTEM];
+
+/* L of A = L L' in place, below and on the diagonal; false unless A is positive definite. */
+bool ur5e_cholesky(int size, ur5e_matrix A);
+/* x = L^-1 x and x = L^-T x. */
+void ur5e_forward(int size, ur5e_matrix L, ur5e_real *x);
+void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x);
+/*
+ * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
+ * below `noise` count as none. False if that does not end.
+ */
+bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X, ur5e_real noise);
 
 #endif

@@ -18,10 +18,12 @@
 #define UR5E_R(x) x##f
 #define UR5E_F(function) function##f
 #define UR5E_REAL_MAX FLT_MAX
+#define UR5E_EPSILON FLT_EPSILON
 #else
 #define UR5E_R(x) x
 #define UR5E_F(function) function
 #define UR5E_REAL_MAX DBL_MAX
+#define UR5E_EPSILON DBL_EPSILON
 #endif
 
 #define UR5E_SIN(x) UR5E_F(sin)(x)
@@ -120,5 +122,34 @@ static inline int ur5e_unit_vector(const ur5e_real n[3], ur5e_real u[3])
     u[2] = z*scale;
     return UR5E_OK;
 }
+
+/* What the impacts' runtime knows of this robot. */
+#define UR5E_N 6 /* independent joints */
+#define UR5E_ELASTIC 1 /* a spring behind every motor */
+#define UR5E_POTENTIAL 0 /* gravity, or springs of the model file */
+#define UR5E_STRUCTURED (UR5E_ELASTIC && !UR5E_POTENTIAL)
+#define UR5E_REACH 3 /* directions in which motors move contact points */
+#define UR5E_FASTEST UR5E_R(16000.0) /* squared joint velocity for 1 m/s: singular */
+#define UR5E_LEAST_MOBILITY UR5E_R(5.56e-05) /* 1/kg; below: singular */
+
+typedef struct {
+    ur5e_real M[6][6]; /* kg m^2; over the joints */
+    ur5e_real J[3][6]; /* m/rad; three rows a contact point, base axes */
+} ur5e_links_t;
+
+/* Links as they arrive at an impact. */
+int ur5e_links(const ur5e_real q[6], ur5e_links_t *out);
+
+extern const ur5e_real ur5e_directions[UR5E_REACH][3];
+extern const bool ur5e_has_motor[UR5E_N];
+
+#define UR5E_INDEPENDENT(i) (i)
+#define UR5E_SPRING(p, i) ((p)->joint_stiffness[UR5E_INDEPENDENT(i)])
+#define UR5E_ROTOR(p, i) ((p)->rotor_inertia[UR5E_INDEPENDENT(i)])
+#define UR5E_GAIN(p, i) (ur5e_has_motor[i] ? (p)->position_gain[UR5E_INDEPENDENT(i)] : UR5E_R(0.0))
+#define UR5E_DAMPING_GAIN(p, i) (ur5e_has_motor[i] ? (p)->damping_gain[UR5E_INDEPENDENT(i)] : UR5E_R(0.0))
+#define UR5E_REACTION_TIME(p) ((p)->reaction_time)
+#define UR5E_HORIZON(p) ((p)->horizon)
+#define UR5E_LINKS_OF(q, p) q
 
 #endif

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Robot_ about to touch, and what its impacts are prepared with. */
+#include "robot_impact.h"
+
+/* Squared share of n that may point where motors never move the contact point. */
+#define OUTSIDE ROBOT_R(1e-6)
+#define MOST_STEPS 1000000
+
+int robot_check_impact(const robot_region *region, const robot_params *p)
+{
+    const robot_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
+        region->clamped != 0 ? ROBOT_R(1.0) : region->effective_mass};
+    if (!robot_all_finite(numbers, 4)) {
+        return ROBOT_NOT_FINITE;
+    }
+    const bool body = region->stiffness > ROBOT_R(0.0) && region->damping >= ROBOT_R(0.0)
+        && region->hertz_stiffness > ROBOT_R(0.0) && numbers[3] > ROBOT_R(0.0);
+    const robot_real horizon = ROBOT_HORIZON(p);
+    const robot_real reaction = ROBOT_REACTION_TIME(p);
+    int status = robot_check_positive(&horizon, 1);
+    if (status == ROBOT_OK) {
+        status = robot_check_not_negative(&reaction, 1);
+    }
+    for (int i = 0; i < ROBOT_N && status == ROBOT_OK; ++i) {
+        const robot_real gains[2] = {ROBOT_GAIN(p, i), ROBOT_DAMPING_GAIN(p, i)};
+        status = robot_check_not_negative(gains, 2);
+#if ROBOT_ELASTIC
+        const robot_real drive[2] = {ROBOT_SPRING(p, i), ROBOT_ROTOR(p, i)};
+        status = status == ROBOT_OK ? robot_check_positive(drive, 2) : status;
+#endif
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    const bool motion = p->motors >= ROBOT_MOTORS_FREE_OR_DRIVEN && p->motors <= ROBOT_MOTORS_SERVO
+        && p->steps > 0 && p->steps <= MOST_STEPS;
+    return body && motion ? ROBOT_OK : ROBOT_OUT_OF_RANGE;
+}
+
+int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
+{
+    robot_real u[3];
+    const int status = robot_unit_vector(n, u);
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    const robot_real (*const J)[ROBOT_N] = (const robot_real (*)[ROBOT_N])&arrival->links.J[3*point];
+    robot_matrix square;
+    robot_real moved[ROBOT_REACH][ROBOT_N];
+    robot_real share[ROBOT_SYSTEM];
+    robot_real within = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        arrival->row[i] = u[0]*J[0][i] + u[1]*J[1][i] + u[2]*J[2][i];
+    }
+    for (int k = 0; k < ROBOT_REACH; ++k) {
+        const robot_real *const d = robot_directions[k];
+        share[k] = d[0]*u[0] + d[1]*u[1] + d[2]*u[2];
+        within += share[k]*share[k];
+        for (int i = 0; i < ROBOT_N; ++i) {
+            moved[k][i] = robot_has_motor[i] ? d[0]*J[0][i] + d[1]*J[1][i] + d[2]*J[2][i] : ROBOT_R(0.0);
+        }
+        for (int l = 0; l <= k; ++l) {
+            robot_real sum = ROBOT_R(0.0);
+            for (int i = 0; i < ROBOT_N; ++i) {
+                sum += moved[k][i]*moved[l][i];
+            }
+            square[k][l] = sum;
+            square[l][k] = sum;
+        }
+    }
+    if (!(within > ROBOT_R(1.0) - OUTSIDE) || !robot_cholesky(ROBOT_REACH, square)) {
+        return ROBOT_SINGULAR;
+    }
+    robot_forward(ROBOT_REACH, square, share);
+    robot_backward(ROBOT_REACH, square, share);
+    robot_real fast = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        robot_real rate = ROBOT_R(0.0);
+        for (int k = 0; k < ROBOT_REACH; ++k) {
+            rate += moved[k][i]*share[k];
+        }
+        arrival->rates[i] = rate;
+        fast += rate*rate;
+    }
+    return fast < ROBOT_FASTEST ? ROBOT_OK : ROBOT_SINGULAR;
+}
+
+void robot_kinds_of_motors(const robot_params *p, int *first, int *last)
+{
+    const bool both = p->motors == ROBOT_MOTORS_FREE_OR_DRIVEN;
+    *first = both ? ROBOT_MOTORS_FREE : p->motors;
+    *last = both ? ROBOT_MOTORS_DRIVEN : p->motors;
+}
+
+/* Largest stiffness of the skin up to a force. */
+static robot_real skin_stiffness(const robot_region *region, robot_real force)
+{
+    const robot_real third = ROBOT_R(1.0)/ROBOT_R(3.0);
+    return ROBOT_R(1.5)*ROBOT_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
+}
+
+robot_real robot_two_body_force(const robot_region *region, robot_real mobility, robot_real speed)
+{
+    const robot_real spring = speed*ROBOT_SQRT(region->stiffness/mobility);
+    const robot_real energy = ROBOT_R(1.25)*speed*speed/mobility;
+    const robot_real skin = ROBOT_POW(energy, ROBOT_R(0.6))*ROBOT_POW(region->hertz_stiffness, ROBOT_R(0.4));
+    return ROBOT_R(1.0)/(ROBOT_R(1.0)/spring + ROBOT_R(1.0)/skin);
+}
+
+robot_real robot_two_body_speed(const robot_region *region, robot_real mobility, robot_real force)
+{
+    const robot_real depth = ROBOT_POW(force/region->hertz_stiffness, ROBOT_R(2.0)/ROBOT_R(3.0));
+    return ROBOT_SQRT(mobility*force*(force/region->stiffness + ROBOT_R(0.8)*depth));
+}
+
+/* Modes of a phase. */
+static int modes_of(int motors, const robot_params *p, robot_impact *impact, robot_phase *phase)
+{
+    phase->drift = ROBOT_R(0.0);
+    phase->damped = false;
+    for (int i = 0; i < ROBOT_N; ++i) {
+        phase->damping[i] = ROBOT_R(0.0);
+    }
+    if (motors == ROBOT_MOTORS_FREE) {
+        return robot_free_modes(&impact->arrival, p, &phase->modes, impact->carried);
+    }
+    if (motors == ROBOT_MOTORS_DRIVEN) {
+        return robot_driven_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    }
+    for (int i = 0; i < ROBOT_N; ++i) {
+        phase->damping[i] = ROBOT_DAMPING_GAIN(p, i);
+        phase->damped = phase->damped || phase->damping[i] > ROBOT_R(0.0);
+    }
+    return robot_servo_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+}
+
+static robot_real mobility_of(const robot_modes *modes)
+{
+    robot_real sum = ROBOT_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        sum += modes->row[i]*modes->row[i];
+    }
+    return sum;
+}
+
+int robot_impact_prepare(const robot_region *region, const robot_params *p, int motors,
+    robot_real force, robot_impact *impact)
+{
+    const robot_real horizon = ROBOT_HORIZON(p);
+    const robot_real reaction = ROBOT_REACTION_TIME(p);
+    const bool released = motors != ROBOT_MOTORS_FREE && reaction < horizon;
+    const bool at_once = released && !(reaction > ROBOT_R(0.0));
+    impact->phases = released && !at_once ? 2 : 1;
+    int status = modes_of(at_once ? ROBOT_MOTORS_FREE : motors, p, impact, &impact->phase[0]);
+    if (status == ROBOT_OK && impact->phases == 2) {
+        status = modes_of(ROBOT_MOTORS_FREE, p, impact, &impact->phase[1]);
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    impact->stiffness = region->stiffness;
+    impact->damping = region->damping;
+    impact->skin = region->hertz_stiffness;
+    impact->gives_way = region->clamped == 0;
+    const robot_real body = impact->gives_way ? ROBOT_R(1.0)/region->effective_mass : ROBOT_R(0.0);
+    robot_real mobility = ROBOT_R(0.0);
+    for (int k = 0; k < impact->phases; ++k) {
+        mobility = ROBOT_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    }
+    const bool moves = mobility > ROBOT_LEAST_MOBILITY;
+    if (!moves && (ROBOT_ELASTIC || motors == ROBOT_MOTORS_FREE || impact->phases == 2)) {
+        return ROBOT_SINGULAR;
+    }
+    impact->mobility = ROBOT_FMAX(mobility, ROBOT_LEAST_MOBILITY) + body;
+    const robot_real size =
+        force > ROBOT_R(0.0) ? force : robot_two_body_force(region, impact->mobility, -force);
+    impact->scale = ROBOT_R(0.4)*size;
+    const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
+    impact->smooth = ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped);
+    const robot_real skin_rate = skin_stiffness(region, size)*impact->mobility;
+    for (int k = 0; k < impact->phases; ++k) {
+        const robot_real from = k > 0 ? reaction : ROBOT_R(0.0);
+        const robot_real until = k == 0 && impact->phases == 2 ? reaction : horizon;
+        robot_phase_steps(region, impact->mobility, skin_rate, until - from, k > 0, &impact->phase[k]);
+    }
+#if ROBOT_ELASTIC
+    for (int i = 0; i < ROBOT_N; ++i) {
+        impact->springs[i] = ROBOT_SPRING(p, i);
+        impact->rotors[i] = ROBOT_ROTOR(p, i);
+    }
+#endif
+    impact->bound = robot_bound(p, motors, impact);
+    const robot_real numbers[4] = {impact->mobility, impact->scale, impact->phase[0].level[0].h,
+        impact->phase[impact->phases - 1].level[0].h};
+    return robot_all_finite(numbers, 4) && robot_check_positive(numbers, 4) == ROBOT_OK
+        ? ROBOT_OK : ROBOT_SINGULAR;
+}

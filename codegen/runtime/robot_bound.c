@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * A force that no impact of robot_ exceeds, for when the steps there are do not do.
+ *
+ * At the largest force the skin is not getting deeper, so that f = k s + c s' <= k s + c u with u the
+ * speed at which contact point and body approach. Kinetic energy is at least u^2/(2 mobility), so that with an
+ * energy E in robot and body, f^2 <= 2 E (k + c^2 mobility).
+ *
+ * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v.
+ *
+ * Motors that drive or servo: in axes that go on with the motion before, the only one who does work is
+ * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
+ * y^2 v with y^2 <= y sqrt(2 t K) + c, K = k + c^2 mobility. Released after t, the robot has at most
+ * (sqrt(E) + sqrt(v^2/2 r'(M + B)r))^2, as the energies of both motions add like squares of lengths.
+ */
+#include "robot_impact.h"
+
+/* y^2 for y^2 = y sqrt(2 t K) + c. */
+static robot_real while_driven(robot_real time, robot_real hold, robot_real damping)
+{
+    const robot_real pull = ROBOT_SQRT(ROBOT_R(2.0)*time*hold);
+    const robot_real y = ROBOT_R(0.5)*(pull + ROBOT_SQRT(pull*pull + ROBOT_R(4.0)*damping));
+    return y*y;
+}
+
+/* r'(M + B) r */
+static robot_real twice_energy(const robot_params *p, const robot_arrival *arrival)
+{
+    robot_real sum = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        for (int j = 0; j < ROBOT_N; ++j) {
+            sum += arrival->rates[i]*arrival->links.M[i][j]*arrival->rates[j];
+        }
+#if ROBOT_ELASTIC
+        sum += ROBOT_ROTOR(p, i)*arrival->rates[i]*arrival->rates[i];
+#endif
+    }
+    (void)p;
+    return sum;
+}
+
+/* Whether no motion lowers the energy of springs and gravity, and the motion before raises none. */
+static bool is_held_by_nothing(const robot_impact *impact)
+{
+#if ROBOT_POTENTIAL
+    for (int i = 0; i < ROBOT_N; ++i) {
+        robot_real pull = ROBOT_R(0.0);
+        robot_real size = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_N; ++j) {
+            pull += impact->arrival.links.K[i][j]*impact->arrival.rates[j];
+            size += ROBOT_FABS(impact->arrival.links.K[i][j]);
+        }
+        if (ROBOT_FABS(pull) > ROBOT_R(16.0)*ROBOT_EPSILON*size) {
+            return false;
+        }
+    }
+    const robot_modes *const modes = &impact->phase[impact->phases - 1].modes;
+    robot_real largest = ROBOT_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        largest = ROBOT_FMAX(largest, modes->squared[i]);
+    }
+    for (int i = 0; i < modes->count; ++i) {
+        if (modes->squared[i] < ROBOT_R(-16.0)*ROBOT_EPSILON*largest) {
+            return false;
+        }
+    }
+#else
+    (void)impact;
+#endif
+    return true;
+}
+
+robot_real robot_bound(const robot_params *p, int motors, const robot_impact *impact)
+{
+    if (!is_held_by_nothing(impact)) {
+        return ROBOT_R(0.0);
+    }
+    const robot_real hold = impact->stiffness + impact->damping*impact->damping*impact->mobility;
+    const robot_real twice = twice_energy(p, &impact->arrival);
+    if (motors == ROBOT_MOTORS_FREE) {
+        return ROBOT_SQRT(twice*hold);
+    }
+    const robot_real horizon = ROBOT_HORIZON(p);
+    const robot_real reaction = ROBOT_FMIN(ROBOT_REACTION_TIME(p), horizon);
+    const robot_real always = while_driven(horizon, hold, impact->damping);
+    const robot_real until = while_driven(reaction, hold, impact->damping);
+    const robot_real root = ROBOT_SQRT(ROBOT_R(2.0)*until*reaction) + ROBOT_SQRT(twice);
+    return ROBOT_FMIN(always, ROBOT_FMAX(until, root*ROBOT_SQRT(hold)));
+}

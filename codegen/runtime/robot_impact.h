@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * An impact of robot_ on a part of the body; not for its users.
+ *
+ * The robot is a sum of modes that only meet in the contact force. While motors drive (or servo) the
+ * modes are those of links whose motors do; once motors are released they are those of links, springs
+ * and rotors. Each mode's step is exact for a force that is linear over the step.
+ * README.md of the package and docs/impacts-in-c.md of softimpact derive all of it.
+ */
+#ifndef ROBOT_IMPACT_H
+#define ROBOT_IMPACT_H
+
+#include "robot_internal.h"
+
+#if ROBOT_ELASTIC
+#define ROBOT_SYSTEM (2*ROBOT_N) /* links, then motors */
+#else
+#define ROBOT_SYSTEM ROBOT_N
+#endif
+#define ROBOT_MODES (ROBOT_SYSTEM + 1) /* one for a body that gives way */
+#define ROBOT_LEVELS 7 /* lengths of steps, each half the one before */
+
+/* The robot about to touch at one of its points, along n. */
+typedef struct {
+    robot_links_t links;
+    robot_real row[ROBOT_N];   /* n'J */
+    robot_real rates[ROBOT_N]; /* joint velocities for an approach of 1 m/s */
+} robot_arrival;
+
+/* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
+typedef struct {
+    int count;
+    robot_real squared[ROBOT_MODES]; /* frequency, 1/s^2 */
+    robot_real row[ROBOT_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
+    robot_real start[ROBOT_MODES]; /* rates at first touch of an approach of 1 m/s */
+    robot_real shape[ROBOT_SYSTEM][ROBOT_MODES];
+} robot_modes;
+
+/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+typedef struct {
+    robot_real cosine, sine; /* cos(wh), sin(wh)/w */
+    robot_real back; /* -w sin(wh) */
+    robot_real push[2]; /* on the amplitude, of the forces at start and end */
+    robot_real kick[2]; /* on the rate */
+} robot_mode_step;
+
+/* Steps of one length. */
+typedef struct {
+    robot_real h; /* s */
+    robot_real relax; /* what is left of the body's own deflection after a step out of contact */
+    robot_real push[2]; /* on the contact point */
+    robot_real kick[2];
+    robot_mode_step mode[ROBOT_MODES];
+} robot_level;
+
+/* A time in which the motors follow one law. */
+typedef struct {
+    robot_modes modes; /* the first `active` ones move, the others stand, bent by the force */
+    int active;
+    robot_real compliance; /* of those that stand, m/N */
+    robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
+    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
+    robot_real damping[ROBOT_N];
+    int steps; /* of the longest level until the time is over */
+    robot_level level[ROBOT_LEVELS];
+} robot_phase;
+
+/* Everything that does not depend on the speed. */
+typedef struct {
+    robot_arrival arrival;
+    robot_real stiffness, damping, skin; /* k_h, c_h, k_f */
+    bool gives_way;
+    robot_real mobility; /* of the contact, 1/kg */
+    robot_real scale; /* of forces, N: what bends are measured by */
+    robot_real smooth; /* 1, or less where the damper makes forces jump */
+    int phases; /* one, or two where motors are released */
+    robot_phase phase[2];
+#if ROBOT_ELASTIC
+    robot_real springs[ROBOT_N]; /* k_s */
+    robot_real rotors[ROBOT_N]; /* B */
+#endif
+    robot_real carried[ROBOT_N]; /* what deflections move of the contact point, rotors being free */
+    robot_real bound; /* no force is larger than this times the speed, N s/m; 0: no bound */
+} robot_impact;
+
+/* What may be spent, and how exactly. */
+typedef struct {
+    int steps; /* that are left */
+    bool rough; /* steps twice as long do */
+    robot_real stop_above; /* force after whose passing the rest does not matter, N */
+} robot_budget;
+
+typedef struct {
+    robot_real force; /* largest, N */
+    robot_real time; /* of it since first touch, s */
+    int contact; /* in which contact, the first is 1 */
+    int contacts; /* how many there were */
+    bool ended; /* within the budget */
+} robot_peak;
+
+/* Checks what says who hits whom, and how, but for the robot's own numbers. */
+int robot_check_impact(const robot_region *region, const robot_params *p);
+
+/* The contact point's row along n, and the joint velocities of least norm that move it along n. */
+int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival);
+
+/*
+ * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about
+ * a size (or, if that is negative, for a speed of its size).
+ */
+int robot_impact_prepare(const robot_region *region, const robot_params *p, int motors,
+    robot_real force, robot_impact *impact);
+
+/* No force is larger than this times the speed, N s/m; 0 where none is known. */
+robot_real robot_bound(const robot_params *p, int motors, const robot_impact *impact);
+
+/* Least and largest kind of motors that parameters stand for: two for the bracket. */
+void robot_kinds_of_motors(const robot_params *p, int *first, int *last);
+
+/* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
+robot_real robot_two_body_force(const robot_region *region, robot_real mobility, robot_real speed);
+robot_real robot_two_body_speed(const robot_region *region, robot_real mobility, robot_real force);
+
+/*
+ * Largest speed, at most `cap` where that is positive, up to which an impact keeps a limit: OK,
+ * BOUNDED or another status.
+ */
+int robot_find_speed(const robot_region *region, const robot_params *p, robot_real limit,
+    robot_real cap, robot_impact *impact, robot_safe_speed_t *found);
+
+/* Largest force over all contacts of an impact at a speed. */
+void robot_impact_run(const robot_impact *impact, robot_real speed, robot_budget *budget,
+    robot_peak *peak);
+
+/* Modes of links whose motors follow `motors`, and of released ones; 0 or a status. */
+int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
+    robot_real *drift);
+int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
+    robot_real *drift);
+int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
+    robot_real carried[ROBOT_N]);
+
+/*
+ * Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`; one in which
+ * motors have just been `released` starts with modes that swing.
+ */
+void robot_phase_steps(const robot_region *region, robot_real mobility, robot_real skin_rate,
+    robot_real time, bool released, robot_phase *phase);
+
+/* Linear algebra on matrices of up to ROBOT_SYSTEM rows. */
+typedef robot_real robot_matrix[ROBOT_SYSTEM][ROBOT_SYSTEM];
+
+/* L of A = L L' in place, below and on the diagonal; false unless A is positive definite. */
+bool robot_cholesky(int size, robot_matrix A);
+/* x = L^-1 x and x = L^-T x. */
+void robot_forward(int size, robot_matrix L, robot_real *x);
+void robot_backward(int size, robot_matrix L, robot_real *x);
+/*
+ * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
+ * below `noise` count as none. False if that does not end.
+ */
+bool robot_diagonalise(int size, robot_matrix A, robot_matrix X, robot_real noise);
+
+#endif

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Linear algebra of robot_: Cholesky's factors, and eigenvectors by Jacobi's rotations. */
+#include "robot_impact.h"
+
+/*
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
+ */
+#define TURNED ROBOT_R(1e-8)
+/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
+#define SWEEPS 16
+
+bool robot_cholesky(int size, robot_matrix A)
+{
+    for (int j = 0; j < size; ++j) {
+        robot_real pivot = A[j][j];
+        for (int k = 0; k < j; ++k) {
+            pivot -= A[j][k]*A[j][k];
+        }
+        if (!(pivot > ROBOT_R(0.0) && pivot <= ROBOT_REAL_MAX)) {
+            return false;
+        }
+        const robot_real root = ROBOT_SQRT(pivot);
+        const robot_real inverse = ROBOT_R(1.0)/root;
+        A[j][j] = root;
+        for (int i = j + 1; i < size; ++i) {
+            robot_real rest = A[i][j];
+            for (int k = 0; k < j; ++k) {
+                rest -= A[i][k]*A[j][k];
+            }
+            A[i][j] = rest*inverse;
+        }
+    }
+    return true;
+}
+
+void robot_forward(int size, robot_matrix L, robot_real *x)
+{
+    for (int i = 0; i < size; ++i) {
+        robot_real rest = x[i];
+        for (int k = 0; k < i; ++k) {
+            rest -= L[i][k]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+void robot_backward(int size, robot_matrix L, robot_real *x)
+{
+    for (int i = size - 1; i >= 0; --i) {
+        robot_real rest = x[i];
+        for (int k = i + 1; k < size; ++k) {
+            rest -= L[k][i]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+/* Turns columns i and j of a matrix by an angle. */
+static void turn_columns(int size, robot_matrix X, int i, int j, robot_real c, robot_real s)
+{
+    for (int k = 0; k < size; ++k) {
+        const robot_real a = X[k][i];
+        const robot_real b = X[k][j];
+        X[k][i] = c*a - s*b;
+        X[k][j] = s*a + c*b;
+    }
+}
+
+/* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
+static void rotate(int size, robot_matrix A, robot_matrix X, int i, int j)
+{
+    const robot_real off = A[i][j];
+    const robot_real half = (A[j][j] - A[i][i])/(off + off);
+    const robot_real length = ROBOT_FABS(half) + ROBOT_SQRT(half*half + ROBOT_R(1.0));
+    const robot_real t = (half < ROBOT_R(0.0) ? ROBOT_R(-1.0) : ROBOT_R(1.0))/length;
+    const robot_real c = ROBOT_R(1.0)/ROBOT_SQRT(t*t + ROBOT_R(1.0));
+    const robot_real s = t*c;
+    A[i][i] -= t*off;
+    A[j][j] += t*off;
+    A[i][j] = ROBOT_R(0.0);
+    A[j][i] = ROBOT_R(0.0);
+    for (int k = 0; k < size; ++k) {
+        if (k != i && k != j) {
+            const robot_real a = A[i][k];
+            const robot_real b = A[j][k];
+            A[i][k] = c*a - s*b;
+            A[j][k] = s*a + c*b;
+            A[k][i] = A[i][k];
+            A[k][j] = A[j][k];
+        }
+    }
+    turn_columns(size, X, i, j, c, s);
+}
+
+bool robot_diagonalise(int size, robot_matrix A, robot_matrix X, robot_real noise)
+{
+    const robot_real none = noise*noise;
+    for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+        bool turned = false;
+        for (int i = 0; i < size; ++i) {
+            for (int j = i + 1; j < size; ++j) {
+                const robot_real square = A[i][j]*A[i][j];
+                if (square > TURNED*ROBOT_FABS(A[i][i]*A[j][j]) && square > none) {
+                    rotate(size, A, X, i, j);
+                    turned = true;
+                }
+            }
+        }
+        if (!turned) {
+            return true;
+        }
+    }
+    return false;
+}

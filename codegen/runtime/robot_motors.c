@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Modes of robot_ by what its motors do: drive on, servo, or turn freely.
+ *
+ * With z the deviation from the motion before the impact, M z'' + K z = -J'n f - (P rates) v t, where
+ * P is the curvature of gravity and of springs of the model file; z is over links whose motors drive,
+ * and over links and motors where a servo leads these.
+ */
+#include "robot_impact.h"
+
+/* Share of the largest entry that rounding leaves of one that should be none. */
+#define NOISE (ROBOT_R(8.0)*ROBOT_EPSILON)
+
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
+{
+    if (!robot_cholesky(size, mass)) {
+        return false;
+    }
+    for (int j = 0; j < size; ++j) {
+        robot_real column[ROBOT_SYSTEM];
+        for (int i = 0; i < size; ++i) {
+            column[i] = i == j ? ROBOT_R(1.0) : ROBOT_R(0.0);
+        }
+        robot_backward(size, mass, column);
+        for (int i = 0; i < size; ++i) {
+            X[i][j] = column[i];
+        }
+    }
+    return true;
+}
+
+#if ROBOT_STRUCTURED
+/* A = X' diag(k) X. */
+static void stretch(const robot_real *k, robot_matrix X, robot_matrix A)
+{
+    for (int i = 0; i < ROBOT_N; ++i) {
+        robot_real pulled[ROBOT_N];
+        for (int l = 0; l < ROBOT_N; ++l) {
+            pulled[l] = k[l]*X[l][i];
+        }
+        for (int j = 0; j <= i; ++j) {
+            robot_real sum = ROBOT_R(0.0);
+            for (int l = 0; l < ROBOT_N; ++l) {
+                sum += pulled[l]*X[l][j];
+            }
+            A[i][j] = sum;
+            A[j][i] = sum;
+        }
+    }
+}
+#endif
+
+/* A = X'KX; returns the noise in its entries. */
+static robot_real congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
+{
+    robot_real largest = ROBOT_R(0.0);
+    for (int i = 0; i < size; ++i) {
+        robot_real pulled[ROBOT_SYSTEM];
+        for (int l = 0; l < size; ++l) {
+            pulled[l] = ROBOT_R(0.0);
+            for (int m = 0; m < size; ++m) {
+                pulled[l] += K[l][m]*X[m][i];
+            }
+        }
+        for (int j = 0; j <= i; ++j) {
+            robot_real sum = ROBOT_R(0.0);
+            for (int l = 0; l < size; ++l) {
+                sum += pulled[l]*X[l][j];
+            }
+            A[i][j] = sum;
+            A[j][i] = sum;
+        }
+        largest = ROBOT_FMAX(largest, ROBOT_FABS(A[i][i]));
+    }
+    return NOISE*largest;
+}
+
+/* Appends the eigenvectors X, over the coordinates `places`, to modes. */
+static void append(int size, const int *places, robot_matrix A, robot_matrix X, const robot_real *row,
+    robot_modes *modes)
+{
+    for (int i = 0; i < size; ++i) {
+        const int at = modes->count;
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            modes->shape[j][at] = ROBOT_R(0.0);
+        }
+        robot_real sum = ROBOT_R(0.0);
+        for (int j = 0; j < size; ++j) {
+            modes->shape[places[j]][at] = X[j][i];
+            sum += row[j]*X[j][i];
+        }
+        modes->squared[at] = A[i][i];
+        modes->row[at] = sum;
+        modes->start[at] = ROBOT_R(0.0);
+        ++modes->count;
+    }
+}
+
+/* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
+static void pulled_on(const robot_arrival *arrival, robot_real pull[ROBOT_SYSTEM])
+{
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        pull[i] = ROBOT_R(0.0);
+    }
+#if ROBOT_POTENTIAL
+    for (int i = 0; i < ROBOT_N; ++i) {
+        for (int j = 0; j < ROBOT_N; ++j) {
+            pull[i] += arrival->links.K[i][j]*arrival->rates[j];
+        }
+    }
+#else
+    (void)arrival;
+#endif
+}
+
+/* Turns a pull that grows with time into a drift and rates of modes. */
+static int lead(const robot_real pull[ROBOT_SYSTEM], robot_modes *modes, robot_real *drift)
+{
+    for (int i = 0; i < modes->count; ++i) {
+        robot_real along = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            along += modes->shape[j][i]*pull[j];
+        }
+        if (ROBOT_FABS(along) > ROBOT_R(0.0)) {
+            if (!(ROBOT_FABS(modes->squared[i]) > ROBOT_R(0.0))) {
+                return ROBOT_UNRESOLVED;
+            }
+            modes->start[i] = along/modes->squared[i];
+            *drift -= modes->row[i]*modes->start[i];
+        }
+    }
+    return ROBOT_OK;
+}
+
+/* Mass and stiffness over links, and over motors where there are springs between. */
+static void whole(const robot_arrival *arrival, const robot_params *p, robot_matrix mass, robot_matrix K)
+{
+    (void)p;
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            const bool links = i < ROBOT_N && j < ROBOT_N;
+            mass[i][j] = links ? arrival->links.M[i][j] : ROBOT_R(0.0);
+#if ROBOT_POTENTIAL
+            K[i][j] = links ? arrival->links.K[i][j] : ROBOT_R(0.0);
+#else
+            K[i][j] = ROBOT_R(0.0);
+#endif
+        }
+    }
+#if ROBOT_ELASTIC
+    for (int i = 0; i < ROBOT_N; ++i) {
+        const int motor = ROBOT_N + i;
+        mass[motor][motor] = ROBOT_ROTOR(p, i);
+        K[i][i] += ROBOT_SPRING(p, i);
+        K[motor][motor] = ROBOT_SPRING(p, i);
+        K[i][motor] = -ROBOT_SPRING(p, i);
+        K[motor][i] = -ROBOT_SPRING(p, i);
+    }
+#endif
+}
+
+int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
+    robot_real *drift)
+{
+    robot_matrix mass;
+    robot_matrix K;
+    robot_matrix X;
+    robot_matrix A;
+    int places[ROBOT_SYSTEM];
+    robot_real row[ROBOT_SYSTEM];
+    robot_real pull[ROBOT_SYSTEM];
+    int size = 0;
+    whole(arrival, p, mass, K);
+    for (int i = 0; i < ROBOT_N; ++i) { /* coordinates that no motor holds to its motion */
+        if (ROBOT_ELASTIC || !robot_has_motor[i]) {
+            places[size] = i;
+            row[size] = arrival->row[i];
+            ++size;
+        }
+    }
+    for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) {
+            mass[i][j] = mass[places[i]][places[j]];
+            K[i][j] = K[places[i]][places[j]];
+        }
+    }
+    *drift = ROBOT_R(1.0);
+    modes->count = 0;
+    if (!unit_motions(size, mass, X)) {
+        return ROBOT_SINGULAR;
+    }
+#if ROBOT_STRUCTURED
+    robot_real k[ROBOT_N];
+    for (int i = 0; i < ROBOT_N; ++i) {
+        k[i] = ROBOT_SPRING(p, i);
+    }
+    stretch(k, X, A);
+    const robot_real noise = ROBOT_R(0.0);
+#else
+    const robot_real noise = congruent(size, K, X, A);
+#endif
+    if (!robot_diagonalise(size, A, X, noise)) {
+        return ROBOT_SINGULAR;
+    }
+    append(size, places, A, X, row, modes);
+    pulled_on(arrival, pull);
+    return lead(pull, modes, drift);
+}
+
+int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
+    robot_real *drift)
+{
+    robot_matrix mass;
+    robot_matrix K;
+    robot_matrix X;
+    robot_matrix A;
+    int places[ROBOT_SYSTEM];
+    robot_real row[ROBOT_SYSTEM];
+    whole(arrival, p, mass, K);
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        places[i] = i;
+        row[i] = i < ROBOT_N ? arrival->row[i] : ROBOT_R(0.0);
+    }
+    for (int i = 0; i < ROBOT_N; ++i) {
+        const int motor = ROBOT_SYSTEM - ROBOT_N + i;
+        K[motor][motor] += ROBOT_GAIN(p, i);
+    }
+    modes->count = 0;
+    if (!unit_motions(ROBOT_SYSTEM, mass, X)) {
+        return ROBOT_SINGULAR;
+    }
+    const robot_real noise = congruent(ROBOT_SYSTEM, K, X, A);
+    if (!robot_diagonalise(ROBOT_SYSTEM, A, X, noise)) {
+        return ROBOT_SINGULAR;
+    }
+    append(ROBOT_SYSTEM, places, A, X, row, modes);
+    *drift = ROBOT_R(1.0);
+    robot_real pull[ROBOT_SYSTEM];
+    pulled_on(arrival, pull);
+    return lead(pull, modes, drift);
+}
+
+#if ROBOT_STRUCTURED
+/*
+ * Deflections d of the springs, by d'' + (1/M + 1/B) k d = -(1/M) J'n f, and the motion r of links
+ * and rotors together: x = J r + g'd with g = B (M + B)^-1 J'n.
+ */
+int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
+    robot_real carried[ROBOT_N])
+{
+    robot_matrix mass;
+    robot_matrix X;
+    robot_matrix A;
+    robot_matrix mobility;
+    int places[ROBOT_SYSTEM];
+    robot_real k[ROBOT_N];
+    (void)p;
+    robot_real moved[ROBOT_N]; /* (M + B)^-1 J'n */
+    for (int i = 0; i < ROBOT_N; ++i) {
+        places[i] = i;
+        k[i] = ROBOT_SPRING(p, i);
+        moved[i] = arrival->row[i];
+        for (int j = 0; j < ROBOT_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+            A[i][j] = mass[i][j];
+        }
+        A[i][i] += ROBOT_ROTOR(p, i);
+    }
+    if (!unit_motions(ROBOT_N, mass, X) || !robot_cholesky(ROBOT_N, A)) {
+        return ROBOT_SINGULAR;
+    }
+    robot_forward(ROBOT_N, A, moved);
+    robot_backward(ROBOT_N, A, moved);
+    robot_real together = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        together += arrival->row[i]*moved[i];
+        carried[i] = ROBOT_ROTOR(p, i)*moved[i];
+        for (int j = 0; j <= i; ++j) {
+            robot_real sum = ROBOT_R(0.0);
+            for (int l = i; l < ROBOT_N; ++l) {
+                sum += X[i][l]*X[j][l];
+            }
+            mobility[i][j] = sum;
+            mobility[j][i] = sum;
+        }
+        mobility[i][i] += ROBOT_R(1.0)/ROBOT_ROTOR(p, i);
+    }
+    if (!(together > ROBOT_R(0.0)) || !robot_cholesky(ROBOT_N, mobility)) {
+        return ROBOT_SINGULAR;
+    }
+    for (int i = 0; i < ROBOT_N; ++i) {
+        for (int j = 0; j < ROBOT_N; ++j) {
+            X[i][j] = j <= i ? mobility[i][j] : ROBOT_R(0.0);
+        }
+    }
+    stretch(k, X, A);
+    if (!robot_diagonalise(ROBOT_N, A, X, ROBOT_R(0.0))) {
+        return ROBOT_SINGULAR;
+    }
+    modes->count = 1; /* the first: r */
+    modes->squared[0] = ROBOT_R(0.0);
+    modes->row[0] = ROBOT_SQRT(together);
+    modes->start[0] = ROBOT_R(1.0)/modes->row[0];
+    for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+        modes->shape[j][0] = ROBOT_R(0.0);
+    }
+    append(ROBOT_N, places, A, X, carried, modes);
+    return ROBOT_OK;
+}
+#else
+int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
+    robot_real carried[ROBOT_N])
+{
+    robot_matrix mass;
+    robot_matrix kept;
+    robot_matrix K;
+    robot_matrix X;
+    robot_matrix A;
+    int places[ROBOT_SYSTEM];
+    robot_real row[ROBOT_SYSTEM];
+    robot_real momentum[ROBOT_SYSTEM]; /* before, at 1 m/s */
+    (void)carried;
+    whole(arrival, p, mass, K);
+    whole(arrival, p, kept, K);
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        places[i] = i;
+        row[i] = i < ROBOT_N ? arrival->row[i] : ROBOT_R(0.0);
+        momentum[i] = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            momentum[i] += kept[i][j]*arrival->rates[j % ROBOT_N];
+        }
+    }
+    modes->count = 0;
+    if (!unit_motions(ROBOT_SYSTEM, mass, X)) {
+        return ROBOT_SINGULAR;
+    }
+    const robot_real noise = congruent(ROBOT_SYSTEM, K, X, A);
+    if (!robot_diagonalise(ROBOT_SYSTEM, A, X, noise)) {
+        return ROBOT_SINGULAR;
+    }
+    append(ROBOT_SYSTEM, places, A, X, row, modes);
+    for (int i = 0; i < modes->count; ++i) {
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            modes->start[i] += modes->shape[j][i]*momentum[j];
+        }
+    }
+    return ROBOT_OK;
+}
+#endif

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Largest force of an impact of robot_ on a part of the body. */
+#include "robot_impact.h"
+
+int robot_peak_force(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real speed,
+    const robot_region *region, const robot_params *p, robot_peak_force_t *out)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    int status = robot_check_positive(&speed, 1);
+    robot_impact impact;
+    if (status == ROBOT_OK) {
+        status = robot_check_impact(region, p);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_links(ROBOT_LINKS_OF(q, p), &impact.arrival.links);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_arrive(n, 0, &impact.arrival);
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    robot_budget budget = {p->steps, false, ROBOT_REAL_MAX};
+    robot_peak_force_t found = {ROBOT_R(0.0), ROBOT_R(0.0)};
+    bool bounded = false;
+    int first;
+    int last;
+    robot_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last; ++motors) {
+        status = robot_impact_prepare(region, p, motors, -speed, &impact);
+        if (status != ROBOT_OK) {
+            return status;
+        }
+        robot_peak peak;
+        robot_impact_run(&impact, speed, &budget, &peak);
+        if (!peak.ended) {
+            if (!(impact.bound > ROBOT_R(0.0))) {
+                return ROBOT_UNRESOLVED;
+            }
+            bounded = true;
+            peak.force = impact.bound*speed;
+        }
+        if (peak.force > found.force) {
+            found.force = peak.force;
+            found.time = peak.time;
+        }
+    }
+    if (!(robot_check_positive(&found.force, 1) == ROBOT_OK && robot_all_finite(&found.time, 1))) {
+        return ROBOT_SINGULAR;
+    }
+    *out = found;
+    return bounded ? ROBOT_BOUNDED : ROBOT_OK;
+}

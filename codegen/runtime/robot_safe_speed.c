@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Largest speed of robot_ up to which impacts stay below a force. */
+#include "robot_impact.h"
+
+/*
+ * Share of the limit at which trials aim, the share from which on one is near enough, and the largest
+ * that counts as kept: forces are within 2e-3 of the right ones.
+ */
+#define AIM ROBOT_R(0.99)
+#define NEAR ROBOT_R(0.98)
+#define KEPT ROBOT_R(0.9975)
+/* Most trials, and how near two speeds must be between which the force jumps over the limit. */
+#define TRIALS 24
+#define APART ROBOT_R(4e-3)
+/* Usual exponent of the force over speed: between a spring's and Hertz's law. */
+#define EXPONENT ROBOT_R(1.025)
+/* Most that a speed may be off its force's power law at once. */
+#define LEAP ROBOT_R(8.0)
+
+typedef struct {
+    robot_real limit;
+    robot_real low, low_force; /* the largest speed known to be safe; 0 while unknown */
+    robot_real high; /* the least known not to be; 0 while unknown */
+} search;
+
+/* Next speed to try: by the usual power law, unless that is known to be wrong. */
+static robot_real next_speed(const search *s, robot_real v, robot_real force)
+{
+    const robot_real ratio = ROBOT_POW(AIM*s->limit/force, ROBOT_R(1.0)/EXPONENT);
+    const robot_real next = v*ROBOT_FMIN(LEAP, ROBOT_FMAX(ROBOT_R(1.0)/LEAP, ratio));
+    const bool fits = next > s->low && (next < s->high || !(s->high > ROBOT_R(0.0)));
+    return fits ? next : ROBOT_R(0.5)*(s->low + s->high);
+}
+
+/* Tries a speed; false once the steps are used up. */
+static bool try_speed(const robot_impact *impact, robot_real v, bool rough, search *s,
+    robot_budget *budget, robot_real *force)
+{
+    robot_peak peak;
+    budget->rough = rough;
+    budget->stop_above = rough ? ROBOT_R(2.0)*s->limit : s->limit;
+    robot_impact_run(impact, v, budget, &peak);
+    *force = peak.force;
+    if (!peak.ended || rough) {
+        return peak.ended && peak.force > ROBOT_R(0.0);
+    }
+    if (peak.force <= KEPT*s->limit) {
+        s->low = v;
+        s->low_force = peak.force;
+    } else {
+        s->high = v;
+    }
+    return peak.force > ROBOT_R(0.0);
+}
+
+static bool is_found(const search *s, robot_real cap)
+{
+    const bool near = s->low_force >= NEAR*s->limit;
+    const bool jumps = s->high > ROBOT_R(0.0) && s->high - s->low <= APART*s->low;
+    return s->low > ROBOT_R(0.0) && (near || jumps || (cap > ROBOT_R(0.0) && s->low >= cap));
+}
+
+/* Searches; false if the steps do not do. */
+static bool find(const robot_impact *impact, robot_real guess, robot_real cap, search *s,
+    robot_budget *budget)
+{
+    robot_real v = guess;
+    robot_real force;
+    if (cap > ROBOT_R(0.0) && !(guess < cap)) {
+        v = cap;
+    } else {
+        if (!try_speed(impact, v, true, s, budget, &force)) {
+            return false;
+        }
+        v = next_speed(s, v, force);
+        v = cap > ROBOT_R(0.0) ? ROBOT_FMIN(v, cap) : v;
+    }
+    for (int k = 1; k < TRIALS; ++k) {
+        if (!(v > ROBOT_R(0.0) && v < ROBOT_R(0.01)*ROBOT_REAL_MAX)) {
+            return false;
+        }
+        if (!try_speed(impact, v, false, s, budget, &force)) {
+            return false;
+        }
+        if (is_found(s, cap)) {
+            return true;
+        }
+        v = next_speed(s, v, force);
+        v = cap > ROBOT_R(0.0) ? ROBOT_FMIN(v, cap) : v;
+    }
+    return false;
+}
+
+int robot_find_speed(const robot_region *region, const robot_params *p, robot_real limit,
+    robot_real cap, robot_impact *impact, robot_safe_speed_t *found)
+{
+    robot_budget budget = {p->steps, false, limit};
+    bool bounded = false;
+    int first;
+    int last;
+    robot_kinds_of_motors(p, &first, &last);
+    found->speed = cap;
+    found->force = ROBOT_R(0.0);
+    for (int motors = last; motors >= first; --motors) {
+        int status = robot_impact_prepare(region, p, motors, limit, impact);
+        if (status != ROBOT_OK) {
+            return status;
+        }
+        const robot_real guess = robot_two_body_speed(region, impact->mobility, AIM*limit);
+        search s = {limit, ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
+        if (!find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget)) {
+            bounded = true;
+            if (impact->bound > ROBOT_R(0.0) && s.low < limit/impact->bound) {
+                s.low = ROBOT_FMIN(limit/impact->bound, found->speed > ROBOT_R(0.0) ? found->speed : ROBOT_REAL_MAX);
+                s.low_force = s.low*impact->bound;
+            }
+            if (!(s.low > ROBOT_R(0.0))) {
+                return ROBOT_UNRESOLVED;
+            }
+        }
+        found->force = s.low < found->speed ? s.low_force : ROBOT_FMAX(found->force, s.low_force);
+        found->speed = s.low;
+    }
+    const robot_real numbers[2] = {found->speed, found->force};
+    if (robot_check_positive(numbers, 2) != ROBOT_OK) {
+        return ROBOT_SINGULAR;
+    }
+    return bounded ? ROBOT_BOUNDED : ROBOT_OK;
+}
+
+int robot_safe_speed(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real limit,
+    const robot_region *region, const robot_params *p, robot_safe_speed_t *out)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    int status = robot_check_positive(&limit, 1);
+    robot_impact impact;
+    if (status == ROBOT_OK) {
+        status = robot_check_impact(region, p);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_links(ROBOT_LINKS_OF(q, p), &impact.arrival.links);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_arrive(n, 0, &impact.arrival);
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    robot_safe_speed_t found;
+    status = robot_find_speed(region, p, limit, ROBOT_R(0.0), &impact, &found);
+    if (status == ROBOT_OK || status == ROBOT_BOUNDED) {
+        *out = found;
+    }
+    return status;
+}

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Steps in time of robot_'s modes. */
+#include "robot_impact.h"
+
+/* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
+#define CONTACT_STEP ROBOT_R(0.5)
+#define MODE_STEP ROBOT_R(2.8)
+/* Most damping of a servo in the longest step, as a share of what it acts on. */
+#define SERVO_STEP ROBOT_R(0.1)
+/*
+ * A mode stands if its motion about where the force bends it is less than this share of the
+ * displacement, in a contact as fast as `contact`.
+ */
+#define STANDS ROBOT_R(1e-5)
+/*
+ * Nor may the damper's jump at first touch, c v of a force of about v sqrt(k m), be felt in its motion
+ * through the damper, by more than this share of the force.
+ */
+#define FELT ROBOT_R(2e-4)
+/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+#define LEFT ROBOT_R(5e-5)
+/* Steps counted; more than any budget has. */
+#define MOST ROBOT_R(1e6)
+
+static void exchange(robot_modes *modes, int i, int j)
+{
+    const robot_real squared = modes->squared[i];
+    const robot_real row = modes->row[i];
+    const robot_real start = modes->start[i];
+    modes->squared[i] = modes->squared[j];
+    modes->row[i] = modes->row[j];
+    modes->start[i] = modes->start[j];
+    modes->squared[j] = squared;
+    modes->row[j] = row;
+    modes->start[j] = start;
+    for (int k = 0; k < ROBOT_SYSTEM; ++k) {
+        const robot_real shape = modes->shape[k][i];
+        modes->shape[k][i] = modes->shape[k][j];
+        modes->shape[k][j] = shape;
+    }
+}
+
+/* Puts modes that stand behind those that move, whose order stays. */
+static void let_stand(robot_real contact, const robot_region *region, robot_real mobility,
+    bool released, robot_phase *phase)
+{
+    robot_modes *const modes = &phase->modes;
+    const robot_real heavy = contact*contact/(STANDS*mobility);
+    const robot_real twice = region->damping*region->damping/FELT;
+    const robot_real jump = twice*twice*mobility/region->stiffness;
+    robot_real swing = ROBOT_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const robot_real along = modes->row[i]*modes->start[i];
+        swing = ROBOT_FMAX(swing, along*along/ROBOT_FMAX(modes->squared[i], contact));
+    }
+    swing *= STANDS*STANDS;
+    phase->active = 0;
+    phase->compliance = ROBOT_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const robot_real weight = modes->row[i]*modes->row[i];
+        const robot_real along = modes->row[i]*modes->start[i];
+        const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
+            && weight*weight*jump < modes->squared[i]
+            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && along*along <= swing*modes->squared[i];
+        if (stands) {
+            phase->compliance += weight/modes->squared[i];
+        } else {
+            exchange(modes, phase->active, i);
+            ++phase->active;
+        }
+    }
+}
+
+/* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
+static void mode_steps(robot_phase *phase, int i)
+{
+    const robot_real one = ROBOT_R(1.0);
+    const robot_real row = phase->modes.row[i];
+    robot_real h = phase->level[ROBOT_LEVELS - 1].h;
+    robot_real t = phase->modes.squared[i]*h*h;
+    /* sin(a)/a, (1 - cos(a))/a^2 and (a - sin(a))/a^3 over t = a^2 */
+    robot_real lean = ROBOT_R(1.0)/ROBOT_R(6.0)
+        - t*(one/ROBOT_R(120.0) - t*(one/ROBOT_R(5040.0) - t/ROBOT_R(362880.0)));
+    robot_real bend = ROBOT_R(0.5)
+        - t*(one/ROBOT_R(24.0) - t*(one/ROBOT_R(720.0) - t/ROBOT_R(40320.0)));
+    robot_real sine = one - t*lean;
+    for (int k = ROBOT_LEVELS - 1; k >= 0; --k) {
+        robot_level *const level = &phase->level[k];
+        robot_mode_step *const step = &level->mode[i];
+        step->cosine = one - t*bend;
+        step->sine = h*sine;
+        step->back = -phase->modes.squared[i]*h*sine;
+        step->push[0] = row*h*h*(bend - lean);
+        step->push[1] = row*h*h*lean;
+        step->kick[0] = row*h*(sine - bend);
+        step->kick[1] = row*h*bend;
+        for (int end = 0; end < 2; ++end) {
+            level->push[end] += row*step->push[end];
+            level->kick[end] += row*step->kick[end];
+        }
+        lean = ROBOT_R(0.25)*(lean + sine*bend);
+        bend = ROBOT_R(0.5)*sine*sine;
+        sine *= step->cosine;
+        t *= ROBOT_R(4.0);
+        h += h;
+    }
+}
+
+void robot_phase_steps(const robot_region *region, robot_real mobility, robot_real skin_rate,
+    robot_real time, bool released, robot_phase *phase)
+{
+    robot_modes *const modes = &phase->modes;
+    const robot_real spring = region->stiffness*mobility;
+    const robot_real damper = ROBOT_R(0.5)*region->damping*mobility;
+    const robot_real contact = ROBOT_FMIN(spring + damper*damper, skin_rate);
+    if (region->clamped == 0) {
+        const int body = modes->count;
+        modes->squared[body] = ROBOT_R(0.0);
+        modes->row[body] = ROBOT_R(1.0)/ROBOT_SQRT(region->effective_mass);
+        modes->start[body] = ROBOT_R(0.0);
+        for (int k = 0; k < ROBOT_SYSTEM; ++k) {
+            modes->shape[k][body] = ROBOT_R(0.0);
+        }
+        ++modes->count;
+    }
+    let_stand(contact, region, mobility, released, phase);
+    robot_real rate2 = contact/(CONTACT_STEP*CONTACT_STEP);
+    for (int i = 0; i < phase->active; ++i) {
+        rate2 = ROBOT_FMAX(rate2, ROBOT_FABS(modes->squared[i])/(MODE_STEP*MODE_STEP));
+    }
+    robot_real rate = ROBOT_SQRT(rate2);
+    if (phase->damped) {
+        for (int i = 0; i < ROBOT_N; ++i) {
+            robot_real of_motor = ROBOT_R(0.0);
+            const robot_real *const shape = modes->shape[ROBOT_SYSTEM - ROBOT_N + i];
+            for (int k = 0; k < modes->count; ++k) {
+                of_motor += shape[k]*shape[k];
+            }
+            rate = ROBOT_FMAX(rate, phase->damping[i]*of_motor/SERVO_STEP);
+        }
+    }
+    const robot_real wanted = time*rate;
+    phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
+    robot_real h = wanted < MOST ? time/(robot_real)phase->steps : ROBOT_R(1.0)/rate;
+    for (int k = 0; k < ROBOT_LEVELS; ++k) {
+        robot_level *const level = &phase->level[k];
+        level->h = h;
+        level->relax = region->damping > ROBOT_R(0.0)
+            ? ROBOT_EXP(-ROBOT_FMIN(region->stiffness*h/region->damping, ROBOT_R(80.0))) : ROBOT_R(0.0);
+        for (int end = 0; end < 2; ++end) {
+            level->push[end] = ROBOT_R(0.0);
+            level->kick[end] = ROBOT_R(0.0);
+        }
+        h *= ROBOT_R(0.5);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        mode_steps(phase, i);
+    }
+}

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Linear algebra of panda_: Cholesky's factors, and eigenvectors by Jacobi's rotations. */
+#include "panda_impact.h"
+
+/*
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
+ */
+#define TURNED PANDA_R(1e-8)
+/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
+#define SWEEPS 16
+
+bool panda_cholesky(int size, panda_matrix A)
+{
+    for (int j = 0; j < size; ++j) {
+        panda_real pivot = A[j][j];
+        for (int k = 0; k < j; ++k) {
+            pivot -= A[j][k]*A[j][k];
+        }
+        if (!(pivot > PANDA_R(0.0) && pivot <= PANDA_REAL_MAX)) {
+            return false;
+        }
+        const panda_real root = PANDA_SQRT(pivot);
+        const panda_real inverse = PANDA_R(1.0)/root;
+        A[j][j] = root;
+        for (int i = j + 1; i < size; ++i) {
+            panda_real rest = A[i][j];
+            for (int k = 0; k < j; ++k) {
+                rest -= A[i][k]*A[j][k];
+            }
+            A[i][j] = rest*inverse;
+        }
+    }
+    return true;
+}
+
+void panda_forward(int size, panda_matrix L, panda_real *x)
+{
+    for (int i = 0; i < size; ++i) {
+        panda_real rest = x[i];
+        for (int k = 0; k < i; ++k) {
+            rest -= L[i][k]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+void panda_backward(int size, panda_matrix L, panda_real *x)
+{
+    for (int i = size - 1; i >= 0; --i) {
+        panda_real rest = x[i];
+        for (int k = i + 1; k < size; ++k) {
+            rest -= L[k][i]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+/* Turns columns i and j of a matrix by an angle. */
+static void turn_columns(int size, panda_matrix X, int i, int j, panda_real c, panda_real s)
+{
+    for (int k = 0; k < size; ++k) {
+        const panda_real a = X[k][i];
+        const panda_real b = X[k][j];
+        X[k][i] = c*a - s*b;
+        X[k][j] = s*a + c*b;
+    }
+}
+
+/* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
+static void rotate(int size, panda_matrix A, panda_matrix X, int i, int j)
+{
+    const panda_real off = A[i][j];
+    const panda_real half = (A[j][j] - A[i][i])/(off + off);
+    const panda_real length = PANDA_FABS(half) + PANDA_SQRT(half*half + PANDA_R(1.0));
+    const panda_real t = (half < PANDA_R(0.0) ? PANDA_R(-1.0) : PANDA_R(1.0))/length;
+    const panda_real c = PANDA_R(1.0)/PANDA_SQRT(t*t + PANDA_R(1.0));
+    const panda_real s = t*c;
+    A[i][i] -= t*off;
+    A[j][j] += t*off;
+    A[i][j] = PANDA_R(0.0);
+    A[j][i] = PANDA_R(0.0);
+    for (int k = 0; k < size; ++k) {
+        if (k != i && k != j) {
+            const panda_real a = A[i][k];
+            const panda_real b = A[j][k];
+            A[i][k] = c*a - s*b;
+            A[j][k] = s*a + c*b;
+            A[k][i] = A[i][k];
+            A[k][j] = A[j][k];
+        }
+    }
+    turn_columns(size, X, i, j, c, s);
+}
+
+bool panda_diagonalise(int size, panda_matrix A, panda_matrix X, panda_real noise)
+{
+    const panda_real none = noise*noise;
+    for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+        bool turned = false;
+        for (int i = 0; i < size; ++i) {
+            for (int j = i + 1; j < size; ++j) {
+                const panda_real square = A[i][j]*A[i][j];
+                if (square > TURNED*PANDA_FABS(A[i][i]*A[j][j]) && square > none) {
+                    rotate(size, A, X, i, j);
+                    turned = true;
+                }
+            }
+        }
+        if (!turned) {
+            return true;
+        }
+    }
+    return false;
+}

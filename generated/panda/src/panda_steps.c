@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Steps in time of panda_'s modes. */
+#include "panda_impact.h"
+
+/* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
+#define CONTACT_STEP PANDA_R(0.5)
+#define MODE_STEP PANDA_R(2.8)
+/* Most damping of a servo in the longest step, as a share of what it acts on. */
+#define SERVO_STEP PANDA_R(0.1)
+/*
+ * A mode stands if its motion about where the force bends it is less than this share of the
+ * displacement, in a contact as fast as `contact`.
+ */
+#define STANDS PANDA_R(1e-5)
+/*
+ * Nor may the damper's jump at first touch, c v of a force of about v sqrt(k m), be felt in its motion
+ * through the damper, by more than this share of the force.
+ */
+#define FELT PANDA_R(2e-4)
+/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+#define LEFT PANDA_R(5e-5)
+/* Steps counted; more than any budget has. */
+#define MOST PANDA_R(1e6)
+
+static void exchange(panda_modes *modes, int i, int j)
+{
+    const panda_real squared = modes->squared[i];
+    const panda_real row = modes->row[i];
+    const panda_real start = modes->start[i];
+    modes->squared[i] = modes->squared[j];
+    modes->row[i] = modes->row[j];
+    modes->start[i] = modes->start[j];
+    modes->squared[j] = squared;
+    modes->row[j] = row;
+    modes->start[j] = start;
+    for (int k = 0; k < PANDA_SYSTEM; ++k) {
+        const panda_real shape = modes->shape[k][i];
+        modes->shape[k][i] = modes->shape[k][j];
+        modes->shape[k][j] = shape;
+    }
+}
+
+/* Puts modes that stand behind those that move, whose order stays. */
+static void let_stand(panda_real contact, const panda_region *region, panda_real mobility,
+    bool released, panda_phase *phase)
+{
+    panda_modes *const modes = &phase->modes;
+    const panda_real heavy = contact*contact/(STANDS*mobility);
+    const panda_real twice = region->damping*region->damping/FELT;
+    const panda_real jump = twice*twice*mobility/region->stiffness;
+    panda_real swing = PANDA_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const panda_real along = modes->row[i]*modes->start[i];
+        swing = PANDA_FMAX(swing, along*along/PANDA_FMAX(modes->squared[i], contact));
+    }
+    swing *= STANDS*STANDS;
+    phase->active = 0;
+    phase->compliance = PANDA_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const panda_real weight = modes->row[i]*modes->row[i];
+        const panda_real along = modes->row[i]*modes->start[i];
+        const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
+            && weight*weight*jump < modes->squared[i]
+            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && along*along <= swing*modes->squared[i];
+        if (stands) {
+            phase->compliance += weight/modes->squared[i];
+        } else {
+            exchange(modes, phase->active, i);
+            ++phase->active;
+        }
+    }
+}
+
+/* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
+static void mode_steps(panda_phase *phase, int i)
+{
+    const panda_real one = PANDA_R(1.0);
+    const panda_real row = phase->modes.row[i];
+    panda_real h = phase->level[PANDA_LEVELS - 1].h;
+    panda_real t = phase->modes.squared[i]*h*h;
+    /* sin(a)/a, (1 - cos(a))/a^2 and (a - sin(a))/a^3 over t = a^2 */
+    panda_real lean = PANDA_R(1.0)/PANDA_R(6.0)
+        - t*(one/PANDA_R(120.0) - t*(one/PANDA_R(5040.0) - t/PANDA_R(362880.0)));
+    panda_real bend = PANDA_R(0.5)
+        - t*(one/PANDA_R(24.0) - t*(one/PANDA_R(720.0) - t/PANDA_R(40320.0)));
+    panda_real sine = one - t*lean;
+    for (int k = PANDA_LEVELS - 1; k >= 0; --k) {
+        panda_level *const level = &phase->level[k];
+        panda_mode_step *const step = &level->mode[i];
+        step->cosine = one - t*bend;
+        step->sine = h*sine;
+        step->back = -phase->modes.squared[i]*h*sine;
+        step->push[0] = row*h*h*(bend - lean);
+        step->push[1] = row*h*h*lean;
+        step->kick[0] = row*h*(sine - bend);
+        step->kick[1] = row*h*bend;
+        for (int end = 0; end < 2; ++end) {
+            level->push[end] += row*step->push[end];
+            level->kick[end] += row*step->kick[end];
+        }
+        lean = PANDA_R(0.25)*(lean + sine*bend);
+        bend = PANDA_R(0.5)*sine*sine;
+        sine *= step->cosine;
+        t *= PANDA_R(4.0);
+        h += h;
+    }
+}
+
+void panda_phase_steps(const panda_region *region, panda_real mobility, panda_real skin_rate,
+    panda_real time, bool released, panda_phase *phase)
+{
+    panda_modes *const modes = &phase->modes;
+    const panda_real spring = region->stiffness*mobility;
+    const panda_real damper = PANDA_R(0.5)*region->damping*mobility;
+    const panda_real contact = PANDA_FMIN(spring + damper*damper, skin_rate);
+    if (region->clamped == 0) {
+        const int body = modes->count;
+        modes->squared[body] = PANDA_R(0.0);
+        modes->row[body] = PANDA_R(1.0)/PANDA_SQRT(region->effective_mass);
+        modes->start[body] = PANDA_R(0.0);
+        for (int k = 0; k < PANDA_SYSTEM; ++k) {
+            modes->shape[k][body] = PANDA_R(0.0);
+        }
+        ++modes->count;
+    }
+    let_stand(contact, region, mobility, released, phase);
+    panda_real rate2 = contact/(CONTACT_STEP*CONTACT_STEP);
+    for (int i = 0; i < phase->active; ++i) {
+        rate2 = PANDA_FMAX(rate2, PANDA_FABS(modes->squared[i])/(MODE_STEP*MODE_STEP));
+    }
+    panda_real rate = PANDA_SQRT(rate2);
+    if (phase->damped) {
+        for (int i = 0; i < PANDA_N; ++i) {
+            panda_real of_motor = PANDA_R(0.0);
+            const panda_real *const shape = modes->shape[PANDA_SYSTEM - PANDA_N + i];
+            for (int k = 0; k < modes->count; ++k) {
+                of_motor += shape[k]*shape[k];
+            }
+            rate = PANDA_FMAX(rate, phase->damping[i]*of_motor/SERVO_STEP);
+        }
+    }
+    const panda_real wanted = time*rate;
+    phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
+    panda_real h = wanted < MOST ? time/(panda_real)phase->steps : PANDA_R(1.0)/rate;
+    for (int k = 0; k < PANDA_LEVELS; ++k) {
+        panda_level *const level = &phase->level[k];
+        level->h = h;
+        level->relax = region->damping > PANDA_R(0.0)
+            ? PANDA_EXP(-PANDA_FMIN(region->stiffness*h/region->damping, PANDA_R(80.0))) : PANDA_R(0.0);
+        for (int end = 0; end < 2; ++end) {
+            level->push[end] = PANDA_R(0.0);
+            level->kick[end] = PANDA_R(0.0);
+        }
+        h *= PANDA_R(0.5);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        mode_steps(phase, i);
+    }
+}

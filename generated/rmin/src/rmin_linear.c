@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Linear algebra of rmin_: Cholesky's factors, and eigenvectors by Jacobi's rotations. */
+#include "rmin_impact.h"
+
+/*
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
+ */
+#define TURNED RMIN_R(1e-8)
+/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
+#define SWEEPS 16
+
+bool rmin_cholesky(int size, rmin_matrix A)
+{
+    for (int j = 0; j < size; ++j) {
+        rmin_real pivot = A[j][j];
+        for (int k = 0; k < j; ++k) {
+            pivot -= A[j][k]*A[j][k];
+        }
+        if (!(pivot > RMIN_R(0.0) && pivot <= RMIN_REAL_MAX)) {
+            return false;
+        }
+        const rmin_real root = RMIN_SQRT(pivot);
+        const rmin_real inverse = RMIN_R(1.0)/root;
+        A[j][j] = root;
+        for (int i = j + 1; i < size; ++i) {
+            rmin_real rest = A[i][j];
+            for (int k = 0; k < j; ++k) {
+                rest -= A[i][k]*A[j][k];
+            }
+            A[i][j] = rest*inverse;
+        }
+    }
+    return true;
+}
+
+void rmin_forward(int size, rmin_matrix L, rmin_real *x)
+{
+    for (int i = 0; i < size; ++i) {
+        rmin_real rest = x[i];
+        for (int k = 0; k < i; ++k) {
+            rest -= L[i][k]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+void rmin_backward(int size, rmin_matrix L, rmin_real *x)
+{
+    for (int i = size - 1; i >= 0; --i) {
+        rmin_real rest = x[i];
+        for (int k = i + 1; k < size; ++k) {
+            rest -= L[k][i]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+/* Turns columns i and j of a matrix by an angle. */
+static void turn_columns(int size, rmin_matrix X, int i, int j, rmin_real c, rmin_real s)
+{
+    for (int k = 0; k < size; ++k) {
+        const rmin_real a = X[k][i];
+        const rmin_real b = X[k][j];
+        X[k][i] = c*a - s*b;
+        X[k][j] = s*a + c*b;
+    }
+}
+
+/* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
+static void rotate(int size, rmin_matrix A, rmin_matrix X, int i, int j)
+{
+    const rmin_real off = A[i][j];
+    const rmin_real half = (A[j][j] - A[i][i])/(off + off);
+    const rmin_real length = RMIN_FABS(half) + RMIN_SQRT(half*half + RMIN_R(1.0));
+    const rmin_real t = (half < RMIN_R(0.0) ? RMIN_R(-1.0) : RMIN_R(1.0))/length;
+    const rmin_real c = RMIN_R(1.0)/RMIN_SQRT(t*t + RMIN_R(1.0));
+    const rmin_real s = t*c;
+    A[i][i] -= t*off;
+    A[j][j] += t*off;
+    A[i][j] = RMIN_R(0.0);
+    A[j][i] = RMIN_R(0.0);
+    for (int k = 0; k < size; ++k) {
+        if (k != i && k != j) {
+            const rmin_real a = A[i][k];
+            const rmin_real b = A[j][k];
+            A[i][k] = c*a - s*b;
+            A[j][k] = s*a + c*b;
+            A[k][i] = A[i][k];
+            A[k][j] = A[j][k];
+        }
+    }
+    turn_columns(size, X, i, j, c, s);
+}
+
+bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X, rmin_real noise)
+{
+    const rmin_real none = noise*noise;
+    for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+        bool turned = false;
+        for (int i = 0; i < size; ++i) {
+            for (int j = i + 1; j < size; ++j) {
+                const rmin_real square = A[i][j]*A[i][j];
+                if (square > TURNED*RMIN_FABS(A[i][i]*A[j][j]) && square > none) {
+                    rotate(size, A, X, i, j);
+                    turned = true;
+                }
+            }
+        }
+        if (!turned) {
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Robot_ about to touch, and what its impacts are prepared with. */
+#include "rr_impact.h"
+
+/* Squared share of n that may point where motors never move the contact point. */
+#define OUTSIDE RR_R(1e-6)
+#define MOST_STEPS 1000000
+
+int rr_check_impact(const rr_region *region, const rr_params *p)
+{
+    const rr_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
+        region->clamped != 0 ? RR_R(1.0) : region->effective_mass};
+    if (!rr_all_finite(numbers, 4)) {
+        return RR_NOT_FINITE;
+    }
+    const bool body = region->stiffness > RR_R(0.0) && region->damping >= RR_R(0.0)
+        && region->hertz_stiffness > RR_R(0.0) && numbers[3] > RR_R(0.0);
+    const rr_real horizon = RR_HORIZON(p);
+    const rr_real reaction = RR_REACTION_TIME(p);
+    int status = rr_check_positive(&horizon, 1);
+    if (status == RR_OK) {
+        status = rr_check_not_negative(&reaction, 1);
+    }
+    for (int i = 0; i < RR_N && status == RR_OK; ++i) {
+        const rr_real gains[2] = {RR_GAIN(p, i), RR_DAMPING_GAIN(p, i)};
+        status = rr_check_not_negative(gains, 2);
+#if RR_ELASTIC
+        const rr_real drive[2] = {RR_SPRING(p, i), RR_ROTOR(p, i)};
+        status = status == RR_OK ? rr_check_positive(drive, 2) : status;
+#endif
+    }
+    if (status != RR_OK) {
+        return status;
+    }
+    const bool motion = p->motors >= RR_MOTORS_FREE_OR_DRIVEN && p->motors <= RR_MOTORS_SERVO
+        && p->steps > 0 && p->steps <= MOST_STEPS;
+    return body && motion ? RR_OK : RR_OUT_OF_RANGE;
+}
+
+int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
+{
+    rr_real u[3];
+    const int status = rr_unit_vector(n, u);
+    if (status != RR_OK) {
+        return status;
+    }
+    const rr_real (*const J)[RR_N] = (const rr_real (*)[RR_N])&arrival->links.J[3*point];
+    rr_matrix square;
+    rr_real moved[RR_REACH][RR_N];
+    rr_real share[RR_SYSTEM];
+    rr_real within = RR_R(0.0);
+    for (int i = 0; i < RR_N; ++i) {
+        arrival->row[i] = u[0]*J[0][i] + u[1]*J[1][i] + u[2]*J[2][i];
+    }
+    for (int k = 0; k < RR_REACH; ++k) {
+        const rr_real *const d = rr_directions[k];
+        share[k] = d[0]*u[0] + d[1]*u[1] + d[2]*u[2];
+        within += share[k]*share[k];
+        for (int i = 0; i < RR_N; ++i) {
+            moved[k][i] = rr_has_motor[i] ? d[0]*J[0][i] + d[1]*J[1][i] + d[2]*J[2][i] : RR_R(0.0);
+        }
+        for (int l = 0; l <= k; ++l) {
+            rr_real sum = RR_R(0.0);
+            for (int i = 0; i < RR_N; ++i) {
+                sum += moved[k][i]*moved[l][i];
+            }
+            square[k][l] = sum;
+            square[l][k] = sum;
+        }
+    }
+    if (!(within > RR_R(1.0) - OUTSIDE) || !rr_cholesky(RR_REACH, square)) {
+        return RR_SINGULAR;
+    }
+    rr_forward(RR_REACH, square, share);
+    rr_backward(RR_REACH, square, share);
+    rr_real fast = RR_R(0.0);
+    for (int i = 0; i < RR_N; ++i) {
+        rr_real rate = RR_R(0.0);
+        for (int k = 0; k < RR_REACH; ++k) {
+            rate += moved[k][i]*share[k];
+        }
+        arrival->rates[i] = rate;
+        fast += rate*rate;
+    }
+    return fast < RR_FASTEST ? RR_OK : RR_SINGULAR;
+}
+
+void rr_kinds_of_motors(const rr_params *p, int *first, int *last)
+{
+    const bool both = p->motors == RR_MOTORS_FREE_OR_DRIVEN;
+    *first = both ? RR_MOTORS_FREE : p->motors;
+    *last = both ? RR_MOTORS_DRIVEN : p->motors;
+}
+
+/* Largest stiffness of the skin up to a force. */
+static rr_real skin_stiffness(const rr_region *region, rr_real force)
+{
+    const rr_real third = RR_R(1.0)/RR_R(3.0);
+    return RR_R(1.5)*RR_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
+}
+
+rr_real rr_two_body_force(const rr_region *region, rr_real mobility, rr_real speed)
+{
+    const rr_real spring = speed*RR_SQRT(region->stiffness/mobility);
+    const rr_real energy = RR_R(1.25)*speed*speed/mobility;
+    const rr_real skin = RR_POW(energy, RR_R(0.6))*RR_POW(region->hertz_stiffness, RR_R(0.4));
+    return RR_R(1.0)/(RR_R(1.0)/spring + RR_R(1.0)/skin);
+}
+
+rr_real rr_two_body_speed(const rr_region *region, rr_real mobility, rr_real force)
+{
+    const rr_real depth = RR_POW(force/region->hertz_stiffness, RR_R(2.0)/RR_R(3.0));
+    return RR_SQRT(mobility*force*(force/region->stiffness + RR_R(0.8)*depth));
+}
+
+/* Modes of a phase. */
+static int modes_of(int motors, const rr_params *p, rr_impact *impact, rr_phase *phase)
+{
+    phase->drift = RR_R(0.0);
+    phase->damped = false;
+    for (int i = 0; i < RR_N; ++i) {
+        phase->damping[i] = RR_R(0.0);
+    }
+    if (motors == RR_MOTORS_FREE) {
+        return rr_free_modes(&impact->arrival, p, &phase->modes, impact->carried);
+    }
+    if (motors == RR_MOTORS_DRIVEN) {
+        return rr_driven_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    }
+    for (int i = 0; i < RR_N; ++i) {
+        phase->damping[i] = RR_DAMPING_GAIN(p, i);
+        phase->damped = phase->damped || phase->damping[i] > RR_R(0.0);
+    }
+    return rr_servo_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+}
+
+static rr_real mobility_of(const rr_modes *modes)
+{
+    rr_real sum = RR_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        sum += modes->row[i]*modes->row[i];
+    }
+    return sum;
+}
+
+int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
+    rr_real force, rr_impact *impact)
+{
+    const rr_real horizon = RR_HORIZON(p);
+    const rr_real reaction = RR_REACTION_TIME(p);
+    const bool released = motors != RR_MOTORS_FREE && reaction < horizon;
+    const bool at_once = released && !(reaction > RR_R(0.0));
+    impact->phases = released && !at_once ? 2 : 1;
+    int status = modes_of(at_once ? RR_MOTORS_FREE : motors, p, impact, &impact->phase[0]);
+    if (status == RR_OK && impact->phases == 2) {
+        status = modes_of(RR_MOTORS_FREE, p, impact, &impact->phase[1]);
+    }
+    if (status != RR_OK) {
+        return status;
+    }
+    impact->stiffness = region->stiffness;
+    impact->damping = region->damping;
+    impact->skin = region->hertz_stiffness;
+    impact->gives_way = region->clamped == 0;
+    const rr_real body = impact->gives_way ? RR_R(1.0)/region->effective_mass : RR_R(0.0);
+    rr_real mobility = RR_R(0.0);
+    for (int k = 0; k < impact->phases; ++k) {
+        mobility = RR_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    }
+    const bool moves = mobility > RR_LEAST_MOBILITY;
+    if (!moves && (RR_ELASTIC || motors == RR_MOTORS_FREE || impact->phases == 2)) {
+        return RR_SINGULAR;
+    }
+    impact->mobility = RR_FMAX(mobility, RR_LEAST_MOBILITY) + body;
+    const rr_real size =
+        force > RR_R(0.0) ? force : rr_two_body_force(region, impact->mobility, -force);
+    impact->scale = RR_R(0.4)*size;
+    const rr_real damped = region->damping*RR_SQRT(impact->mobility/region->stiffness);
+    impact->smooth = RR_R(1.0)/(RR_R(1.0) + RR_R(4.0)*damped);
+    const rr_real skin_rate = skin_stiffness(region, size)*impact->mobility;
+    for (int k = 0; k < impact->phases; ++k) {
+        const rr_real from = k > 0 ? reaction : RR_R(0.0);
+        const rr_real until = k == 0 && impact->phases == 2 ? reaction : horizon;
+        rr_phase_steps(region, impact->mobility, skin_rate, until - from, k > 0, &impact->phase[k]);
+    }
+#if RR_ELASTIC
+    for (int i = 0; i < RR_N; ++i) {
+        impact->springs[i] = RR_SPRING(p, i);
+        impact->rotors[i] = RR_ROTOR(p, i);
+    }
+#endif
+    impact->bound = rr_bound(p, motors, impact);
+    const rr_real numbers[4] = {impact->mobility, impact->scale, impact->phase[0].level[0].h,
+        impact->phase[impact->phases - 1].level[0].h};
+    return rr_all_finite(numbers, 4) && rr_check_positive(numbers, 4) == RR_OK
+        ? RR_OK : RR_SINGULAR;
+}

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Linear algebra of rr_: Cholesky's factors, and eigenvectors by Jacobi's rotations. */
+#include "rr_impact.h"
+
+/*
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
+ */
+#define TURNED RR_R(1e-8)
+/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
+#define SWEEPS 16
+
+bool rr_cholesky(int size, rr_matrix A)
+{
+    for (int j = 0; j < size; ++j) {
+        rr_real pivot = A[j][j];
+        for (int k = 0; k < j; ++k) {
+            pivot -= A[j][k]*A[j][k];
+        }
+        if (!(pivot > RR_R(0.0) && pivot <= RR_REAL_MAX)) {
+            return false;
+        }
+        const rr_real root = RR_SQRT(pivot);
+        const rr_real inverse = RR_R(1.0)/root;
+        A[j][j] = root;
+        for (int i = j + 1; i < size; ++i) {
+            rr_real rest = A[i][j];
+            for (int k = 0; k < j; ++k) {
+                rest -= A[i][k]*A[j][k];
+            }
+            A[i][j] = rest*inverse;
+        }
+    }
+    return true;
+}
+
+void rr_forward(int size, rr_matrix L, rr_real *x)
+{
+    for (int i = 0; i < size; ++i) {
+        rr_real rest = x[i];
+        for (int k = 0; k < i; ++k) {
+            rest -= L[i][k]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+void rr_backward(int size, rr_matrix L, rr_real *x)
+{
+    for (int i = size - 1; i >= 0; --i) {
+        rr_real rest = x[i];
+        for (int k = i + 1; k < size; ++k) {
+            rest -= L[k][i]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+/* Turns columns i and j of a matrix by an angle. */
+static void turn_columns(int size, rr_matrix X, int i, int j, rr_real c, rr_real s)
+{
+    for (int k = 0; k < size; ++k) {
+        const rr_real a = X[k][i];
+        const rr_real b = X[k][j];
+        X[k][i] = c*a - s*b;
+        X[k][j] = s*a + c*b;
+    }
+}
+
+/* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
+static void rotate(int size, rr_matrix A, rr_matrix X, int i, int j)
+{
+    const rr_real off = A[i][j];
+    const rr_real half = (A[j][j] - A[i][i])/(off + off);
+    const rr_real length = RR_FABS(half) + RR_SQRT(half*half + RR_R(1.0));
+    const rr_real t = (half < RR_R(0.0) ? RR_R(-1.0) : RR_R(1.0))/length;
+    const rr_real c = RR_R(1.0)/RR_SQRT(t*t + RR_R(1.0));
+    const rr_real s = t*c;
+    A[i][i] -= t*off;
+    A[j][j] += t*off;
+    A[i][j] = RR_R(0.0);
+    A[j][i] = RR_R(0.0);
+    for (int k = 0; k < size; ++k) {
+        if (k != i && k != j) {
+            const rr_real a = A[i][k];
+            const rr_real b = A[j][k];
+            A[i][k] = c*a - s*b;
+            A[j][k] = s*a + c*b;
+            A[k][i] = A[i][k];
+            A[k][j] = A[j][k];
+        }
+    }
+    turn_columns(size, X, i, j, c, s);
+}
+
+bool rr_diagonalise(int size, rr_matrix A, rr_matrix X, rr_real noise)
+{
+    const rr_real none = noise*noise;
+    for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+        bool turned = false;
+        for (int i = 0; i < size; ++i) {
+            for (int j = i + 1; j < size; ++j) {
+                const rr_real square = A[i][j]*A[i][j];
+                if (square > TURNED*RR_FABS(A[i][i]*A[j][j]) && square > none) {
+                    rotate(size, A, X, i, j);
+                    turned = true;
+                }
+            }
+        }
+        if (!turned) {
+            return true;
+        }
+    }
+    return false;
+}

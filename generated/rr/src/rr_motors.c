@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Modes of rr_ by what its motors do: drive on, servo, or turn freely.
+ *
+ * With z the deviation from the motion before the impact, M z'' + K z = -J'n f - (P rates) v t, where
+ * P is the curvature of gravity and of springs of the model file; z is over links whose motors drive,
+ * and over links and motors where a servo leads these.
+ */
+#include "rr_impact.h"
+
+/* Share of the largest entry that rounding leaves of one that should be none. */
+#define NOISE (RR_R(8.0)*RR_EPSILON)
+
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
+{
+    if (!rr_cholesky(size, mass)) {
+        return false;
+    }
+    for (int j = 0; j < size; ++j) {
+        rr_real column[RR_SYSTEM];
+        for (int i = 0; i < size; ++i) {
+            column[i] = i == j ? RR_R(1.0) : RR_R(0.0);
+        }
+        rr_backward(size, mass, column);
+        for (int i = 0; i < size; ++i) {
+            X[i][j] = column[i];
+        }
+    }
+    return true;
+}
+
+#if RR_STRUCTURED
+/* A = X' diag(k) X. */
+static void stretch(const rr_real *k, rr_matrix X, rr_matrix A)
+{
+    for (int i = 0; i < RR_N; ++i) {
+        rr_real pulled[RR_N];
+        for (int l = 0; l < RR_N; ++l) {
+            pulled[l] = k[l]*X[l][i];
+        }
+        for (int j = 0; j <= i; ++j) {
+            rr_real sum = RR_R(0.0);
+            for (int l = 0; l < RR_N; ++l) {
+                sum += pulled[l]*X[l][j];
+            }
+            A[i][j] = sum;
+            A[j][i] = sum;
+        }
+    }
+}
+#endif
+
+/* A = X'KX; returns the noise in its entries. */
+static rr_real congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
+{
+    rr_real largest = RR_R(0.0);
+    for (int i = 0; i < size; ++i) {
+        rr_real pulled[RR_SYSTEM];
+        for (int l = 0; l < size; ++l) {
+            pulled[l] = RR_R(0.0);
+            for (int m = 0; m < size; ++m) {
+                pulled[l] += K[l][m]*X[m][i];
+            }
+        }
+        for (int j = 0; j <= i; ++j) {
+            rr_real sum = RR_R(0.0);
+            for (int l = 0; l < size; ++l) {
+                sum += pulled[l]*X[l][j];
+            }
+            A[i][j] = sum;
+            A[j][i] = sum;
+        }
+        largest = RR_FMAX(largest, RR_FABS(A[i][i]));
+    }
+    return NOISE*largest;
+}
+
+/* Appends the eigenvectors X, over the coordinates `places`, to modes. */
+static void append(int size, const int *places, rr_matrix A, rr_matrix X, const rr_real *row,
+    rr_modes *modes)
+{
+    for (int i = 0; i < size; ++i) {
+        const int at = modes->count;
+        for (int j = 0; j < RR_SYSTEM; ++j) {
+            modes->shape[j][at] = RR_R(0.0);
+        }
+        rr_real sum = RR_R(0.0);
+        for (int j = 0; j < size; ++j) {
+            modes->shape[places[j]][at] = X[j][i];
+            sum += row[j]*X[j][i];
+        }
+        modes->squared[at] = A[i][i];
+        modes->row[at] = sum;
+        modes->start[at] = RR_R(0.0);
+        ++modes->count;
+    }
+}
+
+/* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
+static void pulled_on(const rr_arrival *arrival, rr_real pull[RR_SYSTEM])
+{
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        pull[i] = RR_R(0.0);
+    }
+#if RR_POTENTIAL
+    for (int i = 0; i < RR_N; ++i) {
+        for (int j = 0; j < RR_N; ++j) {
+            pull[i] += arrival->links.K[i][j]*arrival->rates[j];
+        }
+    }
+#else
+    (void)arrival;
+#endif
+}
+
+/* Turns a pull that grows with time into a drift and rates of modes. */
+static int lead(const rr_real pull[RR_SYSTEM], rr_modes *modes, rr_real *drift)
+{
+    for (int i = 0; i < modes->count; ++i) {
+        rr_real along = RR_R(0.0);
+        for (int j = 0; j < RR_SYSTEM; ++j) {
+            along += modes->shape[j][i]*pull[j];
+        }
+        if (RR_FABS(along) > RR_R(0.0)) {
+            if (!(RR_FABS(modes->squared[i]) > RR_R(0.0))) {
+                return RR_UNRESOLVED;
+            }
+            modes->start[i] = along/modes->squared[i];
+            *drift -= modes->row[i]*modes->start[i];
+        }
+    }
+    return RR_OK;
+}
+
+/* Mass and stiffness over links, and over motors where there are springs between. */
+static void whole(const rr_arrival *arrival, const rr_params *p, rr_matrix mass, rr_matrix K)
+{
+    (void)p;
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        for (int j = 0; j < RR_SYSTEM; ++j) {
+            const bool links = i < RR_N && j < RR_N;
+            mass[i][j] = links ? arrival->links.M[i][j] : RR_R(0.0);
+#if RR_POTENTIAL
+            K[i][j] = links ? arrival->links.K[i][j] : RR_R(0.0);
+#else
+            K[i][j] = RR_R(0.0);
+#endif
+        }
+    }
+#if RR_ELASTIC
+    for (int i = 0; i < RR_N; ++i) {
+        const int motor = RR_N + i;
+        mass[motor][motor] = RR_ROTOR(p, i);
+        K[i][i] += RR_SPRING(p, i);
+        K[motor][motor] = RR_SPRING(p, i);
+        K[i][motor] = -RR_SPRING(p, i);
+        K[motor][i] = -RR_SPRING(p, i);
+    }
+#endif
+}
+
+int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
+    rr_real *drift)
+{
+    rr_matrix mass;
+    rr_matrix K;
+    rr_matrix X;
+    rr_matrix A;
+    int places[RR_SYSTEM];
+    rr_real row[RR_SYSTEM];
+    rr_real pull[RR_SYSTEM];
+    int size = 0;
+    whole(arrival, p, mass, K);
+    for (int i = 0; i < RR_N; ++i) { /* coordinates that no motor holds to its motion */
+        if (RR_ELASTIC || !rr_has_motor[i]) {
+            places[size] = i;
+            row[size] = arrival->row[i];
+            ++size;
+        }
+    }
+    for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) {
+            mass[i][j] = mass[places[i]][places[j]];
+            K[i][j] = K[places[i]][places[j]];
+        }
+    }
+    *drift = RR_R(1.0);
+    modes->count = 0;
+    if (!unit_motions(size, mass, X)) {
+        return RR_SINGULAR;
+    }
+#if RR_STRUCTURED
+    rr_real k[RR_N];
+    for (int i = 0; i < RR_N; ++i) {
+        k[i] = RR_SPRING(p, i);
+    }
+    stretch(k, X, A);
+    const rr_real noise = RR_R(0.0);
+#else
+    const rr_real noise = congruent(size, K, X, A);
+#endif
+    if (!rr_diagonalise(size, A, X, noise)) {
+        return RR_SINGULAR;
+    }
+    append(size, places, A, X, row, modes);
+    pulled_on(arrival, pull);
+    return lead(pull, modes, drift);
+}
+
+int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
+    rr_real *drift)
+{
+    rr_matrix mass;
+    rr_matrix K;
+    rr_matrix X;
+    rr_matrix A;
+    int places[RR_SYSTEM];
+    rr_real row[RR_SYSTEM];
+    whole(arrival, p, mass, K);
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        places[i] = i;
+        row[i] = i < RR_N ? arrival->row[i] : RR_R(0.0);
+    }
+    for (int i = 0; i < RR_N; ++i) {
+        const int motor = RR_SYSTEM - RR_N + i;
+        K[motor][motor] += RR_GAIN(p, i);
+    }
+    modes->count = 0;
+    if (!unit_motions(RR_SYSTEM, mass, X)) {
+        return RR_SINGULAR;
+    }
+    const rr_real noise = congruent(RR_SYSTEM, K, X, A);
+    if (!rr_diagonalise(RR_SYSTEM, A, X, noise)) {
+        return RR_SINGULAR;
+    }
+    append(RR_SYSTEM, places, A, X, row, modes);
+    *drift = RR_R(1.0);
+    rr_real pull[RR_SYSTEM];
+    pulled_on(arrival, pull);
+    return lead(pull, modes, drift);
+}
+
+#if RR_STRUCTURED
+/*
+ * Deflections d of the springs, by d'' + (1/M + 1/B) k d = -(1/M) J'n f, and the motion r of links
+ * and rotors together: x = J r + g'd with g = B (M + B)^-1 J'n.
+ */
+int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
+    rr_real carried[RR_N])
+{
+    rr_matrix mass;
+    rr_matrix X;
+    rr_matrix A;
+    rr_matrix mobility;
+    int places[RR_SYSTEM];
+    rr_real k[RR_N];
+    (void)p;
+    rr_real moved[RR_N]; /* (M + B)^-1 J'n */
+    for (int i = 0; i < RR_N; ++i) {
+        places[i] = i;
+        k[i] = RR_SPRING(p, i);
+        moved[i] = arrival->row[i];
+        for (int j = 0; j < RR_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+            A[i][j] = mass[i][j];
+        }
+        A[i][i] += RR_ROTOR(p, i);
+    }
+    if (!unit_motions(RR_N, mass, X) || !rr_cholesky(RR_N, A)) {
+        return RR_SINGULAR;
+    }
+    rr_forward(RR_N, A, moved);
+    rr_backward(RR_N, A, moved);
+    rr_real together = RR_R(0.0);
+    for (int i = 0; i < RR_N; ++i) {
+        together += arrival->row[i]*moved[i];
+        carried[i] = RR_ROTOR(p, i)*moved[i];
+        for (int j = 0; j <= i; ++j) {
+            rr_real sum = RR_R(0.0);
+            for (int l = i; l < RR_N; ++l) {
+                sum += X[i][l]*X[j][l];
+            }
+            mobility[i][j] = sum;
+            mobility[j][i] = sum;
+        }
+        mobility[i][i] += RR_R(1.0)/RR_ROTOR(p, i);
+    }
+    if (!(together > RR_R(0.0)) || !rr_cholesky(RR_N, mobility)) {
+        return RR_SINGULAR;
+    }
+    for (int i = 0; i < RR_N; ++i) {
+        for (int j = 0; j < RR_N; ++j) {
+            X[i][j] = j <= i ? mobility[i][j] : RR_R(0.0);
+        }
+    }
+    stretch(k, X, A);
+    if (!rr_diagonalise(RR_N, A, X, RR_R(0.0))) {
+        return RR_SINGULAR;
+    }
+    modes->count = 1; /* the first: r */
+    modes->squared[0] = RR_R(0.0);
+    modes->row[0] = RR_SQRT(together);
+    modes->start[0] = RR_R(1.0)/modes->row[0];
+    for (int j = 0; j < RR_SYSTEM; ++j) {
+        modes->shape[j][0] = RR_R(0.0);
+    }
+    append(RR_N, places, A, X, carried, modes);
+    return RR_OK;
+}
+#else
+int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
+    rr_real carried[RR_N])
+{
+    rr_matrix mass;
+    rr_matrix kept;
+    rr_matrix K;
+    rr_matrix X;
+    rr_matrix A;
+    int places[RR_SYSTEM];
+    rr_real row[RR_SYSTEM];
+    rr_real momentum[RR_SYSTEM]; /* before, at 1 m/s */
+    (void)carried;
+    whole(arrival, p, mass, K);
+    whole(arrival, p, kept, K);
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        places[i] = i;
+        row[i] = i < RR_N ? arrival->row[i] : RR_R(0.0);
+        momentum[i] = RR_R(0.0);
+        for (int j = 0; j < RR_SYSTEM; ++j) {
+            momentum[i] += kept[i][j]*arrival->rates[j % RR_N];
+        }
+    }
+    modes->count = 0;
+    if (!unit_motions(RR_SYSTEM, mass, X)) {
+        return RR_SINGULAR;
+    }
+    const rr_real noise = congruent(RR_SYSTEM, K, X, A);
+    if (!rr_diagonalise(RR_SYSTEM, A, X, noise)) {
+        return RR_SINGULAR;
+    }
+    append(RR_SYSTEM, places, A, X, row, modes);
+    for (int i = 0; i < modes->count; ++i) {
+        for (int j = 0; j < RR_SYSTEM; ++j) {
+            modes->start[i] += modes->shape[j][i]*momentum[j];
+        }
+    }
+    return RR_OK;
+}
+#endif

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Steps in time of rr_'s modes. */
+#include "rr_impact.h"
+
+/* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
+#define CONTACT_STEP RR_R(0.5)
+#define MODE_STEP RR_R(2.8)
+/* Most damping of a servo in the longest step, as a share of what it acts on. */
+#define SERVO_STEP RR_R(0.1)
+/*
+ * A mode stands if its motion about where the force bends it is less than this share of the
+ * displacement, in a contact as fast as `contact`.
+ */
+#define STANDS RR_R(1e-5)
+/*
+ * Nor may the damper's jump at first touch, c v of a force of about v sqrt(k m), be felt in its motion
+ * through the damper, by more than this share of the force.
+ */
+#define FELT RR_R(2e-4)
+/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+#define LEFT RR_R(5e-5)
+/* Steps counted; more than any budget has. */
+#define MOST RR_R(1e6)
+
+static void exchange(rr_modes *modes, int i, int j)
+{
+    const rr_real squared = modes->squared[i];
+    const rr_real row = modes->row[i];
+    const rr_real start = modes->start[i];
+    modes->squared[i] = modes->squared[j];
+    modes->row[i] = modes->row[j];
+    modes->start[i] = modes->start[j];
+    modes->squared[j] = squared;
+    modes->row[j] = row;
+    modes->start[j] = start;
+    for (int k = 0; k < RR_SYSTEM; ++k) {
+        const rr_real shape = modes->shape[k][i];
+        modes->shape[k][i] = modes->shape[k][j];
+        modes->shape[k][j] = shape;
+    }
+}
+
+/* Puts modes that stand behind those that move, whose order stays. */
+static void let_stand(rr_real contact, const rr_region *region, rr_real mobility,
+    bool released, rr_phase *phase)
+{
+    rr_modes *const modes = &phase->modes;
+    const rr_real heavy = contact*contact/(STANDS*mobility);
+    const rr_real twice = region->damping*region->damping/FELT;
+    const rr_real jump = twice*twice*mobility/region->stiffness;
+    rr_real swing = RR_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const rr_real along = modes->row[i]*modes->start[i];
+        swing = RR_FMAX(swing, along*along/RR_FMAX(modes->squared[i], contact));
+    }
+    swing *= STANDS*STANDS;
+    phase->active = 0;
+    phase->compliance = RR_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const rr_real weight = modes->row[i]*modes->row[i];
+        const rr_real along = modes->row[i]*modes->start[i];
+        const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
+            && weight*weight*jump < modes->squared[i]
+            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && along*along <= swing*modes->squared[i];
+        if (stands) {
+            phase->compliance += weight/modes->squared[i];
+        } else {
+            exchange(modes, phase->active, i);
+            ++phase->active;
+        }
+    }
+}
+
+/* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
+static void mode_steps(rr_phase *phase, int i)
+{
+    const rr_real one = RR_R(1.0);
+    const rr_real row = phase->modes.row[i];
+    rr_real h = phase->level[RR_LEVELS - 1].h;
+    rr_real t = phase->modes.squared[i]*h*h;
+    /* sin(a)/a, (1 - cos(a))/a^2 and (a - sin(a))/a^3 over t = a^2 */
+    rr_real lean = RR_R(1.0)/RR_R(6.0)
+        - t*(one/RR_R(120.0) - t*(one/RR_R(5040.0) - t/RR_R(362880.0)));
+    rr_real bend = RR_R(0.5)
+        - t*(one/RR_R(24.0) - t*(one/RR_R(720.0) - t/RR_R(40320.0)));
+    rr_real sine = one - t*lean;
+    for (int k = RR_LEVELS - 1; k >= 0; --k) {
+        rr_level *const level = &phase->level[k];
+        rr_mode_step *const step = &level->mode[i];
+        step->cosine = one - t*bend;
+        step->sine = h*sine;
+        step->back = -phase->modes.squared[i]*h*sine;
+        step->push[0] = row*h*h*(bend - lean);
+        step->push[1] = row*h*h*lean;
+        step->kick[0] = row*h*(sine - bend);
+        step->kick[1] = row*h*bend;
+        for (int end = 0; end < 2; ++end) {
+            level->push[end] += row*step->push[end];
+            level->kick[end] += row*step->kick[end];
+        }
+        lean = RR_R(0.25)*(lean + sine*bend);
+        bend = RR_R(0.5)*sine*sine;
+        sine *= step->cosine;
+        t *= RR_R(4.0);
+        h += h;
+    }
+}
+
+void rr_phase_steps(const rr_region *region, rr_real mobility, rr_real skin_rate,
+    rr_real time, bool released, rr_phase *phase)
+{
+    rr_modes *const modes = &phase->modes;
+    const rr_real spring = region->stiffness*mobility;
+    const rr_real damper = RR_R(0.5)*region->damping*mobility;
+    const rr_real contact = RR_FMIN(spring + damper*damper, skin_rate);
+    if (region->clamped == 0) {
+        const int body = modes->count;
+        modes->squared[body] = RR_R(0.0);
+        modes->row[body] = RR_R(1.0)/RR_SQRT(region->effective_mass);
+        modes->start[body] = RR_R(0.0);
+        for (int k = 0; k < RR_SYSTEM; ++k) {
+            modes->shape[k][body] = RR_R(0.0);
+        }
+        ++modes->count;
+    }
+    let_stand(contact, region, mobility, released, phase);
+    rr_real rate2 = contact/(CONTACT_STEP*CONTACT_STEP);
+    for (int i = 0; i < phase->active; ++i) {
+        rate2 = RR_FMAX(rate2, RR_FABS(modes->squared[i])/(MODE_STEP*MODE_STEP));
+    }
+    rr_real rate = RR_SQRT(rate2);
+    if (phase->damped) {
+        for (int i = 0; i < RR_N; ++i) {
+            rr_real of_motor = RR_R(0.0);
+            const rr_real *const shape = modes->shape[RR_SYSTEM - RR_N + i];
+            for (int k = 0; k < modes->count; ++k) {
+                of_motor += shape[k]*shape[k];
+            }
+            rate = RR_FMAX(rate, phase->damping[i]*of_motor/SERVO_STEP);
+        }
+    }
+    const rr_real wanted = time*rate;
+    phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
+    rr_real h = wanted < MOST ? time/(rr_real)phase->steps : RR_R(1.0)/rate;
+    for (int k = 0; k < RR_LEVELS; ++k) {
+        rr_level *const level = &phase->level[k];
+        level->h = h;
+        level->relax = region->damping > RR_R(0.0)
+            ? RR_EXP(-RR_FMIN(region->stiffness*h/region->damping, RR_R(80.0))) : RR_R(0.0);
+        for (int end = 0; end < 2; ++end) {
+            level->push[end] = RR_R(0.0);
+            level->kick[end] = RR_R(0.0);
+        }
+        h *= RR_R(0.5);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        mode_steps(phase, i);
+    }
+}

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Linear algebra of ur5e_: Cholesky's factors, and eigenvectors by Jacobi's rotations. */
+#include "ur5e_impact.h"
+
+/*
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
+ */
+#define TURNED UR5E_R(1e-8)
+/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
+#define SWEEPS 16
+
+bool ur5e_cholesky(int size, ur5e_matrix A)
+{
+    for (int j = 0; j < size; ++j) {
+        ur5e_real pivot = A[j][j];
+        for (int k = 0; k < j; ++k) {
+            pivot -= A[j][k]*A[j][k];
+        }
+        if (!(pivot > UR5E_R(0.0) && pivot <= UR5E_REAL_MAX)) {
+            return false;
+        }
+        const ur5e_real root = UR5E_SQRT(pivot);
+        const ur5e_real inverse = UR5E_R(1.0)/root;
+        A[j][j] = root;
+        for (int i = j + 1; i < size; ++i) {
+            ur5e_real rest = A[i][j];
+            for (int k = 0; k < j; ++k) {
+                rest -= A[i][k]*A[j][k];
+            }
+            A[i][j] = rest*inverse;
+        }
+    }
+    return true;
+}
+
+void ur5e_forward(int size, ur5e_matrix L, ur5e_real *x)
+{
+    for (int i = 0; i < size; ++i) {
+        ur5e_real rest = x[i];
+        for (int k = 0; k < i; ++k) {
+            rest -= L[i][k]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x)
+{
+    for (int i = size - 1; i >= 0; --i) {
+        ur5e_real rest = x[i];
+        for (int k = i + 1; k < size; ++k) {
+            rest -= L[k][i]*x[k];
+        }
+        x[i] = rest/L[i][i];
+    }
+}
+
+/* Turns columns i and j of a matrix by an angle. */
+static void turn_columns(int size, ur5e_matrix X, int i, int j, ur5e_real c, ur5e_real s)
+{
+    for (int k = 0; k < size; ++k) {
+        const ur5e_real a = X[k][i];
+        const ur5e_real b = X[k][j];
+        X[k][i] = c*a - s*b;
+        X[k][j] = s*a + c*b;
+    }
+}
+
+/* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
+static void rotate(int size, ur5e_matrix A, ur5e_matrix X, int i, int j)
+{
+    const ur5e_real off = A[i][j];
+    const ur5e_real half = (A[j][j] - A[i][i])/(off + off);
+    const ur5e_real length = UR5E_FABS(half) + UR5E_SQRT(half*half + UR5E_R(1.0));
+    const ur5e_real t = (half < UR5E_R(0.0) ? UR5E_R(-1.0) : UR5E_R(1.0))/length;
+    const ur5e_real c = UR5E_R(1.0)/UR5E_SQRT(t*t + UR5E_R(1.0));
+    const ur5e_real s = t*c;
+    A[i][i] -= t*off;
+    A[j][j] += t*off;
+    A[i][j] = UR5E_R(0.0);
+    A[j][i] = UR5E_R(0.0);
+    for (int k = 0; k < size; ++k) {
+        if (k != i && k != j) {
+            const ur5e_real a = A[i][k];
+            const ur5e_real b = A[j][k];
+            A[i][k] = c*a - s*b;
+            A[j][k] = s*a + c*b;
+            A[k][i] = A[i][k];
+            A[k][j] = A[j][k];
+        }
+    }
+    turn_columns(size, X, i, j, c, s);
+}
+
+bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X, ur5e_real noise)
+{
+    const ur5e_real none = noise*noise;
+    for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+        bool turned = false;
+        for (int i = 0; i < size; ++i) {
+            for (int j = i + 1; j < size; ++j) {
+                const ur5e_real square = A[i][j]*A[i][j];
+                if (square > TURNED*UR5E_FABS(A[i][i]*A[j][j]) && square > none) {
+                    rotate(size, A, X, i, j);
+                    turned = true;
+                }
+            }
+        }
+        if (!turned) {
+            return true;
+        }
+    }
+    return false;
+}

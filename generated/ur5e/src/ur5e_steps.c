@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Steps in time of ur5e_'s modes. */
+#include "ur5e_impact.h"
+
+/* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
+#define CONTACT_STEP UR5E_R(0.5)
+#define MODE_STEP UR5E_R(2.8)
+/* Most damping of a servo in the longest step, as a share of what it acts on. */
+#define SERVO_STEP UR5E_R(0.1)
+/*
+ * A mode stands if its motion about where the force bends it is less than this share of the
+ * displacement, in a contact as fast as `contact`.
+ */
+#define STANDS UR5E_R(1e-5)
+/*
+ * Nor may the damper's jump at first touch, c v of a force of about v sqrt(k m), be felt in its motion
+ * through the damper, by more than this share of the force.
+ */
+#define FELT UR5E_R(2e-4)
+/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+#define LEFT UR5E_R(5e-5)
+/* Steps counted; more than any budget has. */
+#define MOST UR5E_R(1e6)
+
+static void exchange(ur5e_modes *modes, int i, int j)
+{
+    const ur5e_real squared = modes->squared[i];
+    const ur5e_real row = modes->row[i];
+    const ur5e_real start = modes->start[i];
+    modes->squared[i] = modes->squared[j];
+    modes->row[i] = modes->row[j];
+    modes->start[i] = modes->start[j];
+    modes->squared[j] = squared;
+    modes->row[j] = row;
+    modes->start[j] = start;
+    for (int k = 0; k < UR5E_SYSTEM; ++k) {
+        const ur5e_real shape = modes->shape[k][i];
+        modes->shape[k][i] = modes->shape[k][j];
+        modes->shape[k][j] = shape;
+    }
+}
+
+/* Puts modes that stand behind those that move, whose order stays. */
+static void let_stand(ur5e_real contact, const ur5e_region *region, ur5e_real mobility,
+    bool released, ur5e_phase *phase)
+{
+    ur5e_modes *const modes = &phase->modes;
+    const ur5e_real heavy = contact*contact/(STANDS*mobility);
+    const ur5e_real twice = region->damping*region->damping/FELT;
+    const ur5e_real jump = twice*twice*mobility/region->stiffness;
+    ur5e_real swing = UR5E_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const ur5e_real along = modes->row[i]*modes->start[i];
+        swing = UR5E_FMAX(swing, along*along/UR5E_FMAX(modes->squared[i], contact));
+    }
+    swing *= STANDS*STANDS;
+    phase->active = 0;
+    phase->compliance = UR5E_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const ur5e_real weight = modes->row[i]*modes->row[i];
+        const ur5e_real along = modes->row[i]*modes->start[i];
+        const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
+            && weight*weight*jump < modes->squared[i]
+            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && along*along <= swing*modes->squared[i];
+        if (stands) {
+            phase->compliance += weight/modes->squared[i];
+        } else {
+            exchange(modes, phase->active, i);
+            ++phase->active;
+        }
+    }
+}
+
+/* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
+static void mode_steps(ur5e_phase *phase, int i)
+{
+    const ur5e_real one = UR5E_R(1.0);
+    const ur5e_real row = phase->modes.row[i];
+    ur5e_real h = phase->level[UR5E_LEVELS - 1].h;
+    ur5e_real t = phase->modes.squared[i]*h*h;
+    /* sin(a)/a, (1 - cos(a))/a^2 and (a - sin(a))/a^3 over t = a^2 */
+    ur5e_real lean = UR5E_R(1.0)/UR5E_R(6.0)
+        - t*(one/UR5E_R(120.0) - t*(one/UR5E_R(5040.0) - t/UR5E_R(362880.0)));
+    ur5e_real bend = UR5E_R(0.5)
+        - t*(one/UR5E_R(24.0) - t*(one/UR5E_R(720.0) - t/UR5E_R(40320.0)));
+    ur5e_real sine = one - t*lean;
+    for (int k = UR5E_LEVELS - 1; k >= 0; --k) {
+        ur5e_level *const level = &phase->level[k];
+        ur5e_mode_step *const step = &level->mode[i];
+        step->cosine = one - t*bend;
+        step->sine = h*sine;
+        step->back = -phase->modes.squared[i]*h*sine;
+        step->push[0] = row*h*h*(bend - lean);
+        step->push[1] = row*h*h*lean;
+        step->kick[0] = row*h*(sine - bend);
+        step->kick[1] = row*h*bend;
+        for (int end = 0; end < 2; ++end) {
+            level->push[end] += row*step->push[end];
+            level->kick[end] += row*step->kick[end];
+        }
+        lean = UR5E_R(0.25)*(lean + sine*bend);
+        bend = UR5E_R(0.5)*sine*sine;
+        sine *= step->cosine;
+        t *= UR5E_R(4.0);
+        h += h;
+    }
+}
+
+void ur5e_phase_steps(const ur5e_region *region, ur5e_real mobility, ur5e_real skin_rate,
+    ur5e_real time, bool released, ur5e_phase *phase)
+{
+    ur5e_modes *const modes = &phase->modes;
+    const ur5e_real spring = region->stiffness*mobility;
+    const ur5e_real damper = UR5E_R(0.5)*region->damping*mobility;
+    const ur5e_real contact = UR5E_FMIN(spring + damper*damper, skin_rate);
+    if (region->clamped == 0) {
+        const int body = modes->count;
+        modes->squared[body] = UR5E_R(0.0);
+        modes->row[body] = UR5E_R(1.0)/UR5E_SQRT(region->effective_mass);
+        modes->start[body] = UR5E_R(0.0);
+        for (int k = 0; k < UR5E_SYSTEM; ++k) {
+            modes->shape[k][body] = UR5E_R(0.0);
+        }
+        ++modes->count;
+    }
+    let_stand(contact, region, mobility, released, phase);
+    ur5e_real rate2 = contact/(CONTACT_STEP*CONTACT_STEP);
+    for (int i = 0; i < phase->active; ++i) {
+        rate2 = UR5E_FMAX(rate2, UR5E_FABS(modes->squared[i])/(MODE_STEP*MODE_STEP));
+    }
+    ur5e_real rate = UR5E_SQRT(rate2);
+    if (phase->damped) {
+        for (int i = 0; i < UR5E_N; ++i) {
+            ur5e_real of_motor = UR5E_R(0.0);
+            const ur5e_real *const shape = modes->shape[UR5E_SYSTEM - UR5E_N + i];
+            for (int k = 0; k < modes->count; ++k) {
+                of_motor += shape[k]*shape[k];
+            }
+            rate = UR5E_FMAX(rate, phase->damping[i]*of_motor/SERVO_STEP);
+        }
+    }
+    const ur5e_real wanted = time*rate;
+    phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
+    ur5e_real h = wanted < MOST ? time/(ur5e_real)phase->steps : UR5E_R(1.0)/rate;
+    for (int k = 0; k < UR5E_LEVELS; ++k) {
+        ur5e_level *const level = &phase->level[k];
+        level->h = h;
+        level->relax = region->damping > UR5E_R(0.0)
+            ? UR5E_EXP(-UR5E_FMIN(region->stiffness*h/region->damping, UR5E_R(80.0))) : UR5E_R(0.0);
+        for (int end = 0; end < 2; ++end) {
+            level->push[end] = UR5E_R(0.0);
+            level->kick[end] = UR5E_R(0.0);
+        }
+        h *= UR5E_R(0.5);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        mode_steps(phase, i);
+    }
+}

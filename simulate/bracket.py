@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the motors may do, where nobody has said what they do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+from softimpact.symbolic import ImpactModel, InvalidValue, Motors
+from softimpact.symbolic.impact.motors import KINDS
+
+from .controller import Controller
+
+
+def bracket(
+    model: ImpactModel,
+    motors: Motors | Controller | None,
+    reaction: Motors | None = None,
+    lumped: bool = False,
+) -> tuple[dict[str, Motors | Controller | None], list[str]]:
+    """Return what motors may do, by kind, and what had to be assumed.
+
+    Args:
+        model: the robot.
+        motors: what they do, if that is known.
+        reaction: reaction time and what follows, if it is not.
+        lumped: whether the model of the robot has no motors.
+
+    Raises:
+        InvalidValue: motors are free or a servo, and a rotor's inertia is unknown.
+    """
+    if lumped:
+        return {"free": motors}, []
+    if isinstance(motors, Controller):
+        return {"controller": motors}, []
+    kind = motors.kind if motors else ("servo" if model.drives.has_gains else None)
+    how = motors or reaction or Motors()
+    unknown = unknown_rotors(model)
+    names = ", ".join(f"'{name}'" for name in unknown)
+    if unknown and kind in ("free", "servo", "held"):
+        raise InvalidValue(
+            "rotor_inertia",
+            f"of joint {names} is unknown, and zero would make the robot look safer than it is; "
+            f"give it (0 if there is no rotor), or choose driven motors, which need none",
+        )
+    if unknown:
+        line = (
+            f"rotor inertia of joint {names} is unknown: motors are taken to keep their speed, "
+            "without an end, as the worse case; give the rotor inertia"
+        )
+        return {"driven": replace(how, kind="driven", reaction_time=inf)}, [line]
+    if kind is None:
+        return {k: replace(how, kind=k) for k in KINDS if k in ("free", "driven")}, []
+    return {kind: replace(how, kind=kind)}, []
+
+
+def unknown_rotors(model: ImpactModel) -> list[str]:
+    """Return the names of joints with a motor whose rotor inertia nobody has stated."""
+    known = model.drives.rotors_known
+    if known is None:
+        return []
+    return [
+        joint.name
+        for joint, is_known in zip(model.robot.joints, known, strict=True)
+        if joint.actuated and not is_known
+    ]
