@@ -5,7 +5,7 @@ from .defaults import Payload
 from .errors import UnsupportedOperation
 from .folder import FolderNotWritable, ForeignFolder
 from .manifest import FunctionRecord, Manifest
-from .package import generate_package
+from .package import generate_package, package_of
 
 __all__ = [
     "FolderNotWritable",
@@ -15,4 +15,5 @@ __all__ = [
     "Payload",
     "UnsupportedOperation",
     "generate_package",
+    "package_of",
 ]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from softimpact.symbolic import Robot, closed_chain
@@ -40,7 +41,7 @@ class ImpactSource:
         robot: the rigid robot.
         parameters: all of the package.
         links: the internal function they start from.
-        points: frames of the contact points by name; the first is the package's tip.
+        points: frames of the contact points by name; the first, ``tip``, is the package's own.
         directions: in which motors move the contact points, as rows.
         potential: whether gravity or springs of the model file pull.
         fastest: squared joint velocity for 1 m/s from which on an arrival is singular.
@@ -52,7 +53,7 @@ class ImpactSource:
     robot: Robot
     parameters: tuple[Parameter, ...]
     links: CSource
-    points: tuple[str, ...]
+    points: Mapping[str, str]
     directions: Array
     potential: bool
     fastest: float
@@ -82,7 +83,7 @@ class ImpactSource:
         return [p for p in self.parameters if p.frozen is not None and p.name in read]
 
 
-def impact_source(prefix: str, symbols: Symbols, points: tuple[str, ...]) -> ImpactSource | None:
+def impact_source(prefix: str, symbols: Symbols, points: Mapping[str, str]) -> ImpactSource | None:
     """Return the impacts of a robot.
 
     None where there are none: if the contact point's directions of motion depend on the
@@ -91,7 +92,7 @@ def impact_source(prefix: str, symbols: Symbols, points: tuple[str, ...]) -> Imp
     Args:
         prefix: of the C names.
         symbols: of the robot's package.
-        points: frames of the contact points, the package's tip first.
+        points: frames of the contact points by name, the package's tip first.
     """
     robot, parameters = symbols.robot, symbols.parameters
     directions = directions_of_motion(symbols.model)
@@ -99,7 +100,7 @@ def impact_source(prefix: str, symbols: Symbols, points: tuple[str, ...]) -> Imp
     led = any(a and i not in independent for i, a in enumerate(robot.actuated))
     if directions is None or led:
         return None
-    links = links_of(symbols, points)
+    links = links_of(symbols, tuple(points.values()))
     fastest, heavy = fastest_arrival(symbols.model), heaviest(robot)
     golden = []
     for impact in draw_impacts(robot, parameters, directions, 4 * GOLDEN_IMPACTS, seed=3):
@@ -111,7 +112,7 @@ def impact_source(prefix: str, symbols: Symbols, points: tuple[str, ...]) -> Imp
     if not golden:
         return None
     record = ImpactRecord(
-        points=points,
+        points=tuple(points),
         flops=links.flops,
         accuracy=ACCURACY,
         horizon=HORIZON,

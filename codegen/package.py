@@ -32,6 +32,9 @@ from .source import CSource
 LONGEST_CHAIN = 8
 """Most masses of a generated chain; longer ones lose their last masses to rounding."""
 
+TIP = "tip"
+"""Name of the package's own contact point among those of ``speed_factor``."""
+
 GOLDEN_CASES = 12
 """Inputs in a package's own test."""
 
@@ -64,6 +67,7 @@ def generate_package(
     freeze: Collection[str] = (),
     floating: bool = False,
     poses: Mapping[str, Sequence[float]] | None = None,
+    points: Mapping[str, str] | None = None,
 ) -> Manifest:
     """Write a C99 package that computes a robot's impact model.
 
@@ -86,6 +90,8 @@ def generate_package(
         floating: adds the impact mitigation of the robot with its base set free.
         poses: joint coordinates by name that ``select_configuration`` can choose from; default
             none. They must lie within the joints' limits. Not for robots without impacts.
+        points: further contact points that ``speed_factor`` watches beside the tip: frames, or
+            ``FRAME@x,y,z``, by a name that C can have.
 
     Returns:
         What was generated, as in the package's ``manifest.json``.
@@ -102,6 +108,47 @@ def generate_package(
     """
     folder = Path(out)
     require_place(folder)
+    package = package_of(
+        robot,
+        tip=tip,
+        real=real,
+        name=name,
+        drives_=drives_,
+        gravity=gravity,
+        chain_order=chain_order,
+        payload=payload,
+        freeze=freeze,
+        floating=floating,
+        poses=poses,
+        points=points,
+    )
+    files, costs = render(package)
+    manifest = _manifest(package, costs, {path: sha256(text) for path, text in files.items()})
+    replace_package(folder, {**files, MANIFEST: manifest.to_json()})
+    return manifest
+
+
+def longest_chain(robot: Robot) -> int:
+    """Return the most masses that a generated chain of a robot may have."""
+    return min(LONGEST_CHAIN, coordinates_of(robot))
+
+
+def package_of(
+    robot: Robot,
+    *,
+    tip: str | None = None,
+    real: Real = "double",
+    name: str | None = None,
+    drives_: Drives | None = None,
+    gravity: tuple[float, float, float] | None = None,
+    chain_order: int | None = None,
+    payload: Payload | None = None,
+    freeze: Collection[str] = (),
+    floating: bool = False,
+    poses: Mapping[str, Sequence[float]] | None = None,
+    points: Mapping[str, str] | None = None,
+) -> Package:
+    """Return all that a package's files show, as ``generate_package`` takes it."""
     frame = robot.frame(tip or robot.tip or "").name
     if gravity is None:
         gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
@@ -140,20 +187,22 @@ def generate_package(
         tables=tables,
         configuration=configuration,
         floating=floating,
-        impact=impact_source(prefix, symbols, (frame,)),
+        impact=impact_source(prefix, symbols, {TIP: frame, **checked_points(robot, points or {})}),
         poses=checked,
     )
     if package.poses and not package.impact:
         raise InvalidValue("poses", f"robot '{robot.name}' has no impacts to choose them by")
-    files, costs = render(package)
-    manifest = _manifest(package, costs, {path: sha256(text) for path, text in files.items()})
-    replace_package(folder, {**files, MANIFEST: manifest.to_json()})
-    return manifest
+    return package
 
 
-def longest_chain(robot: Robot) -> int:
-    """Return the most masses that a generated chain of a robot may have."""
-    return min(LONGEST_CHAIN, coordinates_of(robot))
+def checked_points(robot: Robot, points: Mapping[str, str]) -> dict[str, str]:
+    """Return contact points by name; raises InvalidValue, FrameNotFound."""
+    for name, frame in points.items():
+        if not name.isidentifier() or not name.isascii() or name == TIP:
+            raise InvalidValue("points", f"'{name}' is no name of a contact point in C")
+        if robot.frame(frame).joint < 0:
+            raise InvalidValue("points", f"frame '{frame}' is fixed to the base and never moves")
+    return dict(points)
 
 
 def c_name(name: str) -> str:

@@ -80,6 +80,14 @@ def generate(
             help="Build in the candidate poses of a study, or of a JSON file.",
         ),
     ] = None,
+    point: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=FRAME",
+            help="Further contact point that speed_factor watches: a frame, or FRAME@x,y,z (m); "
+            "may be repeated.",
+        ),
+    ] = None,
     json: o.Json = False,
 ) -> None:
     """Write a C99 package; the drives given are the defaults of its parameters."""
@@ -118,11 +126,25 @@ def generate(
         payload=_payload(payload, payload_mass, payload_com),
         freeze=[] if freeze is None else [name.strip() for name in freeze.split(",")],
         poses=pose_table(poses, robot) if poses else None,
+        points=_points(point or []),
     )
     if json:
         print_json({"out": out, **vars(manifest)})
     else:
         _print_table(manifest, out)
+
+
+def _points(given: list[str]) -> dict[str, str]:
+    """Read NAME=FRAME; a name given twice is one too many."""
+    from softimpact.symbolic import InvalidValue
+
+    points: dict[str, str] = {}
+    for text in given:
+        name, equals, frame = text.partition("=")
+        if not equals or not frame or name in points:
+            raise InvalidValue("point", f"needs NAME=FRAME, each name once, not '{text}'")
+        points[name] = frame
+    return points
 
 
 def _payload(wanted: bool, mass: float | None, com: str | None) -> Payload | None:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -50,16 +51,13 @@ class Case:
 
 def rounded(case: Case) -> Case:
     """Return a case whose numbers are exact in float, so that both builds and the oracle agree."""
-    changed = {
-        name: np.asarray(value, dtype=np.float32).astype(float)
-        for name, value in vars(case).items()
-        if isinstance(value, np.ndarray)
-    }
-    numbers = {
-        name: float(np.float32(value)) for name, value in vars(case).items()
-        if isinstance(value, float)
-    }  # fmt: skip
-    return replace(case, **changed, **numbers)
+    changed: dict[str, Any] = {}
+    for name, value in vars(case).items():
+        if isinstance(value, np.ndarray):
+            changed[name] = value.astype(np.float32).astype(float)
+        elif isinstance(value, float):
+            changed[name] = float(np.float32(value))
+    return replace(case, **changed)
 
 
 class Robot:
@@ -88,7 +86,8 @@ class Robot:
         """Return M⁻¹, nᵀJ and the least joint velocities along n."""
         M, J = (np.array(x) for x in self.model(case.q))
         n = case.n / np.linalg.norm(case.n)
-        return np.linalg.inv(M), n @ J, np.linalg.pinv(J, rcond=1e-9) @ n
+        rates = np.linalg.pinv(J, rcond=1e-9) @ n
+        return np.asarray(np.linalg.inv(M)), np.asarray(n @ J), np.asarray(rates)
 
     def right_force(self, case: Case, speed: float) -> float:
         """Return the largest force [N] by the tests' integrator."""
