@@ -176,7 +176,7 @@ def _forces(model: ImpactModel, given: Matrix, p: Matrix, nodes: int, substeps: 
         mobility=ca.reshape(mobility, n, n),
         jacobian=jacobian.T,
         springs=springs,
-        rotors=model.drives.rotors,
+        rotors=known_rotors(model),
         gains=ca.project(ca.reshape(gains, n, n), pattern.sparsity()),
         damping=ca.DM.zeros(n) if damping is None else damping,
         velocity=velocity,
@@ -185,3 +185,9 @@ def _forces(model: ImpactModel, given: Matrix, p: Matrix, nodes: int, substeps: 
     contact = ContactParameters(*ca.vertsplit(numbers["contact"]))
     laws = MotorLaws(*ca.vertsplit(numbers["motors"]))
     return contact_forces(dynamics, contact, laws, numbers["step"], nodes, substeps)
+
+
+def known_rotors(model: ImpactModel) -> ca.DM:
+    """Return the rotor inertias; 1 kg m² where none is known, which driven motors do not feel."""
+    rotors = np.array(model.drives.rotors, dtype=float)
+    return ca.DM(np.where(rotors > 0, rotors, 1.0))

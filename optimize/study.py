@@ -145,6 +145,8 @@ def build_study(file: StudyFile, source: Path) -> Study:
         lower, upper, nominal = _stiffness(robot, file.stiffness)
     with _naming(source, "robot", "rotor_inertia"):
         model = _model(robot, file, nominal)
+        if file.motors.kind != "driven":
+            require_rotors(model.drives, robot.joint_names)
     with _naming(source, "motors", "kind"):
         motors = motors_of(file.motors, model)
     with _naming(source, "hardware", "joint_stiffness"):
@@ -237,7 +239,6 @@ def _model(robot: Robot, file: StudyFile, nominal: Array) -> ImpactModel:
         section.computed_torque_gain,
         damping_gain=motors.damping_gain,
     )
-    require_rotors(built, robot.joint_names)
     return impact_model(robot, drives_=built)
 
 

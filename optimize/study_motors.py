@@ -3,6 +3,10 @@
 
 from __future__ import annotations
 
+from math import inf
+
+import numpy as np
+
 from softimpact.symbolic import ImpactModel, InvalidValue, Motors
 from softimpact.symbolic.impact.motors import MotorKind, check_motors, refuse_held
 
@@ -13,12 +17,15 @@ def motors_of(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ...]:
     """Return what the motors may do; the worst of several counts.
 
     Without a kind, motors with gains are a servo. Without gains either, what they do is unknown:
-    free motors and those that keep their speed are the two ends of it.
+    free motors and those that keep their speed are the two ends of it. Driven motors of which no
+    rotor inertia is known never react: the worse case.
 
     Raises:
         InvalidValue: motors that are held, or a servo without gains.
     """
     kind, has_gains = section.kind, model.drives.has_gains
+    if kind == "driven" and (np.array(model.drives.rotors) == 0).any():
+        return (Motors("driven", inf),)
     if kind is None and has_gains:
         kind = "servo"
     if kind == "servo" and not has_gains:

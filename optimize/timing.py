@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
-from .impact_program import ImpactProgram, impact_numbers, impact_program
+from .impact_program import ImpactProgram, impact_numbers, impact_program, known_rotors
 from .scenarios import Scenarios
 from .study import Study
 
@@ -119,7 +119,8 @@ def _timing(study: Study, duration: float, frequency: float) -> Timing:
 
 
 def _largest_frequency(study: Study, q: Array, direction: Array) -> float:
-    linear = study.model.with_springs(study.upper).linear(q, direction)
+    drives = replace(study.model.drives, rotors=known_rotors(study.model), springs=study.upper)
+    linear = replace(study.model, drives=drives).linear(q, direction)
     mass, stiffness = np.array(linear.mass.matrix), np.array(linear.stiffness)
     return float(np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(mass, stiffness))).max()))
 

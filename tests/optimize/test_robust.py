@@ -11,6 +11,7 @@ import pytest
 from studies import InProcess, changed, study_of, written
 
 from softimpact.optimize import Infeasible, Study, design, load_study
+from softimpact.optimize.impact_program import impact_numbers, impact_program
 from softimpact.optimize.robust import RobustDesign, robust_design
 from softimpact.optimize.study_scenarios import scenarios_of
 from softimpact.simulate import Approach, simulate_impact
@@ -198,6 +199,22 @@ def test_motors_that_are_held_are_refused(tmp_path: Path) -> None:
         study_of(tmp_path, {"motors": {"kind": "held"}}, ("q9",))
     with pytest.raises(InvalidValue, match="is needed: a servo acts by its gains"):
         study_of(tmp_path, {"motors": {"kind": "servo"}}, ("q9",))
+
+
+def test_driven_motors_need_no_rotors_and_then_never_react(tmp_path: Path) -> None:
+    driven: dict[str, dict[str, Any]] = {
+        "robot": {"rotor_inertia": 0.0},
+        "motors": {"kind": "driven", "horizon": 0.05},
+    }
+    study = study_of(tmp_path, driven, ("q9",))
+    assert [(m.kind, m.reaction_time) for m in study.motors] == [("driven", np.inf)]
+    program = impact_program(study.model, 150, 1, compiled=False)
+    q, (motors,) = study.task_pose.q, study.motors
+    row = impact_numbers(study.direction, study.speed, study.contact, motors, 0.05 / 150)
+    force = np.array(program["forces"](np.r_[q, np.log10(study.nominal)], row)).max()
+    approach = Approach(q, study.direction, study.speed)
+    peak = simulate_impact(study.model, approach, study.contact, motors=motors, horizon=0.05).peak
+    assert force == pytest.approx(peak, rel=1e-3)
 
 
 def test_without_a_table_the_worse_end_counts(tmp_path: Path) -> None:
