@@ -15,7 +15,6 @@ Exits with 1 if values differ, or M(q) takes more than 0.3 of the time of Pinocc
 from __future__ import annotations
 
 import argparse
-import json
 import subprocess
 import sys
 import tempfile
@@ -67,7 +66,6 @@ def main() -> int:
 def measure(folder: Path, others: Path, quick: bool) -> tuple[Table, str]:
     """Return times [ns] and the page."""
     robot = load_robot("panda")
-    committed = json.loads((ROOT / "generated/panda/manifest.json").read_text(encoding="utf-8"))
     order = RK4_MASSES
     manifest = generate_package(robot, folder / "panda", chain_order=order)
     package = Generated(robot, manifest.tip, folder / "panda", manifest)
