@@ -10,6 +10,7 @@ import ctypes
 import hashlib
 import os
 import platform
+import shlex
 import shutil
 import subprocess
 import sys
@@ -18,27 +19,46 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import casadi as ca
+from platformdirs import user_cache_path
+
+Command = tuple[str, ...]
+"""Words of a command line."""
+
+WELL_KNOWN = [["cc"], ["gcc"], ["clang"]]
 
 FLAGS = ("-O2", "-fPIC", "-shared", "-fno-math-errno")
 
 
-def c_compiler() -> str | None:
-    """Return the C compiler: $CC, or the first of cc, gcc and clang; None if there is none."""
+def c_compiler() -> Command | None:
+    """Return the C compiler: $CC, or the first of cc, gcc and clang; None if there is none.
+
+    $CC may be a command of several words, such as ``ccache gcc``.
+    """
     named = os.environ.get("CC")
-    candidates = [named] if named else ["cc", "gcc", "clang"]
-    return next((found for name in candidates if (found := shutil.which(name))), None)
+    commands = [[named], shlex.split(named, posix=os.name != "nt")] if named else WELL_KNOWN
+    for first, *others in filter(None, commands):
+        found = shutil.which(first)
+        if found:
+            return (found, *others)
+    return None
 
 
-def cache_folder() -> Path:
-    """Return the folder of compiled functions: $SOFTIMPACT_CACHE, or the user's cache."""
+def cache_folder() -> Path | None:
+    """Return the folder of compiled functions: $SOFTIMPACT_CACHE, or the user's cache.
+
+    None for a user without a home.
+    """
     named = os.environ.get("SOFTIMPACT_CACHE")
     if named:
         return Path(named)
-    base = os.environ.get("XDG_CACHE_HOME")
-    return (Path(base) if base else Path.home() / ".cache") / "softimpact"
+    try:
+        found = user_cache_path("softimpact", appauthor=False)
+    except RuntimeError:
+        return None
+    return found if found.is_absolute() else None  # older versions of platformdirs return ~
 
 
-def compiled_functions(functions: Sequence[ca.Function], compiler: str | None) -> Path | None:
+def compiled_functions(functions: Sequence[ca.Function], compiler: Command | None) -> Path | None:
     """Return a shared library of functions, compiled if it is not in the cache.
 
     Args:
@@ -49,9 +69,9 @@ def compiled_functions(functions: Sequence[ca.Function], compiler: str | None) -
         Path of the library; None without a compiler, or if it fails (a broken toolchain must not
         stop the design).
     """
-    if compiler is None:
-        return None
     folder = cache_folder()
+    if compiler is None or folder is None:
+        return None
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
@@ -61,7 +81,7 @@ def compiled_functions(functions: Sequence[ca.Function], compiler: str | None) -
 
 
 def _compile(
-    functions: Sequence[ca.Function], compiler: str, folder: Path, scratch: Path
+    functions: Sequence[ca.Function], compiler: Command, folder: Path, scratch: Path
 ) -> Path | None:
     generator = ca.CodeGenerator("functions.c")
     for function in functions:
@@ -69,11 +89,11 @@ def _compile(
     generator.generate(f"{scratch}{os.sep}")
     source = scratch / "functions.c"
     key = hashlib.sha256(source.read_bytes())
-    key.update(" ".join([compiler, *FLAGS, sys.platform, platform.machine()]).encode())
+    key.update(" ".join([*compiler, *FLAGS, sys.platform, platform.machine()]).encode())
     library = folder / f"impact_{key.hexdigest()[:24]}.so"
     if not library.exists():
         built = scratch / "functions.so"
-        command = [compiler, *FLAGS, str(source), "-o", str(built), "-lm"]
+        command = [*compiler, *FLAGS, str(source), "-o", str(built), "-lm"]
         if subprocess.run(command, capture_output=True, check=False).returncode != 0:
             return None
         ctypes.CDLL(str(built))  # raises OSError for code of another machine

@@ -7,7 +7,6 @@ motors. So one program serves them all, compiled once for a robot and its contac
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -38,30 +37,31 @@ SIZES = {"direction": 3, "speed": 1, "contact": 4, "motors": 5, "payload": 1, "s
 NUMBERS = sum(SIZES.values())
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class ImpactProgram:
     """Functions of x = [q, log10 k_s] and an impact's numbers p, that a process can load.
 
     Attributes:
-        functions: serialised, by name: ``forces`` (x, p) -> all nodes [N]; ``peaks`` (x, p,
+        functions: names and serialised functions, none where there is a library, since every job
+            carries them: ``forces`` (x, p) -> all nodes [N]; ``peaks`` (x, p,
             boundary) -> one for each window [N]; ``slopes``, the same and its derivative by x.
         library: their compiled form, None to run in CasADi's virtual machine.
         n: number of joints.
         nodes: times at which the force is taken.
     """
 
-    functions: Mapping[str, str]
+    functions: tuple[tuple[str, str], ...]
     library: Path | None
     n: int
     nodes: int
 
     def __getitem__(self, name: str) -> ca.Function:
         """Return a function by name."""
-        return _loaded(name, self.functions[name], self.library)
+        return _loaded(name, dict(self.functions).get(name), self.library)
 
 
 @lru_cache(maxsize=64)
-def _loaded(name: str, serialised: str, library: Path | None) -> ca.Function:
+def _loaded(name: str, serialised: str | None, library: Path | None) -> ca.Function:
     if library is not None:
         return ca.external(name, str(library))
     return ca.Function.deserialize(serialised)
@@ -104,8 +104,9 @@ def impact_program(
     """
     functions = impact_functions(model, nodes, substeps, point or model.tip)
     library = compiled_functions(functions, c_compiler()) if compiled else None
-    serialised = {function.name(): function.serialize() for function in functions}
-    return ImpactProgram(serialised, library, model.robot.n, nodes)
+    serialised = tuple((function.name(), function.serialize()) for function in functions)
+    carried = serialised if library is None else ()
+    return ImpactProgram(carried, library, model.robot.n, nodes)
 
 
 def impact_functions(

@@ -9,7 +9,7 @@ certificate: a bound on every scenario, by evaluation.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor, as_completed
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,7 +29,7 @@ from .solve import FEASIBLE, IN_TURN, Bounds, Found, Instance, Outcome, minimise
 from .stiffest import stiffest
 from .study import Study
 from .timing import Timing, scenario_timing
-from .workers import workers
+from .workers import as_completed, workers
 
 ROUNDS = 40
 """Most exchanges."""

@@ -30,6 +30,7 @@ def simulate_impact(
     *,
     motors: Motors | Controller | None = None,
     horizon: float | None = HORIZON,
+    pressing: bool = True,
     order: int = 3,
     end: ChainEnd | None = None,
     tolerance: float = 1e-10,
@@ -45,8 +46,8 @@ def simulate_impact(
         motors: what they do; None is a servo where the model has gains, else free motors. The
             papers' ``Controller`` takes the place of the model's gains. The two simplest models
             have none.
-        horizon: up to which the largest force counts [s]; a clamped body is followed to
-            ``PRESSED_UNTIL`` at least. None: until the first contact ends.
+        horizon: up to which the largest force counts [s]. None: until the first contact ends.
+        pressing: whether to follow a clamped body to ``PRESSED_UNTIL``, for what presses on it.
         order: number of the chain's masses.
         end: of the chain; None keeps its last spring, to a ground that moves as the motors do,
             unless they are free. A chain much shorter than the robot may be nearer with a free
@@ -69,7 +70,7 @@ def simulate_impact(
     arrival = arrival_of(model, approach)
     what = Motors("servo" if model.drives.has_gains else "free") if motors is None else motors
     scene = _scene(model, arrival, contact, fidelity, what, order, end, tolerance)
-    follows = contact.clamped and horizon is not None
+    follows = contact.clamped and horizon is not None and pressing
     course = course_of(scene, max(horizon, PRESSED_UNTIL) if follows and horizon else horizon)
     found, run = peaks_of(course, horizon), course.run
     return ImpactHistory(

@@ -104,31 +104,41 @@ def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
     return text, [*arm.robot.warnings, *arm.warnings]
 
 
+def _unknown(robot: Robot) -> list[str]:
+    """Names of the joints of whose rotors nothing is known."""
+    if robot.rotors_stated:
+        return []
+    return [joint.name for joint in robot.joints if joint.actuated and not joint.armature]
+
+
 def _rotors(robot: Robot) -> str:
     """Lines on rotor inertias: the file's, its named sets, or that there are none."""
-    sets = ", ".join(f'"{name}"' for name in robot.rotor_inertia_sets)
-    named = f"# rotor_inertia: one of the model's sets ({sets}), or kg m² for each joint" * bool(
-        sets
-    )
-    unknown = [j.name for j in robot.joints if j.actuated and not j.armature]
-    if unknown and not robot.rotors_stated:
-        lines = f"# TODO: the model has no rotor inertia of {', '.join(unknown)};\n"
-        lines += "# reflected to the joints, kg m²; motors count as driving on without it:\n"
-        return lines + f"# rotor_inertia = {[0.1] * robot.n}" + (f"\n{named}" if named else "")
-    shown = ", ".join(f"{joint.armature:g}" for joint in robot.joints)
-    return f"# rotor inertias of the model, kg m²: {shown}" + (f"\n{named}" if named else "")
+    unknown, lines = _unknown(robot), []
+    if unknown:
+        lines += [
+            f"# TODO: the model has no rotor inertia of {', '.join(unknown)};",
+            "# give it, reflected to the joints, kg m²:",
+            f"# rotor_inertia = {[0.1] * robot.n}",
+        ]
+    else:
+        shown = ", ".join(f"{joint.armature:g}" for joint in robot.joints)
+        lines.append(f"# rotor inertias of the model, kg m²: {shown}")
+    if robot.rotor_inertia_sets:
+        sets = ", ".join(f'"{name}"' for name in robot.rotor_inertia_sets)
+        lines.append(f"# rotor_inertia: one of its sets ({sets}), or kg m² for each joint")
+    return "\n".join(lines)
 
 
 def _motors(robot: Robot) -> str:
-    gains = robot.position_gains
+    """Return lines on what the motors do, with the gains of the file's servos."""
     lines = ["# [motors]", '# kind = "servo"  # free, servo or driven']
-    if gains.any():
+    if robot.position_gains.any():
         lines += [
-            f"# position_gain = {gains.tolist()}  # N·m/rad, the model's",
-            f"# damping_gain = {robot.velocity_gains.tolist()}  # N·m·s/rad, the model's",
+            f"# position_gain = {robot.position_gains.tolist()}  # N·m/rad, the model's servo",
+            f"# damping_gain = {robot.velocity_gains.tolist()}  # N·m·s/rad, the model's servo",
         ]
     else:
-        lines += ["# position_gain = 3000.0  # TODO: N·m/rad; the model has none"]
+        lines += ["# position_gain = 3000.0  # TODO: N·m/rad, of a servo; the model has none"]
     return "\n".join([*lines, "# reaction_time = 0.02  # s, from first touch on"])
 
 

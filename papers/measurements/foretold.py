@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Forces of a measured impact, over all that is not known of it.
 
-Rotors, springs, payload, pad and posture are drawn from ranges that were fixed before any force was
-looked at; what the motors do is stated.
+Rotors, springs, payload, pad and posture are drawn from ranges that were fixed before this
+page's bands were computed; what the motors do is stated.
 """
 
 from __future__ import annotations

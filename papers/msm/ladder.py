@@ -88,4 +88,5 @@ def impact_at(
         order=CHAIN_ORDER,
         motors=motors_of(scenario, step),
         horizon=horizon,
+        pressing=False,
     )

@@ -20,7 +20,7 @@ from .description import Body, Description
 from .mjcf_drives import Motors, motors_of
 from .mjcf_equalities import constraints_of
 from .mjcf_inertia import Rules, body_inertias, placement, scaled, stated_inertia
-from .rigid import Array, Inertia, Placement, rotation_from_axis
+from .rigid import Array, Inertia, frame_along
 from .robot import BASE, Frame, Joint, JointKind
 
 ROTOR_SET = "rotor_inertia:"
@@ -384,13 +384,3 @@ def _custom_texts(model: mujoco.MjModel) -> dict[str, str]:
         text = bytes(model.text_data[first : first + size]).rstrip(b"\0")
         texts[name] = text.decode(errors="replace")
     return texts
-
-
-def frame_along(axis: Array, position: Array) -> Placement:
-    """Frame at ``position`` whose z axis is ``axis``, turned the shortest way."""
-    axis = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
-    swing = np.cross([0.0, 0.0, 1.0], axis)
-    sine = float(np.linalg.norm(swing))
-    if sine < np.finfo(float).eps:
-        return Placement(np.diag([1.0, np.sign(axis[2]), np.sign(axis[2])]), position)
-    return Placement(rotation_from_axis(swing / sine, math.atan2(sine, axis[2])), position)

@@ -77,7 +77,7 @@ def motors_of(model: mujoco.MjModel) -> Motors:
         if len(terms) > 1:
             shared[target] = shared.get(target, 0.0) + _armature(model, i)
     for joint, values in limits.items():
-        motors.drives[joint] = replace(motors.drives[joint], torque_limit=sum(values))
+        motors.drives[joint] = replace(motors.drives[joint], torque_limit=sum(values) or np.inf)
     _limit_joints(motors, model)
     motors.tendons = tuple(_tendons(motors, model, fixed, shared))
     return motors
@@ -177,7 +177,7 @@ def _limit_joints(motors: Motors, model: mujoco.MjModel) -> None:
         if model.jnt_actfrclimited[joint]:
             limit = float(abs(model.jnt_actfrcrange[joint]).max())
             drive = motors.drives.get(joint, Drive())
-            limit = min(limit, drive.torque_limit)
+            limit = min(limit or np.inf, drive.torque_limit)  # a limit of 0 is none
             motors.drives[joint] = replace(drive, torque_limit=limit)
 
 

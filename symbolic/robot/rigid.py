@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,6 +91,16 @@ def rotation_from_axis(axis: Array, angle: float) -> Array:
     return np.asarray(
         np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * product(cross, cross)
     )
+
+
+def frame_along(axis: Array, position: Array) -> Placement:
+    """Frame at ``position`` whose z axis is ``axis``, turned the shortest way."""
+    axis = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
+    swing = np.cross([0.0, 0.0, 1.0], axis)
+    sine = float(np.linalg.norm(swing))
+    if sine < np.finfo(float).eps:
+        return Placement(np.diag([1.0, np.sign(axis[2]), np.sign(axis[2])]), position)
+    return Placement(rotation_from_axis(swing / sine, math.atan2(sine, axis[2])), position)
 
 
 @dataclass(frozen=True, eq=False)

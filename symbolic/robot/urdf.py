@@ -17,8 +17,7 @@ import numpy as np
 from ..errors import InvalidInertia, ModelFileError, UnknownName
 from .constraints import Constraint, Coupling
 from .description import WORLD, Body, Description
-from .mjcf import frame_along
-from .rigid import Array, Inertia, Placement, rotation_about_z, rotation_from_axis
+from .rigid import Array, Inertia, Placement, frame_along, rotation_about_z, rotation_from_axis
 from .robot import BASE, Joint, JointKind
 from .xml_file import Element
 

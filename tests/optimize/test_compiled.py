@@ -58,13 +58,35 @@ def test_which_compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     monkeypatch.delenv("CC", raising=False)
     assert c_compiler() is None
     clang = program(tmp_path, "clang", "exit 0")
-    assert c_compiler() == clang
+    assert c_compiler() == (clang,)
     cc = program(tmp_path, "cc", "exit 0")
-    assert c_compiler() == cc
+    assert c_compiler() == (cc,)
     monkeypatch.setenv("CC", clang)
-    assert c_compiler() == clang
+    assert c_compiler() == (clang,)
     monkeypatch.setenv("CC", str(tmp_path / "none"))
     assert c_compiler() is None
+
+
+def test_a_compiler_of_several_words(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "with space").mkdir()
+    cache = program(tmp_path, "ccache", "exit 0")
+    compiler = program(tmp_path / "with space", "gcc", "exit 0")
+    monkeypatch.setenv("CC", f"{cache} gcc -m64")
+    assert c_compiler() == (cache, "gcc", "-m64")
+    monkeypatch.setenv("CC", compiler)
+    assert c_compiler() == (compiler,)
+
+
+@needs_compiler
+def test_a_user_without_a_home_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("SOFTIMPACT_CACHE", "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(name, raising=False)
+
+    def nobody(_: int) -> None:
+        raise KeyError
+
+    monkeypatch.setattr("pwd.getpwuid", nobody)
+    assert compiled_functions(parabola(), COMPILER) is None
 
 
 def test_no_compiler_no_library(cache: Path) -> None:
@@ -104,12 +126,12 @@ def test_the_second_time_nothing_is_compiled(cache: Path) -> None:
     ],
 )
 def test_a_broken_compiler_does_not_matter(cache: Path, tmp_path: Path, text: str) -> None:
-    assert compiled_functions(parabola(), program(tmp_path, "cc", text)) is None
+    assert compiled_functions(parabola(), (program(tmp_path, "cc", text),)) is None
     assert list(cache.iterdir()) == []
 
 
 def test_a_compiler_that_cannot_run_does_not_matter(cache: Path, tmp_path: Path) -> None:
-    assert compiled_functions(parabola(), str(tmp_path / "none")) is None
+    assert compiled_functions(parabola(), (str(tmp_path / "none"),)) is None
     assert list(cache.iterdir()) == []
 
 

@@ -122,8 +122,7 @@ def run_json_without_progress(*arguments: object) -> dict[str, Any]:
     return result
 
 
-@pytest.mark.slow
-def test_infeasible_study_fails_with_ipopts_status_and_keeps_older_results(tmp_path: Path) -> None:
+def test_infeasible_study_says_what_can_be_reached_and_keeps_older_results(tmp_path: Path) -> None:
     out = tmp_path / "out"
     out.mkdir()
     (out / "results.json").write_text('{"generator": "softimpact design"}')
@@ -132,14 +131,48 @@ def test_infeasible_study_fails_with_ipopts_status_and_keeps_older_results(tmp_p
     assert outcome.code == 3
     assert "Traceback" not in outcome.err
     message = outcome.err.splitlines()[-1]
-    assert re.search(r"none of 4 starts was solved \(Ipopt: \w+", message)
+    assert re.search(r"below 0\.001 mm in pose 'q\d+': the least that can be reached is", message)
     printed = json.loads(outcome.out)
     assert message == f"error: {printed['error']}"
-    assert printed["best"]["status"] in printed["status"]
-    assert not printed["best"]["feasible"]
-    assert len(printed["best"]["q"]) == len(printed["best"]["springs"]) == 7
+    assert printed["conflicts"][0] == "accuracy.max_deflection"
+    assert printed["least"]["deflection"] > 1e-6
+    assert len(printed["least"]["q"]) == len(printed["least"]["springs"]) == 7
     assert (out / "results.json").read_text() == '{"generator": "softimpact design"}'
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
+
+
+def test_the_answer_says_what_it_rests_on(results: Results) -> None:
+    _, record = results
+    assert record["worst_force"] == record["winner"]["force"]
+    assert record["worst_scenario"]["motors"] in ("free", "driven")
+    assert record["winner"]["deflection"] <= record["study"]["max_deflection"] * (1 + 1e-5)
+    assert [motors["kind"] for motors in record["study"]["motors"]] == ["free", "driven"]
+    for joint, own in zip(record["study"]["joints"], record["winner"]["springs"], strict=True):
+        low, high = record["indifferent"][joint]
+        assert low <= own * (1 + 1e-9)
+        assert high >= own * (1 - 1e-9)
+    assert record["conflicts"] == []
+    assert record["reference"]["deflection"] <= record["study"]["max_deflection"] * (1 + 1e-3)
+    for pose in record["poses"]:
+        kept = pose["deflection_before"] <= record["study"]["max_deflection"]
+        assert pose["keeps_bounds_before"] == kept
+
+
+@pytest.mark.slow
+def test_one_machine_for_all_scenarios(tmp_path: Path) -> None:
+    study = small_study(tmp_path)
+    text = study.read_text(encoding="utf-8")
+    table = '[scenarios]\nregions = ["chest", "hand"]\nspeeds = [0.5]\n\n[task]'
+    study.write_text(text.replace("[task]", table), encoding="utf-8")
+    record = run_json_without_progress("design", study, "--out", tmp_path / "out")
+    assert record["certificate"]["scenarios"] == 2 * 2 * 2
+    assert record["worst_force"] == pytest.approx(record["check"]["linearised"], rel=1e-3)
+    worst = record["worst_scenario"]
+    assert record["worst_share"] == pytest.approx(record["worst_force"] / worst["limit"])
+    assert record["worst_share"] <= record["equal"]["worst_share"] * (1 + 1e-3)
+    assert set(record["indifferent"]) == {f"joint{i}" for i in range(1, 8)}
+    assert record["winner"]["deflection"] <= 1e-3 * (1 + 1e-5)
+    assert (tmp_path / "out/c/include/panda.h").is_file()
 
 
 def test_bad_input_is_refused_before_the_search(tmp_path: Path) -> None:

@@ -162,7 +162,7 @@ def test_motions_that_cannot_be(tmp_path: Path) -> None:
 
 def test_earlier_files_of_others_stay(motion: Path, tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("keep")
-    assert "choose another --out" in refusal(*arguments(motion, "hand", "--out", tmp_path))
+    assert "choose another folder" in refusal(*arguments(motion, "hand", "--out", tmp_path))
     assert (tmp_path / "mine.txt").read_text() == "keep"
 
 

@@ -143,7 +143,10 @@ def test_a_first_study_says_what_is_missing(tmp_path: Path) -> None:
     path = written(tmp_path, two_links_urdf(), "a.urdf")
     begun = run("init", path, "--tip", "tool")
     assert "TODO: the model has no rotor inertia of j1, j2" in begun.out
-    assert run("check", written(tmp_path, begun.out, "study.toml")).code == 0
+    study = written(tmp_path, begun.out, "study.toml")
+    assert "robot.rotor_inertia: joint 'j1'" in refusal("check", study)
+    written(tmp_path, begun.out.replace("# rotor_inertia =", "rotor_inertia ="), "study.toml")
+    assert run("check", study).code == 0
     assert "names no contact frame" in refusal("init", path)
 
 

@@ -27,6 +27,7 @@ from symbol_kinds import KINDS
 from softimpact.robots import built_in_robots
 from softimpact.symbolic import (
     InvalidValue,
+    Loop,
     LoopCannotClose,
     RedundantLoop,
     Robot,
@@ -163,6 +164,7 @@ def test_gaps_are_between_the_frames(mechanism: Closed) -> None:
     q = np.random.default_rng(0).uniform(-1, 1, robot.n)
     found = np.array(loop_gaps(robot, q)).ravel()
     for loop, axes in zip(robot.loops, closed_chain(robot).axes, strict=True):
+        assert isinstance(loop, Loop)
         ends = [np.array(frame_pose(robot, name, q).position) for name in (loop.first, loop.second)]
         gap, found = found[: len(axes)], found[len(axes) :]
         assert_near(gap, axes @ (ends[0] - ends[1]), 1e-9)
@@ -310,7 +312,9 @@ def test_a_loop_given_twice_is_redundant(tmp_path: Path) -> None:
 def test_loops_close_on_sites_that_share_their_names_with_bodies(tmp_path: Path) -> None:
     text = FOUR_BAR_TEXT.replace('"pin"', '"crank"').replace('"eye"', '"rocker"')
     ours, theirs = robot_of(tmp_path, text), robot_of(tmp_path, FOUR_BAR_TEXT)
-    assert ours.loops[0].first == "site:crank"
+    (loop,) = ours.loops
+    assert isinstance(loop, Loop)
+    assert loop.first == "site:crank"
     assert_near(closed_chain(ours).home, closed_chain(theirs).home)
 
 

@@ -95,6 +95,7 @@ def test_digest_sees_payloads_and_loops(panda: Robot) -> None:
     assert len({robot.digest() for robot in (panda, light, heavy, moved)}) == 4
     rmin = load_robot("rmin")
     (loop,) = rmin.loops
+    assert isinstance(loop, Loop)
     turned = replace(rmin, loops=(Loop(loop.name, loop.second, loop.first),))
     others = (replace(rmin, loops=()), turned, replace(rmin, independent=()))
     assert len({robot.digest() for robot in (rmin, *others)}) == 4

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a robot file is, told by its content, whatever its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from robot_files import two_links, two_links_urdf, urdf_inertial
+
+from softimpact.symbolic import ModelFileError, Robot, arm_of, impact_model, load_robot
+
+
+def felt(robot: Robot) -> float:
+    """Mass felt at the tool along x with rigid joints [kg]."""
+    arm = arm_of(robot, "tool").robot
+    return float(impact_model(arm).reflected_mass([0.3, 1.2], [1.0, 0.0, 0.0]))
+
+
+@pytest.mark.parametrize(
+    ("name", "start", "end"),
+    [
+        ("robot.URDF", b"", b""),
+        ("robot.xml", b"", b""),
+        ("robot", b"", b""),
+        ("robot.urdf", b"\xef\xbb\xbf", b""),
+        ("robot.urdf", b"\n \n", b"\n\n"),
+        ("robot.urdf", b"<!-- <mujoco/> -->", b""),
+    ],
+)
+def test_content_decides_and_not_the_name(
+    tmp_path: Path, name: str, start: bytes, end: bytes
+) -> None:
+    text = two_links_urdf().encode()
+    text = text.removeprefix(b'<?xml version="1.0"?>') if start.startswith(b"<") else text
+    for content in (start + text + end, (start + text + end).replace(b"\n", b"\r\n")):
+        path = tmp_path / name
+        path.write_bytes(content)
+        assert felt(load_robot(path)) == pytest.approx(0.473499, abs=1e-6)
+    if not start.startswith(b"\xef"):
+        path.write_text((start + text).decode().strip(), encoding="utf-16")
+        assert felt(load_robot(path)) == pytest.approx(0.473499, abs=1e-6)
+
+
+@pytest.mark.parametrize("start", [b"\xef\xbb\xbf", b""])
+def test_mjcf_whatever_it_is_called(tmp_path: Path, start: bytes) -> None:
+    path = tmp_path / "robot.urdf"
+    path.write_bytes(start + two_links().strip().encode().replace(b"\n", b"\r\n"))
+    assert felt(load_robot(path)) == pytest.approx(0.359356, abs=1e-6)
+
+
+XACRO = two_links_urdf(
+    top='xmlns:xacro="http://www.ros.org/wiki/xacro"',
+    before='<xacro:property name="m" value="2"/>',
+    upper=urdf_inertial("${m}", "0.2"),
+)
+
+
+def test_xacro_is_expanded(tmp_path: Path) -> None:
+    pytest.importorskip("xacrodoc")
+    path = tmp_path / "arm.urdf.xacro"
+    path.write_text(XACRO)
+    assert felt(load_robot(path)) == pytest.approx(0.473499, abs=1e-6)
+    path.write_text(XACRO.replace("${m}", "${nothing}"))
+    with pytest.raises(ModelFileError, match=r"arm\.urdf\.xacro: xacro does not expand"):
+        load_robot(path)
+
+
+def test_xacro_without_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "xacrodoc", None)
+    path = tmp_path / "arm.xacro"
+    path.write_text(XACRO)
+    with pytest.raises(ModelFileError, match="is xacro: install xacrodoc"):
+        load_robot(path)
+
+
+def test_names_of_robot_descriptions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "robot_descriptions"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (tmp_path / "two.urdf").write_text(two_links_urdf())
+    path = str(tmp_path / "two.urdf")
+    (package / "two_links_description.py").write_text(f"URDF_PATH = {path!r}\n")
+    (package / "offline_description.py").write_text("raise OSError('no network')\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert felt(load_robot("two_links_description")) == pytest.approx(0.473499, abs=1e-6)
+    with pytest.raises(ModelFileError, match="cannot fetch it: no network"):
+        load_robot("offline_description")
