@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from compiled_packages import KINDS, Generated
 
-from softimpact.codegen.impacts import Impact
+from softimpact.codegen.impacts import Impact, draw_impacts
+from softimpact.codegen.inputs import parameters_of
 from softimpact.codegen.samples import Sample
 from softimpact.symbolic import REGIONS
 from softimpact.symbolic.robot.rigid import Array
@@ -21,6 +22,9 @@ OK, NULL_POINTER, NOT_FINITE, ZERO_DIRECTION, OUT_OF_RANGE, SINGULAR = range(6)
 UNRESOLVED, BOUNDED = 8, 9
 FREE_OR_DRIVEN, FREE, DRIVEN, SERVO = range(4)
 PARTS = list(REGIONS)
+
+AXES = {"rr": [0, 1], "rmin": [0, 2]}
+"""Base axes along which a contact point moves that does not move along all."""
 
 
 @dataclass(frozen=True)
@@ -145,3 +149,9 @@ def choose(
         ctypes.byref(out),
     )
     return status, out
+
+
+def impacts(package: Generated, count: int, seed: int) -> list[Impact]:
+    """Return random impacts."""
+    directions = np.eye(3)[AXES.get(package.manifest.name, [0, 1, 2])]
+    return draw_impacts(package.robot, parameters_of(package.robot), directions, count, seed)

@@ -68,8 +68,8 @@ def calls(package: Generated) -> list[Call]:
     if package.manifest.impact:
         for short, number in (("peak_force", "in->speed"), ("safe_speed", "region.force_limit")):
             full = f"{name}_{short}"
-            text = f"{full}(in->q, in->n, {number}, &region, &in->p, &({full}_t){{0}})"
-            found.append(Call(full, text, f"{name}_golden_impacts", f"{name}_region"))
+            text = f"{full}(in->q, in->n, {number}, &region, &in->p, &({full}_t){{0}})%9"  # BOUNDED
+            found.append(Call(full, text, f"{name}_golden_impacts", f"{name}_region", rounds=20))
     if package.manifest.poses:
         full = f"{name}_select_configuration"
         table = f"{name}_candidates, {name.upper()}_CANDIDATES, NULL"

@@ -39,6 +39,8 @@ static Samples readSamples(std::istream& in) {
   Samples samples(count);
   for (sample& s : samples) {
     panda_default_params(&s.p);
+    s.p.motors = PANDA_MOTORS_FREE;
+    s.p.horizon = 0.1;
     int part = 0, clamped = 0;
     for (double* v : {s.q, s.n, s.p.joint_stiffness, s.p.rotor_inertia, s.p.position_gain})
       for (int i = 0; i < (v == s.n ? 3 : PANDA_JOINTS); ++i) in >> v[i];

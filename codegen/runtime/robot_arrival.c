@@ -5,6 +5,8 @@
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE ROBOT_R(1e-6)
 #define MOST_STEPS 1000000
+/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+#define BLURS ROBOT_R(1.6e-2)
 
 int robot_check_impact(const robot_region *region, const robot_params *p)
 {
@@ -117,6 +119,7 @@ robot_real robot_two_body_speed(const robot_region *region, robot_real mobility,
 static int modes_of(int motors, const robot_params *p, robot_impact *impact, robot_phase *phase)
 {
     phase->drift = ROBOT_R(0.0);
+    phase->modes.noise = ROBOT_R(0.0);
     phase->damped = false;
     for (int i = 0; i < ROBOT_N; ++i) {
         phase->damping[i] = ROBOT_R(0.0);
@@ -158,6 +161,8 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
     if (status != ROBOT_OK) {
         return status;
     }
+    const robot_real served = ROBOT_FMIN(reaction, horizon);
+    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
     impact->stiffness = region->stiffness;
     impact->damping = region->damping;
     impact->skin = region->hertz_stiffness;

@@ -414,6 +414,9 @@ void robot_impact_run(const robot_impact *impact, robot_real speed, robot_budget
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
+    if (impact->blurred) {
+        return;
+    }
     for (int k = 0; k < impact->phases; ++k) {
         if (k > 0) {
             release(&s);

@@ -30,6 +30,7 @@ typedef struct {
 /* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
 typedef struct {
     int count;
+    robot_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
     robot_real squared[ROBOT_MODES]; /* frequency, 1/s^2 */
     robot_real row[ROBOT_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     robot_real start[ROBOT_MODES]; /* rates at first touch of an approach of 1 m/s */
@@ -72,6 +73,7 @@ typedef struct {
     bool gives_way;
     robot_real mobility; /* of the contact, 1/kg */
     robot_real scale; /* of forces, N: what bends are measured by */
+    bool blurred; /* too few digits to integrate it */
     robot_real smooth; /* 1, or less where the damper makes forces jump */
     int phases; /* one, or two where motors are released */
     robot_phase phase[2];

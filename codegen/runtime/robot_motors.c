@@ -235,6 +235,7 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
         return ROBOT_SINGULAR;
     }
     append(ROBOT_SYSTEM, places, A, X, row, modes);
+    modes->noise = noise;
     *drift = ROBOT_R(1.0);
     robot_real pull[ROBOT_SYSTEM];
     pulled_on(arrival, pull);

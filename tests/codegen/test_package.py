@@ -31,7 +31,18 @@ from softimpact.symbolic import (
 )
 
 ROOT = Path(__file__).parents[2]
-FLOAT_CALLS = {"sinf", "cosf", "sqrtf", "fmaxf", "powf", "logf", "memcpy", "memset"}
+FLOAT_CALLS = {
+    "sinf",
+    "cosf",
+    "sqrtf",
+    "fmaxf",
+    "powf",
+    "logf",
+    "memcpy",
+    "memset",
+    "fminf",
+    "expf",
+}
 
 
 @pytest.mark.parametrize("name", mostly_slow(COMMITTED))

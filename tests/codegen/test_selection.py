@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from compiled_impacts import OK, SINGULAR, Impacts, choose
+from compiled_impacts import FREE_OR_DRIVEN, OK, SINGULAR, Impacts, Motion, choose
 from compiled_packages import KINDS, Generated
 
 from softimpact.codegen import generate_package
@@ -29,7 +29,9 @@ def select(
     study = load_study(STUDY)
     rotors = np.array(study.model.drives.rotors).ravel()
     parameters = np.array([np.broadcast_to(study.nominal, 7), rotors, *np.zeros((2, 7))])
-    return choose(compiled, poses, study.direction, study.speed, parameters, allowed)
+    # as the study is silent: the worse of free motors and motors that drive on
+    motion = Motion(FREE_OR_DRIVEN, 0.02, study.horizon)
+    return choose(compiled, poses, study.direction, study.speed, parameters, allowed, motion)
 
 
 @pytest.fixture(scope="module")

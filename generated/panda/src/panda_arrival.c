@@ -5,6 +5,8 @@
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE PANDA_R(1e-6)
 #define MOST_STEPS 1000000
+/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+#define BLURS PANDA_R(1.6e-2)
 
 int panda_check_impact(const panda_region *region, const panda_params *p)
 {
@@ -117,6 +119,7 @@ panda_real panda_two_body_speed(const panda_region *region, panda_real mobility,
 static int modes_of(int motors, const panda_params *p, panda_impact *impact, panda_phase *phase)
 {
     phase->drift = PANDA_R(0.0);
+    phase->modes.noise = PANDA_R(0.0);
     phase->damped = false;
     for (int i = 0; i < PANDA_N; ++i) {
         phase->damping[i] = PANDA_R(0.0);
@@ -158,6 +161,8 @@ int panda_impact_prepare(const panda_region *region, const panda_params *p, int 
     if (status != PANDA_OK) {
         return status;
     }
+    const panda_real served = PANDA_FMIN(reaction, horizon);
+    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
     impact->stiffness = region->stiffness;
     impact->damping = region->damping;
     impact->skin = region->hertz_stiffness;

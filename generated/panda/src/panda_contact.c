@@ -414,6 +414,9 @@ void panda_impact_run(const panda_impact *impact, panda_real speed, panda_budget
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
+    if (impact->blurred) {
+        return;
+    }
     for (int k = 0; k < impact->phases; ++k) {
         if (k > 0) {
             release(&s);

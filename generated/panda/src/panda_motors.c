@@ -235,6 +235,7 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
         return PANDA_SINGULAR;
     }
     append(PANDA_SYSTEM, places, A, X, row, modes);
+    modes->noise = noise;
     *drift = PANDA_R(1.0);
     panda_real pull[PANDA_SYSTEM];
     pulled_on(arrival, pull);

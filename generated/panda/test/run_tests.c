@@ -1215,8 +1215,12 @@ static void test_impacts(void)
         panda_peak_force_t again = {0, 0};
         panda_safe_speed_t safe = {0, 0};
         expect(panda_body_region(in->part, in->clamped, &region) == PANDA_OK, "panda_body_region", "status");
-        expect(panda_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak) == PANDA_OK,
-               "panda_peak_force", "status of a golden impact");
+        const int found = panda_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak);
+        if (found == PANDA_BOUNDED) { /* a servo that float has too few digits for */
+            expect((double)peak.force >= in->force, "panda_peak_force", "bound of a golden impact");
+            continue;
+        }
+        expect(found == PANDA_OK, "panda_peak_force", "status of a golden impact");
         worst = fmax(worst, fabs((double)peak.force/in->force - 1.0));
         expect(peak.time > 0, "panda_peak_force", "time of the peak");
         expect(panda_safe_speed(in->q, in->n, peak.force, &region, &in->p, &safe) == PANDA_OK,
@@ -1361,6 +1365,9 @@ static void check_selection(const panda_real poses[][7], int count, const panda_
     memset(allowed, 1, sizeof allowed);
     expect(panda_body_region(in->part, in->clamped, &region) == PANDA_OK, "panda_body_region", "status");
     const int best = best_of(poses, count, allowed, in, &region, &force);
+    if (best < 0) { /* all are bounded */
+        return;
+    }
     expect(panda_select_configuration(poses, count, NULL, in->n, in->speed, &region, &in->p, &found) == PANDA_OK,
            "panda_select_configuration", "status");
     expect(found.best == best && is_same(found.force, force), "panda_select_configuration", "is the best");

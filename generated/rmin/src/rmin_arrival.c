@@ -5,6 +5,8 @@
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE RMIN_R(1e-6)
 #define MOST_STEPS 1000000
+/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+#define BLURS RMIN_R(1.6e-2)
 
 int rmin_check_impact(const rmin_region *region, const rmin_params *p)
 {
@@ -117,6 +119,7 @@ rmin_real rmin_two_body_speed(const rmin_region *region, rmin_real mobility, rmi
 static int modes_of(int motors, const rmin_params *p, rmin_impact *impact, rmin_phase *phase)
 {
     phase->drift = RMIN_R(0.0);
+    phase->modes.noise = RMIN_R(0.0);
     phase->damped = false;
     for (int i = 0; i < RMIN_N; ++i) {
         phase->damping[i] = RMIN_R(0.0);
@@ -158,6 +161,8 @@ int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int mot
     if (status != RMIN_OK) {
         return status;
     }
+    const rmin_real served = RMIN_FMIN(reaction, horizon);
+    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
     impact->stiffness = region->stiffness;
     impact->damping = region->damping;
     impact->skin = region->hertz_stiffness;

@@ -414,6 +414,9 @@ void rmin_impact_run(const rmin_impact *impact, rmin_real speed, rmin_budget *bu
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
+    if (impact->blurred) {
+        return;
+    }
     for (int k = 0; k < impact->phases; ++k) {
         if (k > 0) {
             release(&s);

@@ -30,6 +30,7 @@ typedef struct {
 /* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
 typedef struct {
     int count;
+    rmin_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
     rmin_real squared[RMIN_MODES]; /* frequency, 1/s^2 */
     rmin_real row[RMIN_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     rmin_real start[RMIN_MODES]; /* rates at first touch of an approach of 1 m/s */
@@ -72,6 +73,7 @@ typedef struct {
     bool gives_way;
     rmin_real mobility; /* of the contact, 1/kg */
     rmin_real scale; /* of forces, N: what bends are measured by */
+    bool blurred; /* too few digits to integrate it */
     rmin_real smooth; /* 1, or less where the damper makes forces jump */
     int phases; /* one, or two where motors are released */
     rmin_phase phase[2];

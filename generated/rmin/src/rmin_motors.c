@@ -235,6 +235,7 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
         return RMIN_SINGULAR;
     }
     append(RMIN_SYSTEM, places, A, X, row, modes);
+    modes->noise = noise;
     *drift = RMIN_R(1.0);
     rmin_real pull[RMIN_SYSTEM];
     pulled_on(arrival, pull);

@@ -560,8 +560,12 @@ static void test_impacts(void)
         rmin_peak_force_t again = {0, 0};
         rmin_safe_speed_t safe = {0, 0};
         expect(rmin_body_region(in->part, in->clamped, &region) == RMIN_OK, "rmin_body_region", "status");
-        expect(rmin_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak) == RMIN_OK,
-               "rmin_peak_force", "status of a golden impact");
+        const int found = rmin_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak);
+        if (found == RMIN_BOUNDED) { /* a servo that float has too few digits for */
+            expect((double)peak.force >= in->force, "rmin_peak_force", "bound of a golden impact");
+            continue;
+        }
+        expect(found == RMIN_OK, "rmin_peak_force", "status of a golden impact");
         worst = fmax(worst, fabs((double)peak.force/in->force - 1.0));
         expect(peak.time > 0, "rmin_peak_force", "time of the peak");
         expect(rmin_safe_speed(in->q, in->n, peak.force, &region, &in->p, &safe) == RMIN_OK,
@@ -706,6 +710,9 @@ static void check_selection(const rmin_real poses[][6], int count, const rmin_go
     memset(allowed, 1, sizeof allowed);
     expect(rmin_body_region(in->part, in->clamped, &region) == RMIN_OK, "rmin_body_region", "status");
     const int best = best_of(poses, count, allowed, in, &region, &force);
+    if (best < 0) { /* all are bounded */
+        return;
+    }
     expect(rmin_select_configuration(poses, count, NULL, in->n, in->speed, &region, &in->p, &found) == RMIN_OK,
            "rmin_select_configuration", "status");
     expect(found.best == best && is_same(found.force, force), "rmin_select_configuration", "is the best");

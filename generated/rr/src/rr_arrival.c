@@ -5,6 +5,8 @@
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE RR_R(1e-6)
 #define MOST_STEPS 1000000
+/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+#define BLURS RR_R(1.6e-2)
 
 int rr_check_impact(const rr_region *region, const rr_params *p)
 {
@@ -117,6 +119,7 @@ rr_real rr_two_body_speed(const rr_region *region, rr_real mobility, rr_real for
 static int modes_of(int motors, const rr_params *p, rr_impact *impact, rr_phase *phase)
 {
     phase->drift = RR_R(0.0);
+    phase->modes.noise = RR_R(0.0);
     phase->damped = false;
     for (int i = 0; i < RR_N; ++i) {
         phase->damping[i] = RR_R(0.0);
@@ -158,6 +161,8 @@ int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
     if (status != RR_OK) {
         return status;
     }
+    const rr_real served = RR_FMIN(reaction, horizon);
+    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
     impact->stiffness = region->stiffness;
     impact->damping = region->damping;
     impact->skin = region->hertz_stiffness;

@@ -414,6 +414,9 @@ void rr_impact_run(const rr_impact *impact, rr_real speed, rr_budget *budget,
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
+    if (impact->blurred) {
+        return;
+    }
     for (int k = 0; k < impact->phases; ++k) {
         if (k > 0) {
             release(&s);

@@ -235,6 +235,7 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
         return RR_SINGULAR;
     }
     append(RR_SYSTEM, places, A, X, row, modes);
+    modes->noise = noise;
     *drift = RR_R(1.0);
     rr_real pull[RR_SYSTEM];
     pulled_on(arrival, pull);

@@ -637,8 +637,12 @@ static void test_impacts(void)
         rr_peak_force_t again = {0, 0};
         rr_safe_speed_t safe = {0, 0};
         expect(rr_body_region(in->part, in->clamped, &region) == RR_OK, "rr_body_region", "status");
-        expect(rr_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak) == RR_OK,
-               "rr_peak_force", "status of a golden impact");
+        const int found = rr_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak);
+        if (found == RR_BOUNDED) { /* a servo that float has too few digits for */
+            expect((double)peak.force >= in->force, "rr_peak_force", "bound of a golden impact");
+            continue;
+        }
+        expect(found == RR_OK, "rr_peak_force", "status of a golden impact");
         worst = fmax(worst, fabs((double)peak.force/in->force - 1.0));
         expect(peak.time > 0, "rr_peak_force", "time of the peak");
         expect(rr_safe_speed(in->q, in->n, peak.force, &region, &in->p, &safe) == RR_OK,
@@ -783,6 +787,9 @@ static void check_selection(const rr_real poses[][4], int count, const rr_golden
     memset(allowed, 1, sizeof allowed);
     expect(rr_body_region(in->part, in->clamped, &region) == RR_OK, "rr_body_region", "status");
     const int best = best_of(poses, count, allowed, in, &region, &force);
+    if (best < 0) { /* all are bounded */
+        return;
+    }
     expect(rr_select_configuration(poses, count, NULL, in->n, in->speed, &region, &in->p, &found) == RR_OK,
            "rr_select_configuration", "status");
     expect(found.best == best && is_same(found.force, force), "rr_select_configuration", "is the best");

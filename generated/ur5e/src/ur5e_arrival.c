@@ -5,6 +5,8 @@
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE UR5E_R(1e-6)
 #define MOST_STEPS 1000000
+/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+#define BLURS UR5E_R(1.6e-2)
 
 int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p)
 {
@@ -117,6 +119,7 @@ ur5e_real ur5e_two_body_speed(const ur5e_region *region, ur5e_real mobility, ur5
 static int modes_of(int motors, const ur5e_params *p, ur5e_impact *impact, ur5e_phase *phase)
 {
     phase->drift = UR5E_R(0.0);
+    phase->modes.noise = UR5E_R(0.0);
     phase->damped = false;
     for (int i = 0; i < UR5E_N; ++i) {
         phase->damping[i] = UR5E_R(0.0);
@@ -158,6 +161,8 @@ int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int mot
     if (status != UR5E_OK) {
         return status;
     }
+    const ur5e_real served = UR5E_FMIN(reaction, horizon);
+    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
     impact->stiffness = region->stiffness;
     impact->damping = region->damping;
     impact->skin = region->hertz_stiffness;

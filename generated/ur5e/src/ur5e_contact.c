@@ -414,6 +414,9 @@ void ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_budget *bu
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
+    if (impact->blurred) {
+        return;
+    }
     for (int k = 0; k < impact->phases; ++k) {
         if (k > 0) {
             release(&s);

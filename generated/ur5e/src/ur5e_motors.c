@@ -235,6 +235,7 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
         return UR5E_SINGULAR;
     }
     append(UR5E_SYSTEM, places, A, X, row, modes);
+    modes->noise = noise;
     *drift = UR5E_R(1.0);
     ur5e_real pull[UR5E_SYSTEM];
     pulled_on(arrival, pull);
