@@ -93,15 +93,15 @@ def test_bad_input_returns_a_status_and_writes_nothing(
     library = generated.load("double")
     good = draw_samples(generated.robot, parameters_of(generated.robot), 1, seed=5)[0]
     nan, inf = float("nan"), float("inf")
-    springs, rotors, gains = good.parameters
+    springs, rotors, gains, *more = good.parameters
     cases = [
         (replace(good, q=(nan, *good.q[1:])), NOT_FINITE),
         (replace(good, q=(*good.q[1:], -inf)), NOT_FINITE),
         (replace(good, n=(0.0, 0.0, -0.0)), ZERO_DIRECTION),
         (replace(good, n=(0.0, inf, 1.0)), NOT_FINITE),
-        (replace(good, parameters=((0.0, *springs[1:]), rotors, gains)), OUT_OF_RANGE),
-        (replace(good, parameters=(springs, (*rotors[1:], -1.0), gains)), OUT_OF_RANGE),
-        (replace(good, parameters=(springs, rotors, (*gains[1:], nan))), NOT_FINITE),
+        (replace(good, parameters=((0.0, *springs[1:]), rotors, gains, *more)), OUT_OF_RANGE),
+        (replace(good, parameters=(springs, (*rotors[1:], -1.0), gains, *more)), OUT_OF_RANGE),
+        (replace(good, parameters=(springs, rotors, (*gains[1:], nan), *more)), NOT_FINITE),
     ]
     (chain,) = [f for f in generated.functions if f.name == "chain"]
     assert library.call(chain, good)[0] == OK

@@ -46,9 +46,9 @@ class Fault:
 def faults(folders: Sequence[str], data: coverage.CoverageData) -> Iterator[Fault]:
     """Yield the faults of folders whose lines some test passes through."""
     lines_of: dict[str, int] = {}
-    contexts = {}
-    for path in data.measured_files():
-        contexts[Path(path).resolve()] = by_line = data.contexts_by_lineno(path)
+    contexts: dict[Path, dict[int, list[str]]] = {}
+    for measured in data.measured_files():
+        contexts[Path(measured).resolve()] = by_line = data.contexts_by_lineno(measured)
         for tests in by_line.values():
             for test in tests:
                 lines_of[test] = lines_of.get(test, 0) + 1

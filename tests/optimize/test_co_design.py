@@ -239,7 +239,7 @@ def test_the_fallback_is_taken_when_all_points_fail(
 
     monkeypatch.setattr(solving, "_solver", fails_at_first)
     result = design(study, ["free"], InProcess())
-    assert len(calls) == attempts
+    assert len(calls) >= attempts  # windows set anew around peaks need further ones
     assert result.winner.attempts == attempts
     assert result.winner.solved
     assert_feasible(study, result.winner)

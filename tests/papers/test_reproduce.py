@@ -139,7 +139,7 @@ def test_unknown_scenarios_are_refused(tmp_path: Path) -> None:
 
 def test_foreign_folders_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("keep")
-    assert "choose another --out" in refusal("reproduce", "--out", tmp_path)
+    assert "choose another folder" in refusal("reproduce", "--out", tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
 

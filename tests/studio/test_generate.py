@@ -38,10 +38,10 @@ def test_writes_what_the_library_writes(tmp_path: Path) -> None:
 
 
 def test_table_for_people_and_a_prefix(tmp_path: Path) -> None:
-    outcome = run("generate", "rr", "--out", tmp_path / "c", "--name", "arm")
+    outcome = run("generate", "rr", "--out", tmp_path / "c", "--name", "elbow")
     assert (outcome.code, outcome.err) == (0, "")
-    assert "arm_mass_matrix" in outcome.out
-    assert (tmp_path / "c/include/arm.h").is_file()
+    assert "elbow_mass_matrix" in outcome.out
+    assert (tmp_path / "c/include/elbow.h").is_file()
 
 
 @pytest.mark.parametrize(
