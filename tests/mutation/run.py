@@ -23,7 +23,7 @@ from pathlib import Path
 from queue import Queue
 
 import coverage
-from mutants import Mutant, mutants, mutated
+from mutants import Mutant, mutants, mutated  # type: ignore[import-not-found] # beside it
 
 ROOT = Path(__file__).resolve().parents[2]
 FEW = 25
