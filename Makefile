@@ -19,6 +19,8 @@ SAMPLE ?= 200
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
+	$(BIN)/softimpact design robots/studies/panda_24_poses.toml --motors free \
+		--out results/panda_24_poses_free_motors
 
 install: $(VENV)/installed-test
 

@@ -13,8 +13,10 @@ from softimpact.simulate import (
     Fidelity,
     ImpactHistory,
     largest_safe_speed,
+    many_peaks,
     simulate_impact,
 )
+from softimpact.symbolic import Motors
 from softimpact.symbolic.robot.rigid import Array
 
 
@@ -72,3 +74,23 @@ def safe_speed(study: Study, q: Array, springs: Array) -> float:
         )
         for motors in study.motors
     )
+
+
+REACTIONS = (0.0, 0.01, 0.02, 0.05)
+"""Times for which motors drive on before they are released, to show what they decide [s]; zero is
+free motors."""
+
+
+def peaks_by_reaction(study: Study, q: Array, springs: Array) -> dict[float, float]:
+    """Return the largest force [N] for each of ``REACTIONS``, whatever the study's motors do."""
+    drives = study.model.drives.without_gains()
+    model = study.model.with_drives(drives).with_springs(ca.DM(springs))
+    approach = Approach(q, study.direction, study.speed)
+    forces = {}
+    for time in REACTIONS:
+        motors = Motors("driven" if time else "free", time)
+        found = many_peaks(
+            model, approach, study.contact, [study.speed], motors=motors, horizon=study.horizon
+        )
+        forces[time] = float(found.peak[0])
+    return forces

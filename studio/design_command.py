@@ -34,6 +34,8 @@ def design(
     mode: ModeName = "both",
     region: o.Region = None,
     speed: o.Speed = None,
+    motors: o.StudyMotors = None,
+    reaction_time: o.ReactionTime = None,
     json: o.Json = False,
 ) -> None:
     """Find the joint stiffness and the posture of least peak force with Ipopt."""
@@ -44,7 +46,11 @@ def design(
     from .results_folder import replaced_folder, require_replaceable
     from .values import given
 
-    problem = load_study(study, {"impact": given(region=region, speed=speed)})
+    changed = {
+        "impact": given(region=region, speed=speed),
+        "motors": given(kind=motors, reaction_time=reaction_time),
+    }
+    problem = load_study(study, {name: part for name, part in changed.items() if part})
     folder = out or Path("results") / problem.source.stem
     require_replaceable(folder, GENERATOR)
     if problem.scenarios is not None:

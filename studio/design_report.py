@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from importlib.metadata import version
 from typing import Any, Literal
 
@@ -15,9 +15,11 @@ import numpy as np
 from softimpact.optimize import Design, Gains, Outcome, PoseResult, Study
 from softimpact.optimize.solve import preference
 from softimpact.simulate import ImpactHistory
+from softimpact.simulate.bracket import unknown_rotors
 from softimpact.symbolic import Analysis, analyse
+from softimpact.symbolic.robot.rigid import Array
 
-from .checks import Check, safe_speed, simulated
+from .checks import Check, peaks_by_reaction, safe_speed, simulated
 
 Limited = Literal["transient", "quasi_static"]
 
@@ -55,6 +57,9 @@ class DesignReport:
         worst_history: the same of the worst pose with the nominal stiffness.
         speed_before: at which the task's pose with nominal stiffness meets the limit [m/s].
         speed_after: at which the winner meets it [m/s].
+        reactions_before: largest force [N] of the task's pose with nominal stiffness, by the time
+            [s] for which motors drive on; empty without rotor inertias.
+        reactions_after: the same of the winner.
     """
 
     design: Design
@@ -65,6 +70,8 @@ class DesignReport:
     worst_history: ImpactHistory
     speed_before: float
     speed_after: float
+    reactions_before: Mapping[float, float] = field(default_factory=dict)
+    reactions_after: Mapping[float, float] = field(default_factory=dict)
 
     @property
     def study(self) -> Study:
@@ -104,7 +111,13 @@ def design_report(design: Design) -> DesignReport:
         worst_history=simulated(study, worst.candidate.q, study.nominal),
         speed_before=safe_speed(study, task.candidate.q, study.nominal),
         speed_after=safe_speed(study, winner.q, winner.springs),
+        reactions_before=_reactions(study, task.candidate.q, study.nominal),
+        reactions_after=_reactions(study, winner.q, winner.springs),
     )
+
+
+def _reactions(study: Study, q: Array, springs: Array) -> dict[float, float]:
+    return {} if unknown_rotors(study.model) else peaks_by_reaction(study, q, springs)
 
 
 def as_record(report: DesignReport) -> dict[str, Any]:
@@ -146,6 +159,7 @@ def as_record(report: DesignReport) -> dict[str, Any]:
         "check": vars(report.check),
         "gains": None if design.gains is None else vars(design.gains),
         "safe_speed": {"before": report.speed_before, "after": report.speed_after},
+        "reactions": {"before": report.reactions_before, "after": report.reactions_after},
         "peak_definition": "peak",
         "poses": [_pose(pose, study.max_deflection) for pose in report.poses],
     }
@@ -251,3 +265,14 @@ def gains_in_words(gains: Gains, report: DesignReport) -> Sequence[str]:
         f"Speed: the limit is met at {report.speed_after:.3f} m/s "
         f"({report.speed_before:.3f} m/s before the design).",
     )
+
+
+def reactions_in_words(report: DesignReport) -> Iterator[str]:
+    """Yield what the time buys until motors are released, a line each."""
+    if not report.reactions_before:
+        return
+    yield "Largest force before and after the design, by what the motors do:"
+    for time, before in report.reactions_before.items():
+        words = f"drive on for {1e3 * time:g} ms" if time else "free from first touch on"
+        after = report.reactions_after[time]
+        yield f"  {words:<26}{before:7.1f} → {after:7.1f} N"

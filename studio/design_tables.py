@@ -10,7 +10,14 @@ from softimpact.optimize import Outcome
 from softimpact.optimize.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
 
-from .design_report import DesignReport, RankedPose, gains_in_words, limit_kind, peak_in_words
+from .design_report import (
+    DesignReport,
+    RankedPose,
+    gains_in_words,
+    limit_kind,
+    peak_in_words,
+    reactions_in_words,
+)
 from .output import Cell, print_table
 
 COLUMNS = (
@@ -159,4 +166,4 @@ def _gains(report: DesignReport) -> list[str]:
     gains = report.design.gains
     if gains is None:
         return [f"The limit is met at {report.speed_after:.3f} m/s."]
-    return list(gains_in_words(gains, report))
+    return [*gains_in_words(gains, report), *reactions_in_words(report)]

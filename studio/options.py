@@ -175,3 +175,9 @@ Region = Annotated[
 Speed = Annotated[
     float | None, typer.Option(metavar="V", help="Speed (m/s) instead of the study's.")
 ]
+StudyMotors = Annotated[
+    str | None,
+    typer.Option(
+        "--motors", metavar="KIND", help="free, servo or driven instead of the study's motors."
+    ),
+]
