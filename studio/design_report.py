@@ -15,11 +15,12 @@ import numpy as np
 from softimpact.optimize import Design, Gains, Outcome, PoseResult, Study
 from softimpact.optimize.solve import preference
 from softimpact.simulate import ImpactHistory
+from softimpact.simulate.band import Band
 from softimpact.simulate.bracket import unknown_rotors
 from softimpact.symbolic import Analysis, analyse
 from softimpact.symbolic.robot.rigid import Array
 
-from .checks import Check, peaks_by_reaction, safe_speed, simulated
+from .checks import Check, peak_band, peaks_by_reaction, safe_speed, simulated
 
 Limited = Literal["transient", "quasi_static"]
 
@@ -60,6 +61,7 @@ class DesignReport:
         reactions_before: largest force [N] of the task's pose with nominal stiffness, by the time
             [s] for which motors drive on; empty without rotor inertias.
         reactions_after: the same of the winner.
+        band: where the winner's largest force lies in 95 of 100 cases [N]; None if not computed.
     """
 
     design: Design
@@ -72,6 +74,7 @@ class DesignReport:
     speed_after: float
     reactions_before: Mapping[float, float] = field(default_factory=dict)
     reactions_after: Mapping[float, float] = field(default_factory=dict)
+    band: Band | None = None
 
     @property
     def study(self) -> Study:
@@ -113,6 +116,7 @@ def design_report(design: Design) -> DesignReport:
         speed_after=safe_speed(study, winner.q, winner.springs),
         reactions_before=_reactions(study, task.candidate.q, study.nominal),
         reactions_after=_reactions(study, winner.q, winner.springs),
+        band=peak_band(study, winner.q, winner.springs),
     )
 
 
@@ -159,6 +163,7 @@ def as_record(report: DesignReport) -> dict[str, Any]:
         "check": vars(report.check),
         "gains": None if design.gains is None else vars(design.gains),
         "safe_speed": {"before": report.speed_before, "after": report.speed_after},
+        "band": report.band,
         "reactions": {"before": report.reactions_before, "after": report.reactions_after},
         "peak_definition": "peak",
         "poses": [_pose(pose, study.max_deflection) for pose in report.poses],
@@ -276,3 +281,18 @@ def reactions_in_words(report: DesignReport) -> Iterator[str]:
         words = f"drive on for {1e3 * time:g} ms" if time else "free from first touch on"
         after = report.reactions_after[time]
         yield f"  {words:<26}{before:7.1f} → {after:7.1f} N"
+
+
+def band_in_words(report: DesignReport) -> Iterator[str]:
+    """Yield how sure the winner's force is, and whether the design's gain is more than that."""
+    band, gains = report.band, report.design.gains
+    if band is None:
+        return
+    ends = f"{band.low:.0f} to {band.high:.0f} N"
+    words = f"For what is not known exactly, 95 of 100 cases lie within {ends}"
+    if gains is None:
+        yield f"{words}."
+        return
+    gain, width = gains.before - gains.both, band.high - band.low
+    less = "less" if gain < width else "more"
+    yield f"{words}: the design's gain of {gain:.1f} N is {less} than that band is wide."

@@ -13,6 +13,7 @@ from softimpact.symbolic.robot.rigid import Array
 from .design_report import (
     DesignReport,
     RankedPose,
+    band_in_words,
     gains_in_words,
     limit_kind,
     peak_in_words,
@@ -166,4 +167,4 @@ def _gains(report: DesignReport) -> list[str]:
     gains = report.design.gains
     if gains is None:
         return [f"The limit is met at {report.speed_after:.3f} m/s."]
-    return [*gains_in_words(gains, report), *reactions_in_words(report)]
+    return [*gains_in_words(gains, report), *reactions_in_words(report), *band_in_words(report)]
