@@ -26,6 +26,7 @@ using Call = std::function<void(const sample&, double*)>;
 
 constexpr int largest = PANDA_JOINTS * PANDA_JOINTS;
 constexpr double exact = 1e-9, integrated = 1e-3;
+constexpr double aimed = 0.015; // a package aims its safe speeds at 0.99 of the limit
 
 struct Contender {
   std::string quantity, name;
@@ -179,7 +180,7 @@ int main() {
   for (const Contender& c : all) {
     const Call& right = c.quantity == "peak_force" ? sundials : ours(c).call;
     const double off = difference(hits(c) ? impacts : still, c.call, right);
-    wrong += !(off < (hits(c) ? 2 * integrated : exact));
+    wrong += !(off < (c.quantity == "safe_speed" ? aimed : hits(c) ? 2 * integrated : exact));
     std::printf("%s %s %.3g %.6g\n", c.quantity.c_str(), c.name.c_str(), off,
                 std::accumulate(c.fastest.begin(), c.fastest.end(), 0.0) / c.fastest.size());
   }

@@ -136,7 +136,7 @@ def test_payload_and_frozen_parameters(tmp_path: Path) -> None:
         freeze=["rotor_inertia", "payload_mass"],
     )
     assert contents(typed) == contents(called)
-    assert result["parameters"] == ["position_gain", "payload_com"]
+    assert result["parameters"] == ["position_gain", "damping_gain", "payload_com"]
     assert result["frozen"]["payload_mass"] == [2.0]
 
 
