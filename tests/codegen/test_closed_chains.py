@@ -80,8 +80,8 @@ SPATIAL_MECHANISM = pytest.param(
         pytest.mark.slow,
         pytest.mark.xfail(
             strict=True,
-            reason="one golden input is so ill-conditioned that m_a errs by 1e-10 in double, beyond "
-            "the bound, which is that of 99.9 % of inputs",
+            reason="one golden input is so ill-conditioned that m_a errs by 1e-10 in double, "
+            "beyond the bound, which is that of 99.9 % of inputs",
         ),
     ],
 )
