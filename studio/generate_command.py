@@ -24,6 +24,8 @@ def generate(
     model: o.Model,
     out: o.Out,
     tip: o.Tip = None,
+    end: o.End = None,
+    lock: o.Lock = None,
     hold_base: o.HoldBase = False,
     real: Real = "double",
     name: Name = None,
@@ -110,7 +112,7 @@ def generate(
     number: Real = one_of("number type", real, Real)
     if floating and hold_base:
         raise InvalidValue("hold_base", "excludes floating; give one of them")
-    typed = TypedArm(model, tip, hold_base=hold_base)
+    typed = TypedArm(model, tip, end=end, lock=lock, hold_base=hold_base)
     robot = whole_robot(model, tip) if floating else loaded_arm(typed).robot
     print_warnings(robot.warnings)
     given = TypedDrives(joint_stiffness, rotor_inertia, position_gain, None, gear_ratio)

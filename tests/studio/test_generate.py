@@ -155,3 +155,12 @@ def test_payload_and_frozen_parameters(tmp_path: Path) -> None:
 def test_refuses_inputs_without_meaning(tmp_path: Path, options: list[str], field: str) -> None:
     assert field in refusal("generate", "panda", "--out", tmp_path / "p", *options)
     assert not (tmp_path / "p").exists()
+
+
+@pytest.mark.slow
+def test_a_package_has_the_whole_arm(tmp_path: Path) -> None:
+    """RR's elbow: the link beyond the contact point stays, as in ``analyze``."""
+    elbow = ("generate", "rr", "--tip", "O3", "--rotor-inertia", 0.2)
+    whole = run_json(*elbow, "--out", tmp_path / "whole")
+    short = run_json(*elbow, "--end", "O3", "--out", tmp_path / "short")
+    assert (len(whole["joints"]), len(short["joints"])) == (4, 2)
