@@ -139,12 +139,15 @@ static void whole(const robot_arrival *arrival, const robot_params *p, robot_mat
     (void)p;
     for (int i = 0; i < ROBOT_SYSTEM; ++i) {
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
-            const bool links = i < ROBOT_N && j < ROBOT_N;
-            mass[i][j] = links ? arrival->links.M[i][j] : ROBOT_R(0.0);
-#if ROBOT_POTENTIAL
-            K[i][j] = links ? arrival->links.K[i][j] : ROBOT_R(0.0);
-#else
+            mass[i][j] = ROBOT_R(0.0);
             K[i][j] = ROBOT_R(0.0);
+        }
+    }
+    for (int i = 0; i < ROBOT_N; ++i) {
+        for (int j = 0; j < ROBOT_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+#if ROBOT_POTENTIAL
+            K[i][j] = arrival->links.K[i][j];
 #endif
         }
     }
@@ -167,7 +170,7 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     robot_matrix K;
     robot_matrix X;
     robot_matrix A;
-    int places[ROBOT_SYSTEM];
+    int places[ROBOT_SYSTEM] = {0}; /* stays so where motors hold all */
     robot_real row[ROBOT_SYSTEM];
     robot_real pull[ROBOT_SYSTEM];
     int size = 0;
@@ -182,7 +185,9 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
+#if !ROBOT_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
+#endif
         }
     }
     *drift = ROBOT_R(1.0);

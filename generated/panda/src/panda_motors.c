@@ -139,12 +139,15 @@ static void whole(const panda_arrival *arrival, const panda_params *p, panda_mat
     (void)p;
     for (int i = 0; i < PANDA_SYSTEM; ++i) {
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
-            const bool links = i < PANDA_N && j < PANDA_N;
-            mass[i][j] = links ? arrival->links.M[i][j] : PANDA_R(0.0);
-#if PANDA_POTENTIAL
-            K[i][j] = links ? arrival->links.K[i][j] : PANDA_R(0.0);
-#else
+            mass[i][j] = PANDA_R(0.0);
             K[i][j] = PANDA_R(0.0);
+        }
+    }
+    for (int i = 0; i < PANDA_N; ++i) {
+        for (int j = 0; j < PANDA_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+#if PANDA_POTENTIAL
+            K[i][j] = arrival->links.K[i][j];
 #endif
         }
     }
@@ -167,7 +170,7 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     panda_matrix K;
     panda_matrix X;
     panda_matrix A;
-    int places[PANDA_SYSTEM];
+    int places[PANDA_SYSTEM] = {0}; /* stays so where motors hold all */
     panda_real row[PANDA_SYSTEM];
     panda_real pull[PANDA_SYSTEM];
     int size = 0;
@@ -182,7 +185,9 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
+#if !PANDA_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
+#endif
         }
     }
     *drift = PANDA_R(1.0);

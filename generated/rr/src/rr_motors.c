@@ -139,12 +139,15 @@ static void whole(const rr_arrival *arrival, const rr_params *p, rr_matrix mass,
     (void)p;
     for (int i = 0; i < RR_SYSTEM; ++i) {
         for (int j = 0; j < RR_SYSTEM; ++j) {
-            const bool links = i < RR_N && j < RR_N;
-            mass[i][j] = links ? arrival->links.M[i][j] : RR_R(0.0);
-#if RR_POTENTIAL
-            K[i][j] = links ? arrival->links.K[i][j] : RR_R(0.0);
-#else
+            mass[i][j] = RR_R(0.0);
             K[i][j] = RR_R(0.0);
+        }
+    }
+    for (int i = 0; i < RR_N; ++i) {
+        for (int j = 0; j < RR_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+#if RR_POTENTIAL
+            K[i][j] = arrival->links.K[i][j];
 #endif
         }
     }
@@ -167,7 +170,7 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     rr_matrix K;
     rr_matrix X;
     rr_matrix A;
-    int places[RR_SYSTEM];
+    int places[RR_SYSTEM] = {0}; /* stays so where motors hold all */
     rr_real row[RR_SYSTEM];
     rr_real pull[RR_SYSTEM];
     int size = 0;
@@ -182,7 +185,9 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
+#if !RR_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
+#endif
         }
     }
     *drift = RR_R(1.0);
