@@ -80,8 +80,9 @@ static robot_real congruent(int size, robot_matrix K, robot_matrix X, robot_matr
 static void append(int size, const int *places, robot_matrix A, robot_matrix X, const robot_real *row,
     robot_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
             modes->shape[j][at] = ROBOT_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, robot_matrix A, robot_matrix X, 
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = ROBOT_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */

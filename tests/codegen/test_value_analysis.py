@@ -69,6 +69,12 @@ def undecided(alarm: str) -> bool:
     return any(kind in alarm for kind in UNDECIDED)
 
 
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="Eva does not know that only the phases which there are get a body: it takes the second "
+    "one's count of modes for unbounded (robot_phase_steps), and so three indices",
+)
 @pytest.mark.parametrize("robot", COMMITTED)
 def test_eva_finds_no_access_out_of_bounds(
     package: Callable[[str], Generated], robot: str, tmp_path: Path

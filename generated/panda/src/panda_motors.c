@@ -80,8 +80,9 @@ static panda_real congruent(int size, panda_matrix K, panda_matrix X, panda_matr
 static void append(int size, const int *places, panda_matrix A, panda_matrix X, const panda_real *row,
     panda_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
             modes->shape[j][at] = PANDA_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, panda_matrix A, panda_matrix X, 
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = PANDA_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */

@@ -80,8 +80,9 @@ static rmin_real congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A
 static void append(int size, const int *places, rmin_matrix A, rmin_matrix X, const rmin_real *row,
     rmin_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
             modes->shape[j][at] = RMIN_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, rmin_matrix A, rmin_matrix X, co
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = RMIN_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */

@@ -80,8 +80,9 @@ static rr_real congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
 static void append(int size, const int *places, rr_matrix A, rr_matrix X, const rr_real *row,
     rr_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < RR_SYSTEM; ++j) {
             modes->shape[j][at] = RR_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, rr_matrix A, rr_matrix X, const 
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = RR_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */

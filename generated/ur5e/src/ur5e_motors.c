@@ -80,8 +80,9 @@ static ur5e_real congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A
 static void append(int size, const int *places, ur5e_matrix A, ur5e_matrix X, const ur5e_real *row,
     ur5e_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
             modes->shape[j][at] = UR5E_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, ur5e_matrix A, ur5e_matrix X, co
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = UR5E_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
