@@ -80,8 +80,9 @@ static robot_real congruent(int size, robot_matrix K, robot_matrix X, robot_matr
 static void append(int size, const int *places, robot_matrix A, robot_matrix X, const robot_real *row,
     robot_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
             modes->shape[j][at] = ROBOT_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, robot_matrix A, robot_matrix X, 
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = ROBOT_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -139,12 +140,15 @@ static void whole(const robot_arrival *arrival, const robot_params *p, robot_mat
     (void)p;
     for (int i = 0; i < ROBOT_SYSTEM; ++i) {
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
-            const bool links = i < ROBOT_N && j < ROBOT_N;
-            mass[i][j] = links ? arrival->links.M[i][j] : ROBOT_R(0.0);
-#if ROBOT_POTENTIAL
-            K[i][j] = links ? arrival->links.K[i][j] : ROBOT_R(0.0);
-#else
+            mass[i][j] = ROBOT_R(0.0);
             K[i][j] = ROBOT_R(0.0);
+        }
+    }
+    for (int i = 0; i < ROBOT_N; ++i) {
+        for (int j = 0; j < ROBOT_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+#if ROBOT_POTENTIAL
+            K[i][j] = arrival->links.K[i][j];
 #endif
         }
     }
@@ -167,7 +171,7 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     robot_matrix K;
     robot_matrix X;
     robot_matrix A;
-    int places[ROBOT_SYSTEM];
+    int places[ROBOT_SYSTEM] = {0}; /* stays so where motors hold all */
     robot_real row[ROBOT_SYSTEM];
     robot_real pull[ROBOT_SYSTEM];
     int size = 0;
@@ -182,7 +186,9 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
+#if !ROBOT_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
+#endif
         }
     }
     *drift = ROBOT_R(1.0);

@@ -69,12 +69,18 @@ def undecided(alarm: str) -> bool:
     return any(kind in alarm for kind in UNDECIDED)
 
 
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="Eva does not know that only the phases which there are get a body: it takes the second "
+    "one's count of modes for unbounded (robot_phase_steps), and so three indices",
+)
 @pytest.mark.parametrize("robot", COMMITTED)
 def test_eva_finds_no_access_out_of_bounds(
     package: Callable[[str], Generated], robot: str, tmp_path: Path
 ) -> None:
     generated = package(robot)
-    impacts = [f"(void){call.text};" for call in calls(generated) if call.region]
+    impacts = [f"(void)({call.text});" for call in calls(generated) if call.region]
     few = "\n    ".join(impacts).replace(f"{robot.upper()}_CANDIDATES", "3")
     programs = [IMPACTS.replace("CALLS", few)]  # of the poses three: Eva goes through each
     if generated.robot.loops:

@@ -81,7 +81,7 @@ def test_fuzzer_finds_nothing(
 def test_every_loop_has_a_bound(package: Callable[[str], Generated], robot: str) -> None:
     for source in package(robot).folder.glob("src/*.[ch]"):
         text = source.read_text()
-        assert not re.search(r"\b(goto|malloc|calloc|realloc|free|alloca|setjmp)\b", text)
+        assert not re.search(r"\b(goto|(malloc|calloc|realloc|free|alloca|setjmp)\s*\()", text)
         assert not re.search(r"for \([^;)]*;\s*;|while \(1\)|do \{", text), source
 
 

@@ -356,7 +356,8 @@ static void release(state *s)
         }
     }
 #endif
-    if (impact->gives_way) { /* the last of the modes that move */
+    /* The body is the last of the modes that move: at least one does. */
+    if (impact->gives_way && next->active > 0 && s->phase->active > 0) {
         a[next->active - 1] = s->amplitude[s->phase->active - 1];
         b[next->active - 1] = s->rate[s->phase->active - 1];
     }
@@ -368,8 +369,8 @@ static void release(state *s)
     s->phase = next;
     s->drifted = PANDA_R(0.0);
     s->level = 0;
-    while (s->level < PANDA_LEVELS - 1 && next->level[s->level].h > PANDA_R(1.01)*h) {
-        ++s->level;
+    for (int k = 0; k < PANDA_LEVELS - 1; ++k) { /* the longest step that is no longer than the last */
+        s->level = next->level[k].h > PANDA_R(1.01)*h ? k + 1 : s->level;
     }
     s->ticks = next->steps*(1 << (PANDA_LEVELS - 1));
 }

@@ -80,8 +80,9 @@ static panda_real congruent(int size, panda_matrix K, panda_matrix X, panda_matr
 static void append(int size, const int *places, panda_matrix A, panda_matrix X, const panda_real *row,
     panda_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
             modes->shape[j][at] = PANDA_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, panda_matrix A, panda_matrix X, 
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = PANDA_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -139,12 +140,15 @@ static void whole(const panda_arrival *arrival, const panda_params *p, panda_mat
     (void)p;
     for (int i = 0; i < PANDA_SYSTEM; ++i) {
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
-            const bool links = i < PANDA_N && j < PANDA_N;
-            mass[i][j] = links ? arrival->links.M[i][j] : PANDA_R(0.0);
-#if PANDA_POTENTIAL
-            K[i][j] = links ? arrival->links.K[i][j] : PANDA_R(0.0);
-#else
+            mass[i][j] = PANDA_R(0.0);
             K[i][j] = PANDA_R(0.0);
+        }
+    }
+    for (int i = 0; i < PANDA_N; ++i) {
+        for (int j = 0; j < PANDA_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+#if PANDA_POTENTIAL
+            K[i][j] = arrival->links.K[i][j];
 #endif
         }
     }
@@ -167,7 +171,7 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     panda_matrix K;
     panda_matrix X;
     panda_matrix A;
-    int places[PANDA_SYSTEM];
+    int places[PANDA_SYSTEM] = {0}; /* stays so where motors hold all */
     panda_real row[PANDA_SYSTEM];
     panda_real pull[PANDA_SYSTEM];
     int size = 0;
@@ -182,7 +186,9 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
+#if !PANDA_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
+#endif
         }
     }
     *drift = PANDA_R(1.0);

@@ -80,8 +80,9 @@ static rmin_real congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A
 static void append(int size, const int *places, rmin_matrix A, rmin_matrix X, const rmin_real *row,
     rmin_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
             modes->shape[j][at] = RMIN_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, rmin_matrix A, rmin_matrix X, co
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = RMIN_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -139,12 +140,15 @@ static void whole(const rmin_arrival *arrival, const rmin_params *p, rmin_matrix
     (void)p;
     for (int i = 0; i < RMIN_SYSTEM; ++i) {
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
-            const bool links = i < RMIN_N && j < RMIN_N;
-            mass[i][j] = links ? arrival->links.M[i][j] : RMIN_R(0.0);
-#if RMIN_POTENTIAL
-            K[i][j] = links ? arrival->links.K[i][j] : RMIN_R(0.0);
-#else
+            mass[i][j] = RMIN_R(0.0);
             K[i][j] = RMIN_R(0.0);
+        }
+    }
+    for (int i = 0; i < RMIN_N; ++i) {
+        for (int j = 0; j < RMIN_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+#if RMIN_POTENTIAL
+            K[i][j] = arrival->links.K[i][j];
 #endif
         }
     }
@@ -167,7 +171,7 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     rmin_matrix K;
     rmin_matrix X;
     rmin_matrix A;
-    int places[RMIN_SYSTEM];
+    int places[RMIN_SYSTEM] = {0}; /* stays so where motors hold all */
     rmin_real row[RMIN_SYSTEM];
     rmin_real pull[RMIN_SYSTEM];
     int size = 0;
@@ -182,7 +186,9 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
+#if !RMIN_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
+#endif
         }
     }
     *drift = RMIN_R(1.0);

@@ -80,8 +80,9 @@ static rr_real congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
 static void append(int size, const int *places, rr_matrix A, rr_matrix X, const rr_real *row,
     rr_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < RR_SYSTEM; ++j) {
             modes->shape[j][at] = RR_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, rr_matrix A, rr_matrix X, const 
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = RR_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -139,12 +140,15 @@ static void whole(const rr_arrival *arrival, const rr_params *p, rr_matrix mass,
     (void)p;
     for (int i = 0; i < RR_SYSTEM; ++i) {
         for (int j = 0; j < RR_SYSTEM; ++j) {
-            const bool links = i < RR_N && j < RR_N;
-            mass[i][j] = links ? arrival->links.M[i][j] : RR_R(0.0);
-#if RR_POTENTIAL
-            K[i][j] = links ? arrival->links.K[i][j] : RR_R(0.0);
-#else
+            mass[i][j] = RR_R(0.0);
             K[i][j] = RR_R(0.0);
+        }
+    }
+    for (int i = 0; i < RR_N; ++i) {
+        for (int j = 0; j < RR_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+#if RR_POTENTIAL
+            K[i][j] = arrival->links.K[i][j];
 #endif
         }
     }
@@ -167,7 +171,7 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     rr_matrix K;
     rr_matrix X;
     rr_matrix A;
-    int places[RR_SYSTEM];
+    int places[RR_SYSTEM] = {0}; /* stays so where motors hold all */
     rr_real row[RR_SYSTEM];
     rr_real pull[RR_SYSTEM];
     int size = 0;
@@ -182,7 +186,9 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
+#if !RR_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
+#endif
         }
     }
     *drift = RR_R(1.0);

@@ -80,8 +80,9 @@ static ur5e_real congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A
 static void append(int size, const int *places, ur5e_matrix A, ur5e_matrix X, const ur5e_real *row,
     ur5e_modes *modes)
 {
+    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = modes->count;
+        const int at = first + i;
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
             modes->shape[j][at] = UR5E_R(0.0);
         }
@@ -93,8 +94,8 @@ static void append(int size, const int *places, ur5e_matrix A, ur5e_matrix X, co
         modes->squared[at] = A[i][i];
         modes->row[at] = sum;
         modes->start[at] = UR5E_R(0.0);
-        ++modes->count;
     }
+    modes->count = first + size;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -139,12 +140,15 @@ static void whole(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_matrix
     (void)p;
     for (int i = 0; i < UR5E_SYSTEM; ++i) {
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
-            const bool links = i < UR5E_N && j < UR5E_N;
-            mass[i][j] = links ? arrival->links.M[i][j] : UR5E_R(0.0);
-#if UR5E_POTENTIAL
-            K[i][j] = links ? arrival->links.K[i][j] : UR5E_R(0.0);
-#else
+            mass[i][j] = UR5E_R(0.0);
             K[i][j] = UR5E_R(0.0);
+        }
+    }
+    for (int i = 0; i < UR5E_N; ++i) {
+        for (int j = 0; j < UR5E_N; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+#if UR5E_POTENTIAL
+            K[i][j] = arrival->links.K[i][j];
 #endif
         }
     }
@@ -167,7 +171,7 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     ur5e_matrix K;
     ur5e_matrix X;
     ur5e_matrix A;
-    int places[UR5E_SYSTEM];
+    int places[UR5E_SYSTEM] = {0}; /* stays so where motors hold all */
     ur5e_real row[UR5E_SYSTEM];
     ur5e_real pull[UR5E_SYSTEM];
     int size = 0;
@@ -182,7 +186,9 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
+#if !UR5E_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
+#endif
         }
     }
     *drift = UR5E_R(1.0);
