@@ -72,7 +72,7 @@ def undecided(alarm: str) -> bool:
 @pytest.mark.xfail(
     strict=True,
     raises=AssertionError,
-    reason="Eva finds no bound of the count of modes in robot_phase_steps, so of three indices: the "
+    reason="Eva finds no bound of the count of modes in robot_phase_steps, so of 3 indices: the "
     "body's there, and i in let_stand and exchange; the invariant it misses is still to be found",
 )
 @pytest.mark.parametrize("robot", COMMITTED)
