@@ -72,8 +72,8 @@ def undecided(alarm: str) -> bool:
 @pytest.mark.xfail(
     strict=True,
     raises=AssertionError,
-    reason="Eva does not know that only the phases which there are get a body: it takes the second "
-    "one's count of modes for unbounded (robot_phase_steps), and so three indices",
+    reason="Eva finds no bound of the count of modes in robot_phase_steps, so of 3 indices: the "
+    "body's there, and i in let_stand and exchange; the invariant it misses is still to be found",
 )
 @pytest.mark.parametrize("robot", COMMITTED)
 def test_eva_finds_no_access_out_of_bounds(
