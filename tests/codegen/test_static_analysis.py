@@ -18,8 +18,8 @@ VERSION = re.findall(r"Cppcheck [\d.]+\d", PAGE)[0]
 """Others find other things."""
 
 UNSTEADY = {"5.6", "5.8"}
-"""Rules of unique names that the addon reports in some runs over the same sources and not in others,
-when it looks at several robots at a time."""
+"""Rules of unique names that the addon reports in some runs over the same sources and not in
+others."""
 
 MISRA = re.compile(r"misra-c2012-(\d+\.\d+)$")
 
