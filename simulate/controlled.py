@@ -29,7 +29,7 @@ from .approach import Arrival
 from .controller import Controller
 from .linear import chain_stiffness, check_order
 from .mechanism import BodyKind, Mechanism
-from .scene import Leg, Motion, Scene, Stage
+from .scene import Leg, Motion, Scene, Stage, unchanged
 from .simulator import Simulator, build_simulator
 
 DEPENDENT = 1e-12
@@ -164,7 +164,7 @@ def controlled_scene(
     def stage(begin: float, gains: Sequence[float]) -> Stage:
         def enter(motion: Motion) -> Leg:
             memory = np.concatenate([[moving / arrival.speed * begin], np.zeros(size)])
-            return Leg(simulator, np.concatenate([*fixed, gains]), motion, memory, _same)
+            return Leg(simulator, np.concatenate([*fixed, gains]), motion, memory, unchanged)
 
         return Stage(begin, enter)
 
@@ -173,10 +173,6 @@ def controlled_scene(
         stages = (*stages, stage(controller.reaction_time, [0.0, 0.0, 0.0]))
     still = Motion(np.zeros_like(velocity), velocity)
     return Scene(stages, still, arrival.speed, contact)
-
-
-def _same(motion: Motion, elapsed: Array) -> Motion:
-    return motion
 
 
 @lru_cache(maxsize=32)

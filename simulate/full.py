@@ -28,7 +28,7 @@ from .controller import Controller
 from .full_mechanism import full_simulator
 from .mechanism import BodyKind
 from .motors import UNLIMITED, LawBuilder, computed_torque, free, held, prescribed, servo
-from .scene import Leg, Motion, Scene, Stage
+from .scene import Leg, Motion, Scene, Stage, unchanged
 
 AT_REST = 1e-6
 """Torque [N·m, N] on a joint without a motor below which it counts as balanced."""
@@ -79,7 +79,7 @@ def full_scene(
 
         def enter(motion: Motion) -> Leg:
             of_law, memory = numbers(motion)
-            return Leg(simulator, np.concatenate([common, of_law]), motion, memory, _same)
+            return Leg(simulator, np.concatenate([common, of_law]), motion, memory, unchanged)
 
         return Stage(begin, enter)
 
@@ -102,10 +102,6 @@ LAWS: dict[MotorLaw, LawBuilder] = {
     "stopped": prescribed,
 }
 """Expressions of each law."""
-
-
-def _same(motion: Motion, elapsed: Array) -> Motion:
-    return motion
 
 
 def _numbers(

@@ -153,10 +153,11 @@ def one_stage(
     still = Motion(np.zeros_like(velocity), velocity)
 
     def enter(motion: Motion) -> Leg:
-        return Leg(simulator, parameters, motion, np.zeros(memory), _same)
+        return Leg(simulator, parameters, motion, np.zeros(memory), unchanged)
 
     return (Stage(0.0, enter),), still
 
 
-def _same(motion: Motion, elapsed: Array) -> Motion:
+def unchanged(motion: Motion, elapsed: Array) -> Motion:
+    """Return a motion whose coordinates are the robot's own."""
     return motion

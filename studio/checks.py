@@ -16,6 +16,7 @@ from softimpact.simulate import (
     many_peaks,
     simulate_impact,
 )
+from softimpact.simulate.assessment import force_limits
 from softimpact.simulate.band import Band, impact_band
 from softimpact.symbolic import Motors
 from softimpact.symbolic.body.verdict import limits_of
@@ -69,7 +70,7 @@ def safe_speed(study: Study, q: Array, springs: Array) -> float:
     """Return the speed [m/s] up to which peaks keep the limit, whatever the motors may do."""
     model = study.model.with_springs(ca.DM(springs))
     approach = Approach(q, study.direction, study.speed)
-    limit = study.contact.region.force_limit
+    limit = force_limits(limits_of(study.contact.region, study.contact.clamped))
     return min(
         largest_safe_speed(
             model, approach, study.contact, limit, motors=motors, horizon=study.horizon
