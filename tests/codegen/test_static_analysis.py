@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import re
+import shutil
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,10 +18,6 @@ PAGE = (ROOT / "docs/misra.md").read_text(encoding="utf-8")
 DEVIATIONS = set(re.findall(r"^\| (\d+\.\d+) \|", PAGE, re.MULTILINE))
 VERSION = re.findall(r"Cppcheck [\d.]+\d", PAGE)[0]
 """Others find other things."""
-
-UNSTEADY = {"5.6", "5.8"}
-"""Rules of unique names that the addon reports in some runs over the same sources and not in
-others."""
 
 MISRA = re.compile(r"misra-c2012-(\d+\.\d+)$")
 
@@ -43,7 +41,9 @@ def findings(package: Generated, real: str, *what: str | Path) -> set[str]:
 
 def broken_rules(package: Generated, real: str) -> set[str]:
     """Return the rules that a package's sources break; there must be no other finding."""
-    found = findings(package, real, "--addon=misra", package.folder / "src")
+    with tempfile.TemporaryDirectory() as folder:  # the addon writes beside the sources
+        sources = shutil.copytree(package.folder / "src", Path(folder) / "src")
+        found = findings(package, real, "--addon=misra", sources)
     assert not {line for line in found if not MISRA.search(line)}
     return {match[1] for match in map(MISRA.search, found) if match}
 
@@ -52,7 +52,7 @@ def broken_rules(package: Generated, real: str) -> set[str]:
 def test_cppcheck_finds_listed_deviations_only(
     package: Callable[[str], Generated], robot: str
 ) -> None:
-    assert broken_rules(package(robot), "float") <= DEVIATIONS | UNSTEADY
+    assert broken_rules(package(robot), "float") <= DEVIATIONS
 
 
 def test_every_listed_deviation_is_needed(package: Callable[[str], Generated]) -> None:
