@@ -87,10 +87,16 @@ def _cores() -> int:
 class _Worker(SpawnProcess):
     """A process that does not hear Ctrl-C, which a terminal sends to all: its parent ends it.
 
-    If it died by itself, the parent might learn of the broken pool before the interruption.
+    If it died by itself, the parent might learn of the broken pool before the interruption. Nor
+    does it load what MuJoCo draws with: that starts a process of its own, which would complain of
+    its parent's end.
     """
 
     def start(self) -> None:
+        with _without_drawing():
+            self._start_deaf()
+
+    def _start_deaf(self) -> None:
         # a process takes over what is blocked, from its first instruction on
         if not hasattr(signal, "pthread_sigmask"):  # Windows: see _prepare_worker
             super().start()
@@ -100,6 +106,20 @@ class _Worker(SpawnProcess):
             super().start()
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _without_drawing() -> Iterator[None]:
+    """Let processes that start meanwhile load MuJoCo without its graphics."""
+    before = os.environ.get("MUJOCO_GL")
+    os.environ["MUJOCO_GL"] = "disable"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["MUJOCO_GL"]
+        else:
+            os.environ["MUJOCO_GL"] = before
 
 
 class _Context(SpawnContext):

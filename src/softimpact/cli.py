@@ -6,6 +6,7 @@ Commands import what they need when they run, so that ``--help`` answers at once
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -71,6 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: default the process's own.
     """
+    os.environ.setdefault("MUJOCO_GL", "disable")  # nothing is drawn, and its graphics load slowly
     words = list(sys.argv[1:] if arguments is None else arguments)
     accept_any_console()
     try:
