@@ -11,6 +11,11 @@ from softimpact.symbolic.impact.motors import KINDS
 
 from .controller import Controller
 
+LUMPED = (
+    "a model of one or two masses knows nothing of motors that drive on; its force may be far too "
+    "low, so let no decision rest on it"
+)
+
 
 def bracket(
     model: ImpactModel,
@@ -30,19 +35,22 @@ def bracket(
         InvalidValue: motors are free or a servo, and a rotor's inertia is unknown.
     """
     if lumped:
-        return {"free": motors}, []
-    if isinstance(motors, Controller):
-        return {"controller": motors}, []
-    kind = motors.kind if motors else ("servo" if model.drives.has_gains else None)
-    how = motors or reaction or Motors()
+        return {"free": motors}, [LUMPED]
     unknown = unknown_rotors(model)
     names = ", ".join(f"'{name}'" for name in unknown)
-    if unknown and kind in ("free", "servo", "held"):
+    if isinstance(motors, Controller):
+        kind, how = None, Motors()
+    else:
+        kind = motors.kind if motors else ("servo" if model.drives.has_gains else None)
+        how = motors or reaction or Motors()
+    if unknown and (kind in ("free", "servo", "held") or isinstance(motors, Controller)):
         raise InvalidValue(
             "rotor_inertia",
             f"of joint {names} is unknown, and zero would make the robot look safer than it is; "
             f"give it (0 if there is no rotor), or choose driven motors, which need none",
         )
+    if isinstance(motors, Controller):
+        return {"controller": motors}, []
     if unknown:
         line = (
             f"rotor inertia of joint {names} is unknown: motors are taken to keep their speed, "

@@ -131,8 +131,11 @@ def _scene(
 def _pressing(course: Course, contact: Contact, follows: bool) -> float | None:
     if not contact.clamped:
         return 0.0
-    late = course.run.time >= HORIZON
-    return float(course.run.force[late].max()) if follows and late.any() else None
+    time, force = course.run.time, course.run.force
+    late = time >= HORIZON
+    if not follows or not late.any():
+        return None
+    return float(max(force[late].max(), np.interp(HORIZON, time, force)))
 
 
 def largest_torque(course: Course) -> Array | None:
