@@ -13,7 +13,7 @@ import softimpact
 from softimpact.symbolic import STANDARD_GRAVITY, Drives, InvalidValue, Robot
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 
-from .accuracy import accuracy, golden_results, is_regular
+from .accuracy import Inputs, accuracy, golden_results, is_regular
 from .configuration import Configuration, has_configuration
 from .configuration_source import configuration_source
 from .costs import Costs
@@ -26,7 +26,7 @@ from .inputs import parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .poses import checked_poses
 from .render import MEASURED_SAMPLES, Package, render
-from .samples import Sample, draw_samples
+from .samples import Sample, as_columns, draw_samples
 from .source import CSource
 
 LONGEST_CHAIN = 8
@@ -166,8 +166,9 @@ def package_of(
     golden = _regular(functions, golden, frame)
     tables = {function.name: golden_results(function, golden) for function in functions}
     sources = []
+    inputs = as_columns(measured)
     for function in functions:
-        record = _record(prefix, function, measured)
+        record = _record(prefix, function, inputs)
         sources.append(CSource(prefix, robot.n, parameters, function, record))
     configuration = None
     if has_configuration(robot):
@@ -232,14 +233,15 @@ def _check(
 
 def _regular(functions: Sequence[CFunction], samples: Sequence[Sample], tip: str) -> list[Sample]:
     """Return golden inputs to which all functions have an answer."""
-    regular = np.all([is_regular(function, samples) for function in functions], axis=0)
+    inputs = as_columns(samples)
+    regular = np.all([is_regular(function, inputs) for function in functions], axis=0)
     if not regular.any():
         raise InvalidValue("tip", f"frame '{tip}' cannot move at any of the sampled configurations")
     return [samples[i] for i in np.flatnonzero(regular)[:GOLDEN_CASES]]
 
 
-def _record(prefix: str, function: CFunction, measured: Sequence[Sample]) -> FunctionRecord:
-    found = accuracy(function, measured)
+def _record(prefix: str, function: CFunction, inputs: Inputs) -> FunctionRecord:
+    found = accuracy(function, inputs)
     return FunctionRecord(
         name=f"{prefix}_{function.name}",
         flops=function.flops,
