@@ -15,3 +15,16 @@ class UnsupportedOperation(SoftImpactError):
             f"CasADi operation {name} ({operation}) has no C counterpart here; "
             "rewrite the expression or add it to codegen/operations.py"
         )
+
+
+class FailedOwnTest(SoftImpactError):
+    """A package does not meet its own golden results; it is not written."""
+
+    exit_code = 3
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
+        super().__init__(
+            f"the package fails its own test and was not written: {reason}; this is a fault of the "
+            "generator, please report it with the robot's file"
+        )
