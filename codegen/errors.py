@@ -17,6 +17,19 @@ class UnsupportedOperation(SoftImpactError):
         )
 
 
+class FailedOwnTest(SoftImpactError):
+    """A package does not meet its own golden results; it is not written."""
+
+    exit_code = 3
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
+        super().__init__(
+            f"the package fails its own test and was not written: {reason}; this is a fault of the "
+            "generator, please report it with the robot's file"
+        )
+
+
 class UnknownDeclaration(SoftImpactError):
     """A header holds a declaration that our templates do not write."""
 

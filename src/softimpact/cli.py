@@ -30,6 +30,7 @@ from .studio.program_command import SeveralValues, program
 from .studio.robots_command import robots
 from .studio.select_command import select
 from .studio.simulate_command import simulate
+from .studio.studio_command import studio
 
 USER_ERROR = 2
 """Exit code; a failed solver's is 3 and comes with its exception."""
@@ -49,6 +50,7 @@ app.command()(select)
 app.command()(design)
 app.command()(pareto)
 app.command()(generate)
+app.command()(studio)
 app.command()(reproduce)
 
 
