@@ -31,6 +31,7 @@ from .studio.program_command import SeveralValues, program
 from .studio.robots_command import robots
 from .studio.select_command import select
 from .studio.simulate_command import simulate
+from .studio.studio_command import studio
 
 USER_ERROR = 2
 """Exit code; a failed solver's is 3 and comes with its exception."""
@@ -50,6 +51,7 @@ app.command()(common(select, "ranking"))
 app.command()(common(design))
 app.command()(common(pareto))
 app.command()(common(generate))
+app.command()(common(studio))
 app.command()(common(reproduce))
 
 

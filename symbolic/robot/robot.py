@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from ..content import ByContent
 from ..errors import FrameNotFound, InvalidValue, UnknownName, WrongLength
 from ..matrices import Matrix
-from .constraints import Ball, Constraint, Coupling, Loop, Tendon
+from .constraints import Ball, Constraint, Coupling, Loop, Tendon, Through
 from .rigid import Array, Inertia, Placement, rotation_about_z, three_numbers
 
 BASE = -1
@@ -244,7 +244,7 @@ class Robot(ByContent):
 
     def moved_by(self, loop: Constraint) -> set[int]:
         """Indices of the joints that a coupling ties, or that part a loop's two frames."""
-        if isinstance(loop, Coupling | Ball):
+        if isinstance(loop, Coupling | Ball | Through):
             return {self.joint_names.index(name) for name in loop.joints}
         first, second = self.frame(loop.first).joint, self.frame(loop.second).joint
         return set(self.ancestors(first)) ^ set(self.ancestors(second))
