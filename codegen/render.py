@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 import jinja2
@@ -118,8 +119,9 @@ class Package:
         return function in self.tables
 
 
-def render(package: Package) -> tuple[dict[str, str], Costs | None]:
-    """Return the text of every file but the manifest by its path, and what was measured of it."""
+@cache
+def _environment() -> jinja2.Environment:
+    """Return what compiles the templates, each once in a process."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         undefined=jinja2.StrictUndefined,
@@ -130,6 +132,12 @@ def render(package: Package) -> tuple[dict[str, str], Costs | None]:
     )
     environment.filters["number"] = _number
     environment.filters["comment"] = _comment
+    return environment
+
+
+def render(package: Package) -> tuple[dict[str, str], Costs | None]:
+    """Return the text of every file but the manifest by its path, and what was measured of it."""
+    environment = _environment()
     name = package.prefix
     context = {
         "package": package,
