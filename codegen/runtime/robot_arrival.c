@@ -10,6 +10,9 @@
 
 int robot_check_impact(const robot_region *region, const robot_params *p)
 {
+    if (p->layout != ROBOT_LAYOUT) {
+        return ROBOT_FOREIGN_PARAMS;
+    }
     const robot_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
         region->clamped != 0 ? ROBOT_R(1.0) : region->effective_mass};
     if (!robot_all_finite(numbers, 4)) {
