@@ -19,7 +19,7 @@ import subprocess
 import tempfile
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -35,7 +35,9 @@ from softimpact.codegen.interface import Interface, interface_of
 from softimpact.codegen.render import Package, render
 from softimpact.symbolic import (
     REGIONS,
+    Drives,
     InvalidValue,
+    Robot,
     SoftImpactError,
     chain_to,
     drives,
@@ -267,17 +269,46 @@ def compiled(
     arm = chain_to(robot, end or str(contact))
     given = (joint_stiffness, rotor_inertia, position_gain)
     known = None if all(x is None for x in given) else drives(arm, *given)
-    package = package_of(
-        arm, tip=contact or end, real=real, name="batched", drives_=known, points=points
+    return compiled_arm(
+        replace(arm, tip=contact or end), known, points=points, real=real, threads=threads
     )
+
+
+def compiled_arm(
+    arm: Robot,
+    drives_: Drives | None = None,
+    *,
+    points: Mapping[str, str] | None = None,
+    real: Literal["double", "float"] = "double",
+    threads: int | None = None,
+) -> CompiledPackage:
+    """Return the C package of a robot that is there already, as ``compiled`` does.
+
+    Args:
+        arm: whose tip is the contact point.
+        drives_: defaults of the parameters.
+        points: further contact points for ``speed_factor``.
+        real: number type.
+        threads: default one a processor.
+
+    Raises:
+        NoCompiler: there is none.
+    """
+    _compiler()  # deriving the package takes longer than to find that there is none
+    package = package_of(arm, real=real, name="batched", drives_=drives_, points=points)
     return CompiledPackage(package, _built(package), threads or os.cpu_count() or 1)
+
+
+def _compiler() -> str:
+    compiler = os.environ.get("CC") or next(filter(shutil.which, COMPILERS), None)
+    if compiler is None:
+        raise NoCompiler
+    return compiler
 
 
 def _built(package: Package) -> Path:
     """Return the library of a package from the cache, compiled if it is not there."""
-    compiler = os.environ.get("CC") or next(filter(shutil.which, COMPILERS), None)
-    if compiler is None:
-        raise NoCompiler
+    compiler = _compiler()
     files, _ = render(package)
     files = {path: text for path, text in files.items() if path.endswith((".c", ".h"))}
     files["src/batch.c"] = _loops(package)
@@ -334,14 +365,18 @@ def _loops(package: Package) -> str:
             inputs = ["q", "n", "number", "region", "p"]
             loop(short, inputs, f"({name}_{short}_t *)row", 2, {"number"})
         loop("speed_factor", ["q", "dq", "number", "region", "p"], "&found", 4, {"number"})
-        lines[-1] = lines[-1].replace(
-            "        status[i]", f"        {name}_speed_factor_t found;\n        status[i]"
-        ).replace(
-            "    }\n}",
-            "        if (status[i] == 0 || status[i] == 9) {\n"
-            "            row[0] = found.factor;\n"
-            f"            row[1] = ({real})found.point;\n"
-            "            row[2] = found.speed;\n            row[3] = found.force;\n"
-            "        }\n    }\n}",
+        lines[-1] = (
+            lines[-1]
+            .replace(
+                "        status[i]", f"        {name}_speed_factor_t found;\n        status[i]"
+            )
+            .replace(
+                "    }\n}",
+                "        if (status[i] == 0 || status[i] == 9) {\n"
+                "            row[0] = found.factor;\n"
+                f"            row[1] = ({real})found.point;\n"
+                "            row[2] = found.speed;\n            row[3] = found.force;\n"
+                "        }\n    }\n}",
+            )
         )
     return "\n".join(lines) + "\n"
