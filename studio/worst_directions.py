@@ -8,8 +8,9 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from softimpact.batch import MOTORS, CompiledPackage, compiled_arm
+from softimpact.batch import compiled
 from softimpact.codegen.approach import directions_of_motion
+from softimpact.codegen.inputs import is_elastic
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors, limits_of
 from softimpact.symbolic.robot.rigid import Array
 
@@ -94,7 +95,7 @@ def _asker(
     ends: Mapping[str, Motors],
     seen: Callable[[int], None],
 ) -> Callable[[Array, Array], Array]:
-    package = compiled_arm(model.robot)
+    package = compiled(model.robot)
     region = body.region
     numbers = {
         "stiffness": region.stiffness,
@@ -102,7 +103,7 @@ def _asker(
         "effective_mass": region.effective_mass,
         "hertz_stiffness": body.series_stiffness,
     }
-    how = {**_numbers(model, package), **_motors(ends)}
+    how = {**_numbers(model), **_motors(ends)}
     limit = limits_of(region, body.clamped).transient.force
 
     def ask(q: Array, n: Array) -> Array:
@@ -113,7 +114,7 @@ def _asker(
     return ask
 
 
-def _numbers(model: ImpactModel, package: CompiledPackage) -> dict[str, Array]:
+def _numbers(model: ImpactModel) -> dict[str, Array]:
     """Return the drives as C takes them: finite springs, rotors that are not zero."""
     drives = model.drives
     rotors = np.array(drives.rotors, dtype=float).ravel()
@@ -126,7 +127,7 @@ def _numbers(model: ImpactModel, package: CompiledPackage) -> dict[str, Array]:
         if damping is None
         else np.array(damping, dtype=float).ravel(),
     }
-    if package.package.elastic:
+    if is_elastic(model.robot):
         springs = np.array(drives.springs, dtype=float).ravel()
         soft = np.array(drives.elastic) & np.isfinite(springs)
         found["joint_stiffness"] = np.where(soft, springs, RIGID)
@@ -136,7 +137,6 @@ def _numbers(model: ImpactModel, package: CompiledPackage) -> dict[str, Array]:
 def _motors(ends: Mapping[str, Motors]) -> dict[str, str | float]:
     (first, *_) = ends.values()
     kind = "free_or_driven" if len(ends) > 1 else first.kind
-    assert kind in MOTORS
     reaction = first.reaction_time if np.isfinite(first.reaction_time) else NEVER
     return {"motors": kind, "reaction_time": reaction}
 

@@ -19,7 +19,7 @@ import subprocess
 import tempfile
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -35,7 +35,6 @@ from softimpact.codegen.interface import Interface, interface_of
 from softimpact.codegen.render import Package, render
 from softimpact.symbolic import (
     REGIONS,
-    Drives,
     InvalidValue,
     Robot,
     SoftImpactError,
@@ -234,7 +233,7 @@ class CompiledPackage:
 
 
 def compiled(
-    model: str | Path,
+    model: str | Path | Robot,
     *,
     tip: str | None = None,
     end: str | None = None,
@@ -248,7 +247,7 @@ def compiled(
     """Return a robot's C package as a library over arrays; built once, then taken from the cache.
 
     Args:
-        model: built-in robot, or path of a file.
+        model: built-in robot, path of a file, or a robot that is there already.
         tip: contact frame; default the robot's own.
         end: end of the arm, whose joints all stay; default the contact frame.
         points: further contact points for ``speed_factor``.
@@ -262,53 +261,24 @@ def compiled(
         NoCompiler: there is none.
         SoftImpactError: the robot cannot be read, or has no such frame.
     """
-    robot = load_robot(str(model), tip)
+    robot = model if isinstance(model, Robot) else load_robot(str(model), tip)
     contact = robot.tip if tip is None else tip
     if contact is None and end is None:
         raise InvalidValue("tip", f"{model} names no contact frame; name one")
     arm = chain_to(robot, end or str(contact))
     given = (joint_stiffness, rotor_inertia, position_gain)
     known = None if all(x is None for x in given) else drives(arm, *given)
-    return compiled_arm(
-        replace(arm, tip=contact or end), known, points=points, real=real, threads=threads
+    package = package_of(
+        arm, tip=contact or end, real=real, name="batched", drives_=known, points=points
     )
-
-
-def compiled_arm(
-    arm: Robot,
-    drives_: Drives | None = None,
-    *,
-    points: Mapping[str, str] | None = None,
-    real: Literal["double", "float"] = "double",
-    threads: int | None = None,
-) -> CompiledPackage:
-    """Return the C package of a robot that is there already, as ``compiled`` does.
-
-    Args:
-        arm: whose tip is the contact point.
-        drives_: defaults of the parameters.
-        points: further contact points for ``speed_factor``.
-        real: number type.
-        threads: default one a processor.
-
-    Raises:
-        NoCompiler: there is none.
-    """
-    _compiler()  # deriving the package takes longer than to find that there is none
-    package = package_of(arm, real=real, name="batched", drives_=drives_, points=points)
     return CompiledPackage(package, _built(package), threads or os.cpu_count() or 1)
-
-
-def _compiler() -> str:
-    compiler = os.environ.get("CC") or next(filter(shutil.which, COMPILERS), None)
-    if compiler is None:
-        raise NoCompiler
-    return compiler
 
 
 def _built(package: Package) -> Path:
     """Return the library of a package from the cache, compiled if it is not there."""
-    compiler = _compiler()
+    compiler = os.environ.get("CC") or next(filter(shutil.which, COMPILERS), None)
+    if compiler is None:
+        raise NoCompiler
     files, _ = render(package)
     files = {path: text for path, text in files.items() if path.endswith((".c", ".h"))}
     files["src/batch.c"] = _loops(package)

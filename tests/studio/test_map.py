@@ -12,13 +12,15 @@ import numpy as np
 import pytest
 from command_line import refusal, run, run_json
 
-from softimpact import batch
+from softimpact.batch import NoCompiler
 from softimpact.simulate.sampled import Samples
 from softimpact.simulate.sampled_speeds import safe_speeds
+from softimpact.studio import worst_directions
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
     Motors,
+    Robot,
     SingularDirection,
     approach_velocity,
     body_region,
@@ -109,7 +111,10 @@ def test_what_cannot_be_mapped_is_refused(tmp_path: Path, monkeypatch: pytest.Mo
     assert "seven joints" in refusal("map", "ur5e", *out, "--over", "self-motion")
     assert "moves nowhere" in refusal("map", "rr", *out, "--direction", "0,0,1", "--step", 0.5)
     assert "held" in refusal("map", *PANDA, *out, "--motors", "held", "--position-gain", 10)
-    monkeypatch.setattr(batch, "COMPILERS", ())
-    monkeypatch.delenv("CC", raising=False)
+
+    def missing(robot: Robot) -> None:
+        raise NoCompiler
+
+    monkeypatch.setattr(worst_directions, "compiled", missing)
     assert "no C compiler" in refusal("map", "rr", *out, "--plane", "xy", "--step", 1)
     assert not (tmp_path / "map").exists()
