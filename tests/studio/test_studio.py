@@ -250,6 +250,28 @@ def test_pictures_are_quick_enough_while_dragging(tab: Tab) -> None:
 
 
 @pytest.mark.slow
+def test_motors_drive_on_as_long_as_a_rotor_is_unknown(
+    chromium: Tab, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    folder = tmp_path_factory.mktemp("unknown")
+    text = (ROOT / "robots" / "ur5e.xml").read_text()
+    (folder / "arm.xml").write_text(re.sub(r'armature="[^"]*"', "", text))
+    outcome = run("studio", folder / "arm.xml", "--out", folder / "page")
+    assert outcome.code == 0, outcome
+    chromium.open("about:blank", 800, 600)
+    chromium.open((folder / "page" / "index.html").as_uri() + "#motors=free", 800, 600)
+    chromium.wait_for("window.softimpact")
+    for kind in ("free", "bracket", "servo"):
+        state = set_to(chromium, motors=kind, reaction_time=0.01)
+        assert (state["motors"], state["reaction_time"]) == ("driven", None)
+    assert "is unknown" in chromium.ask("document.getElementById('notes').textContent")
+    n = len(state["q"])
+    assert set_to(chromium, rotors=[0.1] * n)["motors"] == "driven"
+    assert set_to(chromium, motors="bracket")["motors"] == "bracket"
+    assert chromium.errors == []
+
+
+@pytest.mark.slow
 def test_self_motion_holds_the_end(wide: Tab) -> None:
     set_to(wide, q=Q9)
     found = wide.ask(f"softimpact.solver.slide({json.dumps(Q9)}, 0.7)")
@@ -371,6 +393,45 @@ def test_other_things_are_refused_in_one_line(
     monkeypatch.setattr(module, "find_spec", lambda name: None)
     assert "pip install" in refusal("studio", "rr", "--out", tmp_path / "page")
     assert not (tmp_path / "page").exists()
+
+
+def test_results_open_at_their_best(tmp_path: Path) -> None:
+    point = {"start": "q9", "deflection": 1e-3, "force": 300.0, "springs": [5e3] * 7, "q": Q9}
+    record: dict[str, Any] = {
+        "generator": "softimpact pareto",
+        "study": {"source": str(STUDY)},
+        "limit": 280.0,
+        "fronts": {"free": [point], "task": [{**point, "force": 310.0}]},
+    }
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps(record))
+    found = opened(str(tmp_path))
+    assert [(d.front, d.force) for d in found.designs] == [("free", 300.0), ("task", 310.0)]
+    assert np.array(found.drives.springs).ravel().tolist() == [5e3] * 7
+    design = {"name": "q3", "deflection": 1e-3, "springs": [4e3] * 7, "q": Q9}
+    record |= {"generator": "softimpact design", "winner": design, "worst_force": 250.0}
+    path.write_text(json.dumps(record))
+    assert [(d.name, d.force) for d in opened(str(tmp_path)).designs] == [("q3", 250.0)]
+
+
+def test_programs_open_at_their_worst_moment(tmp_path: Path) -> None:
+    motion = tmp_path / "motion.csv"
+    rows = [f"{t},{','.join(str(x + 0.1 * t) for x in Q9)}" for t in range(3)]
+    motion.write_text("\n".join([",".join(("t", *PANDA.joint_names)), *rows, ""]))
+    program = {
+        "generator": "softimpact program", "robot": "panda", "motion": str(motion),
+        "joint_stiffness": [None] * 7, "rotor_inertia": [0.5] * 7, "motors": {"driven": {}},
+        "clamped": False, "horizon": 0.1,
+        "worst": [{"q": Q9, "direction": [0, 0, 1], "speed": 0.7, "region": "hand"}],
+    }  # fmt: skip
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps(program))
+    found = opened(str(tmp_path))
+    assert (found.speed, found.region, found.kind, found.clamped) == (0.7, "hand", "driven", False)
+    assert found.motion is not None
+    assert len(found.motion.time) == 3
+    path.write_text(json.dumps({**program, "motion": "gone.csv"}))
+    assert "gone.csv is not there" in refusal("studio", tmp_path)
 
 
 def test_studies_open_in_their_task_and_with_all_poses() -> None:

@@ -89,11 +89,11 @@ export function writeNumbers(place, found, band, unknown) {
 }
 
 /** What to know of the answer. */
-export function writeNotes(place, found, state, content) {
+export function writeNotes(place, found, state, content, unknown) {
   const notes = [];
   const warn = (text) => notes.push(`<li class="warn">${escaped(text)}</li>`);
   const say = (text) => notes.push(`<li>${escaped(text)}</li>`);
-  if (content.unknown_rotors.length) say(`Rotor inertia of ${content.unknown_rotors.join(", ")} is unknown: motors are taken to keep their speed without an end, the worse case. Enter it under Hardware.`);
+  if (unknown.length) say(`Rotor inertia of ${unknown.join(", ")} is unknown: motors are taken to keep their speed without an end, the worse case. Enter it under “Rotor inertia”.`);
   (found.worst?.rates ?? []).forEach((rate, i) => {
     const { name, speed } = content.joints[i];
     if (speed !== null && Math.abs(rate) > speed * 1.0001) warn(`${name} would turn at ${shown(Math.abs(rate))}, beyond its limit of ${shown(speed)} rad/s.`);

@@ -6,7 +6,7 @@ import { paint, underPointer } from "./arm.js";
 import { cameraOn, orbit, zoomBy } from "./camera.js";
 import { controlsOf } from "./controls.js";
 import { plotForce } from "./plot.js";
-import { asHash, firstState, fromHash, withinLimits } from "./state.js";
+import { asHash, cautious, firstState, fromHash, unknownRotors, withinLimits } from "./state.js";
 import { solverOf } from "./solver.js";
 import { designStrip, programStrip, trendStrip } from "./strip.js";
 import { worstDirection } from "./worst.js";
@@ -44,7 +44,7 @@ function start(pkg, content) {
   function changed(what) {
     const change = typeof what === "function" ? what(state) : what;
     if (!change) return;
-    state = { ...state, ...change, q: withinLimits(change.q ?? state.q, content) };
+    state = cautious({ ...state, ...change, q: withinLimits(change.q ?? state.q, content) }, content);
     band = null;
     redraw();
     clearTimeout(quiet);
@@ -67,8 +67,8 @@ function start(pkg, content) {
     byId("said").textContent = headline(found, state);
     writeBrief(byId("brief"), found);
     writeVerdict(byId("verdict"), found, state);
-    writeNumbers(byId("numbers"), found, band, solver.unknown);
-    writeNotes(byId("notes"), found, state, content);
+    writeNumbers(byId("numbers"), found, band, solver.unknown(state));
+    writeNotes(byId("notes"), found, state, content, unknownRotors(state, content));
     drawPlot();
     controls.show(state);
     strips.filter((strip) => !strip.idle).forEach((strip) => strip.draw(looks, state, found));
@@ -99,7 +99,7 @@ function start(pkg, content) {
       peaks.sort((a, b) => a - b);
       const at = (share) => { const x = share * (peaks.length - 1), k = Math.floor(x); return peaks[k] + (x - k) * ((peaks[k + 1] ?? peaks[k]) - peaks[k]); };
       band = peaks.length > 40 ? { low: at(0.025), high: at(0.975) } : null;
-      writeNumbers(byId("numbers"), found, band, solver.unknown);
+      writeNumbers(byId("numbers"), found, band, solver.unknown(state));
       drawPlot();
     }
   }

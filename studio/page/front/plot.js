@@ -35,7 +35,7 @@ export function plotForce(svg, found, state, looks, band, at) {
     parts.push(tag("text", { x: box.left - 6, y: y(N) + 4, "text-anchor": "end", class: "tick" }, N));
   });
   times.forEach((ms) => parts.push(tag("text", { x: x(ms), y: box.bottom + 16, "text-anchor": "middle", class: "tick" }, ms)));
-  parts.push(tag("text", { x: box.left - 36, y: 10, class: "tick" }, "force, N"));
+  parts.push(tag("text", { x: box.left - 42, y: 10, class: "tick" }, "force, N"));
   parts.push(tag("text", { x: box.right, y: box.bottom + 28, "text-anchor": "end", class: "tick" }, "time since first touch, ms"));
   if (band) {
     parts.push(tag("rect", { x: box.left, width: box.right - box.left, y: y(Math.min(band.high, high)), height: y(band.low) - y(Math.min(band.high, high)), fill: looks.band }));
@@ -45,10 +45,10 @@ export function plotForce(svg, found, state, looks, band, at) {
   const released = 1e3 * (state.reaction_time ?? Infinity);
   if (released > 0 && released < long && ends.some((end) => end.kind !== "free")) {
     parts.push(tag("line", { x1: x(released), x2: x(released), y1: box.top, y2: box.bottom, stroke: looks.soft, "stroke-dasharray": "2 4" }));
-    parts.push(tag("text", { x: x(released), y: box.top - 6, "text-anchor": "middle", class: "tick" }, "motors released"));
+    parts.push(tag("text", { x: Math.max(x(released), box.left + 52), y: box.top - 6, "text-anchor": "middle", class: "tick" }, "motors released"));
   }
   if (showLimit) parts.push(limitLine(box, y(limit), looks, `limit ${limit.toFixed(0)} N`));
-  if (state.clamped && long > 499 && pressed < high) parts.push(limitLine(box, y(pressed), looks, `from 500 ms on ${pressed.toFixed(0)} N`));
+  if (state.clamped && long > 499 && pressed < high) parts.push(limitLine(box, y(pressed), looks, `from 500 ms on ${pressed.toFixed(0)} N`, "start"));
   ends.forEach((end) => parts.push(curve(end, x, y, long, looks[end.kind])));
   parts.push(...labels(ends, x, y, box, looks, long, showLimit ? y(limit) : -99));
   if (at !== null) parts.push(...reading(ends, at, box, x, y, long, looks));
@@ -57,10 +57,10 @@ export function plotForce(svg, found, state, looks, band, at) {
   return { timeAt: (px) => Math.min(long, Math.max(0, ((px - box.left) / (box.right - box.left)) * long)) };
 }
 
-function limitLine(box, at, looks, words) {
+function limitLine(box, at, looks, words, end = "end") {
   return (
     tag("line", { x1: box.left, x2: box.right, y1: at, y2: at, stroke: looks.limit, "stroke-width": 1.4, "stroke-dasharray": "6 4" }) +
-    tag("text", { x: box.right - 4, y: at - 5, "text-anchor": "end", "font-weight": 600 }, words)
+    tag("text", { x: end === "end" ? box.right - 4 : box.left + 5, y: at - 5, "text-anchor": end, "font-weight": 600 }, words)
   );
 }
 

@@ -10,6 +10,8 @@ function section(title, html) {
   return box;
 }
 
+const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
+
 /** A program: scrubbing sets posture, direction and speed as the contact point really moves. */
 export function programStrip(content, changed, solver, fail) {
   let motion = content.motion;
@@ -42,7 +44,9 @@ export function programStrip(content, changed, solver, fail) {
     box.querySelector(".play").hidden = !motion;
     if (!motion) return;
     range.max = motion.t.length - 1;
-    output.textContent = `${motion.t[0].toFixed(2)} s`;
+    const away = motion.q.map((q) => apart(q, content.start.q));
+    range.value = away.indexOf(Math.min(...away));
+    output.textContent = `${motion.t[Number(range.value)].toFixed(2)} s`;
   }
   button.addEventListener("click", () => {
     if (timer) return stop();
@@ -148,6 +152,10 @@ export function trendStrip(content, solver) {
     last = [looks, state, found];
     if (!found.scene?.contact || !svg.getBoundingClientRect().width) return;
     const how = over[select.value];
+    if (select.value === "reaction" && solver.unknown(state)) { // motors that let go need their rotors
+      svg.innerHTML = "";
+      return;
+    }
     const points = how.values.map((value) => [value, solver.safeSpeed(how.at(state, value), found.scene.contact)]);
     if (points.every(([, v]) => v === null)) { svg.innerHTML = ""; return; }
     const now = how.now(state);
