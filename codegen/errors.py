@@ -28,3 +28,18 @@ class FailedOwnTest(SoftImpactError):
             f"the package fails its own test and was not written: {reason}; this is a fault of the "
             "generator, please report it with the robot's file"
         )
+
+
+class UnknownDeclaration(SoftImpactError):
+    """A header holds a declaration that our templates do not write."""
+
+    def __init__(self, package: str, declaration: str) -> None:
+        self.package, self.declaration = package, declaration
+        super().__init__(f"{package}: not the header of a generated package ({declaration})")
+
+
+class NoCrossCompiler(SoftImpactError):
+    """WebAssembly needs a compiler that is not installed."""
+
+    def __init__(self) -> None:
+        super().__init__("WebAssembly needs the compiler Zig: pip install ziglang")

@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..content import ByContent
 from ..dynamics.equations_of_motion import Gravity, mass_matrix, stiffness_of_potential
 from ..dynamics.kinematics import contact_point_jacobian, direction_jacobian
 from ..errors import InvalidValue, WrongLength
@@ -37,7 +38,7 @@ WEIGHTLESS = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
-class ImpactModel:
+class ImpactModel(ByContent):
     """A robot, its contact point and its drives; methods take q and n of any matrix kind.
 
     Link angles q have one entry a joint. Generalised coordinates are the motor angles followed by

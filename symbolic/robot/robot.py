@@ -11,6 +11,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..content import ByContent
 from ..errors import FrameNotFound, InvalidValue, UnknownName, WrongLength
 from ..matrices import Matrix
 from .constraints import Ball, Constraint, Coupling, Loop, Tendon, Through
@@ -28,7 +29,7 @@ class JointKind(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
+class Joint(ByContent):
     """A joint, and all that moves rigidly with it.
 
     Attributes:
@@ -80,7 +81,7 @@ class Joint:
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class Frame(ByContent):
     """A named frame fixed to a joint's body (or to the base)."""
 
     name: str
@@ -89,7 +90,7 @@ class Frame:
 
 
 @dataclass(frozen=True, eq=False)
-class PointMass:
+class PointMass(ByContent):
     """A mass in a point, held at a frame.
 
     Attributes:
@@ -104,7 +105,7 @@ class PointMass:
 
 
 @dataclass(frozen=True, eq=False)
-class Robot:
+class Robot(ByContent):
     """A fixed-base tree of hinge and slide joints, parents before children, and the loops in it.
 
     Attributes:
