@@ -7,17 +7,24 @@ templates write, not C at large, and refuses what it does not know.
 
 from __future__ import annotations
 
+import json
 import math
 import re
+import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .errors import UnknownDeclaration
 
 SIZES = {"int": 4, "unsigned int": 4, "unsigned char": 1, "double": 8, "float": 4}
 """Of the types that headers use [bytes], on every machine that has 32-bit int."""
+
+NUMPY = {"int": "i4", "unsigned int": "u4", "unsigned char": "u1", "double": "f8", "float": "f4"}
+"""The same in NumPy."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +85,8 @@ class Interface:
         numbers: macros that stand for a whole number, without the prefix.
         texts: macros that stand for a text, likewise.
         tables: constant arrays by name.
+        layout: what the header says of its own layout, without the size of ``real``; None where no
+            function takes parameters.
     """
 
     prefix: str
@@ -87,8 +96,40 @@ class Interface:
     numbers: Mapping[str, int]
     texts: Mapping[str, str]
     tables: Mapping[str, Variable]
+    layout: int | None
 
-    def layout(self, struct: str, real: str) -> tuple[dict[str, int], int]:
+    def layout_in(self, real: str) -> int:
+        """Return the number by which a library knows its own parameter structs."""
+        return (self.layout or 0) + SIZES[real]
+
+    def fingerprint(self) -> int:
+        """Return a number that changes with whatever a caller's compiler takes from the header.
+
+        Its last four bits are 0, for the size of ``real``.
+        """
+        structs = [
+            [s.name, *([f.name, f.type, f.shape] for f in s.fields)] for s in self.structs.values()
+        ]
+        entries = [
+            [e.name, e.returns, *([a.type, a.shape, a.pointer] for a in e.arguments)]
+            for e in self.entries.values()
+        ]
+        enums = {name: dict(members) for name, members in self.enums.items()}
+        return zlib.crc32(json.dumps([structs, entries, enums]).encode()) & 0xFFFFFFF0
+
+    def dtype(self, struct: str, real: str) -> np.dtype[Any]:
+        """Return a struct as NumPy holds it."""
+        offsets, size = self.offsets(struct, real)
+        fields = self.structs[struct].fields
+        kinds = [NUMPY[real if f.type == "real" else f.type] for f in fields]
+        return np.dtype({
+            "names": [f.name for f in fields],
+            "formats": [(k, f.shape) if f.shape else k for k, f in zip(kinds, fields, strict=True)],
+            "offsets": list(offsets.values()),
+            "itemsize": size,
+        })  # fmt: skip
+
+    def offsets(self, struct: str, real: str) -> tuple[dict[str, int], int]:
         """Return the offset of each field of a struct, and its size [bytes]."""
         offsets, at, widest = {}, 0, 1
         for field in self.structs[struct].fields:
@@ -132,6 +173,7 @@ FUNCTION = re.compile(
 )
 TABLE = re.compile(r"^extern const (\w+) (\w+)((?:\[\w+\])+);", re.MULTILINE)
 NUMBER = re.compile(r"^#define (\w+) (\d+|0x[0-9a-f]+)u?$", re.MULTILINE)
+LAYOUT = re.compile(r"^#define \w+_LAYOUT \((0x[0-9a-f]+)u \+", re.MULTILINE)
 TEXT = re.compile(r'^#define (\w+) (?:\\\n *)?"(.*)"$', re.MULTILINE)
 MEMBER = re.compile(r"(\w+(?: \w+)*?) (\w+)((?:\[\w*\])*);[ ]*(?:/\* (.*?) \*/)?", re.DOTALL)
 ARGUMENT = re.compile(r"(const )?(\w+(?: \w+)*?) (\*?)(\w+)((?:\[\w*\])*)$")
@@ -154,6 +196,7 @@ class _Header:
             Variable(self._short(m[2]), self._type(m[1]), self._shape(m[3], numbers))
             for m in TABLE.finditer(self.text)
         ]
+        layout = LAYOUT.search(self.text)
         return Interface(
             prefix=self.prefix,
             structs={s.name: s for s in structs},
@@ -162,6 +205,7 @@ class _Header:
             numbers={self._short(k): v for k, v in numbers.items()},
             texts={self._short(m[1]): m[2] for m in TEXT.finditer(self.text)},
             tables={t.name: t for t in tables},
+            layout=int(layout[1], 0) if layout else None,
         )
 
     def _short(self, name: str) -> str:

@@ -69,7 +69,7 @@ def described(interface: Interface, real: Real) -> dict[str, Any]:
     sizes = {**SIZES, "real": SIZES[real]}
     structs = {}
     for name, struct in interface.structs.items():
-        offsets, size = interface.layout(name, real)
+        offsets, size = interface.offsets(name, real)
         fields = [{**_typed(f), "offset": offsets[f.name]} for f in struct.fields]
         structs[name] = {"size": size, "fields": fields}
     entries = {
@@ -83,6 +83,7 @@ def described(interface: Interface, real: Real) -> dict[str, Any]:
     }
     return {
         "prefix": interface.prefix,
+        "layout": interface.layout_in(real),
         "sizes": sizes,
         "structs": structs,
         "entries": entries,

@@ -80,7 +80,7 @@ def _robust(study: Study, folder: Path, json: bool) -> None:
     from .output import failures_as_json, print_json, say, write_json
     from .progress import optimiser_bar
     from .results_folder import RESULTS, replaced_folder
-    from .robust_report import robust_in_words, robust_record
+    from .robust_report import designed_model, robust_in_words, robust_record
 
     asked, scenarios = study.scenarios, scenarios_of(study)
     free = isinstance(asked, ScenariosSection) and asked.posture == "free"
@@ -94,7 +94,7 @@ def _robust(study: Study, folder: Path, json: bool) -> None:
     record = robust_record(found)
     with replaced_folder(folder, GENERATOR) as fresh:
         write_json(fresh / RESULTS, record)
-        model = study.model.with_springs(found.springs)
+        model = designed_model(found)
         generate_package(model.robot, fresh / "c", drives_=model.drives)
     if json:
         print_json({"out": folder, **record})

@@ -10,6 +10,7 @@ from softimpact.optimize import Outcome
 from softimpact.optimize.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
 
+from .answers_in_words import answers_in_words
 from .design_report import (
     DesignReport,
     RankedPose,
@@ -145,13 +146,10 @@ def _meaning(report: DesignReport) -> list[str]:
     """What binds, which numbers matter, and whether the nominal springs are a fair reference."""
     study, answers = report.study, report.design.answers
     bound, reference = study.max_deflection, answers.reference
-    ranges = zip(study.robot.joint_names, answers.indifferent, strict=True)
-    named = ", ".join(f"{name} {low:.0f}–{high:.0f}" for name, (low, high) in ranges)
     lines = [
         f"deflection {1e3 * answers.deflection:.4g} mm of {1e3 * bound:.4g} mm; motors "
         f"{answers.worst_motors.kind} are the worst",
-        f"costs less than 0.5 %, one at a time: {named} N·m/rad",
-        *(f"{price.bound}: {price.room} buys {price.newtons:.2g} N" for price in answers.prices),
+        *answers_in_words(study, answers.indifferent, answers.prices),
     ]
     if not np.array_equal(reference.springs, study.nominal):
         saved = 100 * (1 - report.design.winner.force / reference.force)

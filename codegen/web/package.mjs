@@ -31,8 +31,11 @@ export function instantiate(module) {
     const at = exports[`${about.prefix}_${name}`].value;
     return [name, shaped(read(about, exports.memory, table.type, at, count(table.shape)), table.shape)];
   });
+  const { fill_params: fill, ...entries } = Object.fromEntries(calls);
   return Object.freeze({
-    ...Object.fromEntries([...calls, ...tables]),
+    ...entries,
+    ...Object.fromEntries(tables),
+    ...(fill && { default_params: () => fill({ layout: about.layout }) }),
     enums: about.enums,
     numbers: about.numbers,
     texts: about.texts,
@@ -93,7 +96,7 @@ function number(value, name) {
 
 function view(about, memory, type, at, length) {
   const kind = { 8: Float64Array, 1: Uint8Array }[about.sizes[type]];
-  const four = type === "real" ? Float32Array : Int32Array;
+  const four = { real: Float32Array, "unsigned int": Uint32Array }[type] ?? Int32Array;
   return new (kind ?? four)(memory.buffer, at, length);
 }
 

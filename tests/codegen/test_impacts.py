@@ -278,7 +278,7 @@ def test_speed_factor_is_the_safe_speed_over_the_speed_there_is(
         if status != OK:
             continue
         out = _Factor(real)
-        p = packed_params(case.sample.parameters, motion, real)
+        p = packed_params(compiled.package, case.sample.parameters, motion, real)
         vectors = [ctypes.c_void_p(v.ctypes.data) for v in (q, dq)]
         status = compiled.entry("speed_factor")(
             *vectors, c_real(limit), ctypes.byref(region), p, ctypes.byref(out.struct)

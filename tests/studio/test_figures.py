@@ -15,7 +15,7 @@ from matplotlib.image import imread
 from matplotlib.text import Annotation, Text
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from softimpact.optimize.poses import tip_pose
+from softimpact.optimize.tip_pose import tip_pose
 from softimpact.studio.design_report import DesignReport
 from softimpact.studio.figures import (
     draw_figures,

@@ -10,6 +10,9 @@
 
 int panda_check_impact(const panda_region *region, const panda_params *p)
 {
+    if (p->layout != PANDA_LAYOUT) {
+        return PANDA_FOREIGN_PARAMS;
+    }
     const panda_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
         region->clamped != 0 ? PANDA_R(1.0) : region->effective_mass};
     if (!panda_all_finite(numbers, 4)) {

@@ -10,6 +10,9 @@
 
 int rmin_check_impact(const rmin_region *region, const rmin_params *p)
 {
+    if (p->layout != RMIN_LAYOUT) {
+        return RMIN_FOREIGN_PARAMS;
+    }
     const rmin_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
         region->clamped != 0 ? RMIN_R(1.0) : region->effective_mass};
     if (!rmin_all_finite(numbers, 4)) {

@@ -10,6 +10,9 @@
 
 int rr_check_impact(const rr_region *region, const rr_params *p)
 {
+    if (p->layout != RR_LAYOUT) {
+        return RR_FOREIGN_PARAMS;
+    }
     const rr_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
         region->clamped != 0 ? RR_R(1.0) : region->effective_mass};
     if (!rr_all_finite(numbers, 4)) {

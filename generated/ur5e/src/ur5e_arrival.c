@@ -10,6 +10,9 @@
 
 int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p)
 {
+    if (p->layout != UR5E_LAYOUT) {
+        return UR5E_FOREIGN_PARAMS;
+    }
     const ur5e_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
         region->clamped != 0 ? UR5E_R(1.0) : region->effective_mass};
     if (!ur5e_all_finite(numbers, 4)) {
