@@ -209,7 +209,9 @@ def test_check_says_what_the_search_could_not_do(tmp_path: Path) -> None:
     study = written(tmp_path, named, "study.toml")
     assert run("check", study).code == 0
     study = written(tmp_path, re.sub(r"(?m)^upper = .*$", "upper = 1e7", named), "study.toml")
-    (line,) = (i for i, l in enumerate(study.read_text().splitlines(), 1) if l == "upper = 1e7")
+    (line,) = (
+        i for i, text in enumerate(study.read_text().splitlines(), 1) if text == "upper = 1e7"
+    )
     refused = run("check", study)
     assert refused.code == 2
     assert refused.err.startswith(f"error: {study}:{line}: stiffness.upper: joints that stiff")
