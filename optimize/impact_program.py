@@ -25,8 +25,9 @@ from softimpact.symbolic import (
 )
 from softimpact.symbolic.matrices import Factorisation
 from softimpact.symbolic.robot.rigid import Array
+from softimpact.toolchain import c_compiler
 
-from .compiled import c_compiler, compiled_functions
+from .compiled import compiled_functions
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .motor_laws import MotorLaws
 from .peaks import peaks_in_windows

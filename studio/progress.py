@@ -9,7 +9,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TimeElapsedColumn
 
-from softimpact.optimize.compiled import c_compiler
+from softimpact.toolchain import c_compiler
 
 BETWEEN_LINES = 10.0
 """Seconds between two lines of progress in a file or a pipe."""
