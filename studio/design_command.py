@@ -77,7 +77,7 @@ def _robust(study: Study, folder: Path, json: bool) -> None:
     from softimpact.optimize.study_scenarios import scenarios_of
 
     from .design_report import GENERATOR
-    from .output import failures_as_json, print_json, write_json
+    from .output import failures_as_json, print_json, say, write_json
     from .progress import optimiser_bar
     from .results_folder import RESULTS, replaced_folder
     from .robust_report import designed_model, robust_in_words, robust_record
@@ -100,8 +100,8 @@ def _robust(study: Study, folder: Path, json: bool) -> None:
         print_json({"out": folder, **record})
         return
     for line in robust_in_words(found):
-        typer.echo(line)
-    typer.echo(f"Results and the C package: {folder}")
+        say(line)
+    say(f"Results and the C package: {folder}")
 
 
 def _modes(name: str, study: Study) -> tuple[Mode, ...]:
@@ -148,11 +148,8 @@ def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:
 
 
 def _print(report: DesignReport, folder: Path) -> None:
-    from rich.console import Console
-
     from .design_tables import print_design
+    from .output import say
 
     print_design(report)
-    Console(soft_wrap=True, highlight=False).print(
-        f"\nResults, figures and the C package: {folder}"
-    )
+    say(f"\nResults, figures and the C package: {folder}")

@@ -20,7 +20,7 @@ from .design_report import (
     peak_in_words,
     reactions_in_words,
 )
-from .output import Cell, print_table
+from .output import Cell, print_table, say
 
 COLUMNS = (
     "rank",
@@ -45,7 +45,7 @@ def print_design(report: DesignReport) -> None:
     study = report.study
     contact = study.contact
     held = "clamped" if contact.clamped else "free to give way"
-    console = Console(soft_wrap=True, highlight=False)
+    console = Console()
     fits = not console.is_terminal or console.width >= WIDE
     columns = COLUMNS if fits else COLUMNS[:-1]
     print_table(
@@ -55,9 +55,9 @@ def print_design(report: DesignReport) -> None:
         [_row(pose)[: len(columns)] for pose in report.poses],
     )
     if not fits:
-        console.print(f"joint stiffness: in results.json, or here from {WIDE} columns on")
+        say(f"joint stiffness: in results.json, or here from {WIDE} columns on")
     for line in [*_notes(report), *_winner(report)]:
-        console.print(line)
+        say(line)
 
 
 def _row(pose: RankedPose) -> list[Cell]:
