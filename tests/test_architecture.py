@@ -17,7 +17,7 @@ MAY_IMPORT = {
     "codegen": {"symbolic"},
     "simulate": {"symbolic"},
     "optimize": {"symbolic"},
-    "studio": {"robots", "symbolic", "codegen", "simulate", "optimize"},
+    "studio": {"robots", "symbolic", "codegen", "simulate", "optimize", "batch"},
     "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }
 

@@ -21,6 +21,7 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
@@ -34,7 +35,9 @@ from softimpact.codegen.inputs import SCALARS
 from softimpact.codegen.render import Package, render
 from softimpact.symbolic import (
     REGIONS,
+    Drives,
     InvalidValue,
+    Robot,
     SoftImpactError,
     chain_to,
     drives,
@@ -224,7 +227,7 @@ class CompiledPackage:
         pieces = max(1, min(8 * self.threads, count // CHUNK)) if self.threads > 1 else 1
         edges = np.linspace(0, count, pieces + 1).astype(int).tolist()
         with ThreadPoolExecutor(self.threads) as pool:
-            list(pool.map(part, zip(edges[:-1], edges[1:], strict=True)))
+            list(pool.map(part, pairwise(edges)))
         return out, status
 
 
@@ -264,8 +267,36 @@ def compiled(
     arm = chain_to(robot, end or str(contact))
     given = (joint_stiffness, rotor_inertia, position_gain)
     known = None if all(x is None for x in given) else drives(arm, *given)
+    return compiled_arm(arm, known, tip=contact or end, points=points, real=real, threads=threads)
+
+
+def compiled_arm(
+    arm: Robot,
+    drives_: Drives | None = None,
+    *,
+    tip: str | None = None,
+    points: Mapping[str, str] | None = None,
+    real: Literal["double", "float"] = "double",
+    gravity: tuple[float, float, float] | None = None,
+    threads: int | None = None,
+) -> CompiledPackage:
+    """Return the library of an arm that is there already: loaded, with its tool and payload.
+
+    Args:
+        arm: all of its joints are moved.
+        drives_: defaults of the parameters; the file's unless given.
+        tip: contact frame; default the arm's own.
+        points: as ``compiled``, and what follows.
+        real: number type.
+        gravity: whose curvature counts [m/s²]; default as ``generate_package``.
+        threads: default one a processor.
+
+    Raises:
+        NoCompiler: there is none.
+        SoftImpactError: the arm has no such frame.
+    """
     package = package_of(
-        arm, tip=contact or end, real=real, name="batched", drives_=known, points=points
+        arm, tip=tip, real=real, name="batched", drives_=drives_, gravity=gravity, points=points
     )
     return CompiledPackage(package, _built(package), threads or os.cpu_count() or 1)
 
@@ -330,14 +361,18 @@ def _loops(package: Package) -> str:
             inputs = ["q", "n", "number", "region", "p"]
             loop(short, inputs, f"({name}_{short}_t *)row", 2, {"number"})
         loop("speed_factor", ["q", "dq", "number", "region", "p"], "&found", 4, {"number"})
-        lines[-1] = lines[-1].replace(
-            "        status[i]", f"        {name}_speed_factor_t found;\n        status[i]"
-        ).replace(
-            "    }\n}",
-            "        if (status[i] == 0 || status[i] == 9) {\n"
-            "            row[0] = found.factor;\n"
-            f"            row[1] = ({real})found.point;\n"
-            "            row[2] = found.speed;\n            row[3] = found.force;\n"
-            "        }\n    }\n}",
+        lines[-1] = (
+            lines[-1]
+            .replace(
+                "        status[i]", f"        {name}_speed_factor_t found;\n        status[i]"
+            )
+            .replace(
+                "    }\n}",
+                "        if (status[i] == 0 || status[i] == 9) {\n"
+                "            row[0] = found.factor;\n"
+                f"            row[1] = ({real})found.point;\n"
+                "            row[2] = found.speed;\n            row[3] = found.force;\n"
+                "        }\n    }\n}",
+            )
         )
     return "\n".join(lines) + "\n"

@@ -100,15 +100,20 @@ def test_table(motion: Path) -> None:
     assert "band N" in outcome.out
 
 
-def test_points_by_default_are_the_end_and_some_along_the_arm(motion: Path) -> None:
-    from softimpact.simulate.trajectory import trajectory
+def test_points_by_default_are_the_end_and_some_along_the_arm() -> None:
     from softimpact.studio.program import default_points
 
-    table = np.loadtxt(motion, delimiter=",", skiprows=1)
-    points = default_points(PANDA, trajectory(table[:, 0], table[:, 1:]))
+    points = default_points(PANDA, REST)
     assert points[0] == "hand_tcp"
-    assert 2 <= len(points) <= 5
-    assert "link1" not in points
+    assert 2 <= len(points) <= 6
+
+
+def test_points_that_stay_where_they_are_are_not_watched_by_default(motion: Path) -> None:
+    found = run_json_with_warnings(
+        "program", motion, "--model", "panda", "--regions", "hand", *QUICK
+    )
+    assert found["points"][0] == "hand_tcp"
+    assert "link1" not in found["points"]
 
 
 def test_options_may_be_repeated_instead(motion: Path) -> None:
