@@ -2,12 +2,13 @@
 """CasADi expressions to portable C99 packages."""
 
 from .defaults import Payload
-from .errors import UnsupportedOperation
+from .errors import FailedOwnTest, UnsupportedOperation
 from .folder import FolderNotWritable, ForeignFolder
 from .manifest import FunctionRecord, Manifest
 from .package import generate_package, package_of
 
 __all__ = [
+    "FailedOwnTest",
     "FolderNotWritable",
     "ForeignFolder",
     "FunctionRecord",

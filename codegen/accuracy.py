@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .description import CFunction
 from .evaluate import evaluate_exactly, evaluate_rounded
 from .exact import DIGITS
-from .samples import Sample, as_columns
+from .samples import Sample
 
 Inputs = Sequence[NDArray[np.float64]]
 """All inputs of many samples, as ``as_columns`` returns them."""
@@ -26,6 +26,9 @@ USUAL = 0.999
 MARGIN = 4.0
 """Stated float error over the one measured: for other compilers, fused multiply-adds, and the
 configurations between those measured."""
+
+AT_ONCE = 4096
+"""Samples evaluated together: their values take some 100 MB for thirty joints."""
 
 DOUBLE_ERROR = 1e-12
 """Least bound stated of a double build's error, against exact arithmetic and against CasADi, whose
@@ -57,9 +60,9 @@ def _exact_unit(n: Sequence[float]) -> list[Decimal]:
         return [Decimal(x) / length for x in n]
 
 
-def is_regular(function: CFunction, samples: Sequence[Sample]) -> NDArray[np.bool_]:
+def is_regular(function: CFunction, inputs: Inputs) -> NDArray[np.bool_]:
     """Return for which samples the function answers instead of reporting a singularity."""
-    return _evaluate(function, as_columns(samples), np.float64)[1]
+    return _evaluate(function, inputs, np.float64)[1]
 
 
 @dataclass(frozen=True)
@@ -77,22 +80,15 @@ class Accuracy:
     single_worst: float
 
 
-def accuracy(function: CFunction, samples: Sequence[Sample]) -> Accuracy:
+def accuracy(function: CFunction, inputs: Inputs) -> Accuracy:
     """Return a function's accuracy, measured in single precision; errors scale with precision.
 
     Few configurations are so ill-conditioned that a bound over all of them would say nothing about
     the others. All numbers are rounded up to one digit.
     """
-    inputs = as_columns(samples)
-    reference, regular = _evaluate(function, inputs, np.float64)
-    narrow, still_regular = _evaluate(function, inputs, np.float32)
-    both = regular & still_regular
-    scales = _scales(function, inputs, reference)
-    errors = [
-        _error(got[:, both], wide[:, both], scale[both])
-        for wide, got, scale in zip(reference, narrow, scales, strict=True)
-    ]
-    ordered = np.sort(np.max(errors, axis=0))
+    samples = inputs[0].shape[1]
+    parts = [[i[:, k : k + AT_ONCE] for i in inputs] for k in range(0, samples, AT_ONCE)]
+    ordered = np.sort(np.concatenate([_float_errors(function, part) for part in parts]))
     epsilon = float(np.finfo(np.float32).eps)
     usual = max(epsilon, float(ordered[int(USUAL * (ordered.size - 1))]))
     worst = max(epsilon, float(ordered[-1]))
@@ -102,6 +98,19 @@ def accuracy(function: CFunction, samples: Sequence[Sample]) -> Accuracy:
         single=rounded_up(MARGIN * usual),
         single_worst=rounded_up(worst),
     )
+
+
+def _float_errors(function: CFunction, inputs: Inputs) -> NDArray[np.float64]:
+    """Return the largest error of each sample to which the function answers in both precisions."""
+    reference, regular = _evaluate(function, inputs, np.float64)
+    narrow, still_regular = _evaluate(function, inputs, np.float32)
+    both = regular & still_regular
+    scales = _scales(function, inputs, reference)
+    errors = [
+        _error(got[:, both], wide[:, both], scale[both])
+        for wide, got, scale in zip(reference, narrow, scales, strict=True)
+    ]
+    return np.asarray(np.max(errors, axis=0))
 
 
 def _error(

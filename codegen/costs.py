@@ -2,16 +2,17 @@
 """What a package's functions cost on a microcontroller, where that has been measured.
 
 Generating needs no cross compiler: the numbers are data beside this file, written by
-``make bench-c`` for the built-in robots. They belong to certain sources and no others.
+``make bench-c`` for the built-in robots. Each belongs to certain sources and no others.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+
+from .cost_digests import cost_digests
 
 COSTS = Path(__file__).parent / "costs"
 """One file a package, named by its prefix."""
@@ -36,6 +37,7 @@ class FunctionCost:
         text: code of the source it stands in, on the M7 [bytes].
         rodata: constants of that source [bytes].
         stack: deepest of it and whatever it calls in the package, on the M7 [bytes].
+        digest: of what was measured, see ``cost_digests``.
     """
 
     name: str
@@ -44,6 +46,7 @@ class FunctionCost:
     text: int
     rodata: int
     stack: int
+    digest: str
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,7 @@ class SharedCost:
     name: str
     text: int
     rodata: int
+    digest: str
 
 
 @dataclass(frozen=True)
@@ -60,14 +64,12 @@ class Costs:
     """Costs of a package.
 
     Attributes:
-        sources: digest of what was measured, see ``sources_digest``.
         compiler: and its version.
         flags: that optimise.
         functions: costs of each.
         shared: sources that they share.
     """
 
-    sources: str
     compiler: str
     flags: str
     functions: tuple[FunctionCost, ...]
@@ -78,30 +80,21 @@ class Costs:
         return json.dumps(asdict(self), indent=2) + "\n"
 
 
-def sources_digest(hashes: Mapping[str, str]) -> str:
-    """Return a hash over what decides a package's costs.
-
-    These are its sources and headers, but for the one that picks the number type, and the golden
-    inputs.
+def stored_costs(prefix: str, files: Mapping[str, str]) -> Costs | None:
+    """Return what was measured of a package's present sources; None if nothing was.
 
     Args:
-        hashes: SHA-256 of each file of the package, or of more or fewer files that do not count.
+        prefix: of the package's names.
+        files: texts by path.
     """
-    counted = [
-        f"{path} {digest}\n"
-        for path, digest in sorted(hashes.items())
-        if path.startswith(("include/", "src/", "test/golden")) and not path.endswith("_config.h")
-    ]
-    return hashlib.sha256("".join(counted).encode()).hexdigest()
-
-
-def stored_costs(prefix: str, hashes: Mapping[str, str]) -> Costs | None:
-    """Return a package's costs; None if they were not measured or are those of other sources."""
     path = COSTS / f"{prefix}.json"
     if not path.is_file():
         return None
     costs = _from_json(path.read_text(encoding="utf-8"))
-    return costs if costs.sources == sources_digest(hashes) else None
+    digests = cost_digests(prefix, files)
+    functions = tuple(f for f in costs.functions if f.digest == digests.get(f.name))
+    shared = tuple(s for s in costs.shared if s.digest == digests.get(s.name))
+    return replace(costs, functions=functions, shared=shared) if functions else None
 
 
 def _from_json(text: str) -> Costs:

@@ -65,13 +65,19 @@ def _replay(
     constant: Callable[[float], Any],
     element: Callable[[int, int], Any],
     function: Callable[[int], Callable[..., Any]],
-) -> list[Any]:
-    values: list[Any] = []
-    for node in graph.nodes:
+) -> dict[int, Any]:
+    """Return the values of all results by node; others are let go after their last use."""
+    last = graph.last_uses
+    functions = {number: function(number) for number in graph.computations}
+    values: dict[int, Any] = {}
+    for index, node in enumerate(graph.nodes):
         if node.operation == ca.OP_CONST:
-            values.append(constant(node.value))
+            values[index] = constant(node.value)
         elif node.operation == ca.OP_INPUT:
-            values.append(element(*node.element))
+            values[index] = element(*node.element)
         else:
-            values.append(function(node.operation)(*(values[i] for i in node.operands)))
+            values[index] = functions[node.operation](*[values[i] for i in node.operands])
+            for i in node.operands:
+                if last[i] == index:
+                    values.pop(i, None)
     return values

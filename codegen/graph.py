@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import casadi as ca
 
@@ -69,6 +70,23 @@ class Graph:
                 count[index] += 1
         return count
 
+    @cached_property
+    def computations(self) -> frozenset[int]:
+        """CasADi's numbers of all operations that compute something."""
+        return frozenset(node.operation for node in self.nodes) - {ca.OP_CONST, ca.OP_INPUT}
+
+    @cached_property
+    def last_uses(self) -> list[int]:
+        """Return which node reads each node last; of results, one beyond the last."""
+        last = [-1] * len(self.nodes)
+        for index, node in enumerate(self.nodes):
+            for operand in node.operands:
+                last[operand] = index
+        for result in self.results:
+            for index in result:
+                last[index] = len(self.nodes)
+        return last
+
     def only(self, results: Sequence[int]) -> Graph:
         """Return the graph of some of the results, without nodes that none of them needs."""
         kept = tuple(self.results[i] for i in results)
@@ -77,10 +95,11 @@ class Graph:
             if index in needed:
                 needed.update(self.nodes[index].operands)
         order = {old: new for new, old in enumerate(sorted(needed))}
-        nodes = [
-            replace(self.nodes[old], operands=tuple(order[i] for i in self.nodes[old].operands))
-            for old in order
-        ]
+        nodes = []
+        for old in order:
+            node = self.nodes[old]
+            moved = tuple(order[i] for i in node.operands)
+            nodes.append(Node(node.operation, moved, node.value, node.element))
         return Graph(tuple(nodes), tuple(tuple(order[i] for i in result) for result in kept))
 
 
@@ -181,7 +200,7 @@ class _GraphBuilder:
     def _node(self, node: Node) -> _Signed:
         key = node
         if len(node.operands) == 2 and operation(node.operation).commutes:
-            key = replace(node, operands=tuple(sorted(node.operands)))
+            key = Node(node.operation, tuple(sorted(node.operands)))
         if key not in self.known:
             self.known[key] = len(self.nodes)
             self.nodes.append(node)

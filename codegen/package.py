@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,7 @@ import softimpact
 from softimpact.symbolic import STANDARD_GRAVITY, Drives, InvalidValue, Robot
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 
-from .accuracy import accuracy, golden_results, is_regular
+from .accuracy import Inputs, accuracy, golden_results, is_regular
 from .configuration import Configuration, has_configuration
 from .configuration_source import configuration_source
 from .costs import Costs
@@ -26,11 +26,15 @@ from .inputs import parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .poses import checked_poses
 from .render import MEASURED_SAMPLES, Package, render
-from .samples import Sample, draw_samples
+from .replay import replay
+from .samples import Sample, as_columns, draw_samples
 from .source import CSource
 
 LONGEST_CHAIN = 8
 """Most masses of a generated chain; longer ones lose their last masses to rounding."""
+
+OnStep = Callable[[str, int, int], None]
+"""Called with what comes next, the number of steps done, and that of all."""
 
 TIP = "tip"
 """Name of the package's own contact point among those of ``speed_factor``."""
@@ -53,6 +57,10 @@ TAKEN = frozenset((
 targets of CMake."""
 
 
+def unseen(what: str, done: int, of: int) -> None:
+    """Let steps pass without a word."""
+
+
 def generate_package(
     robot: Robot,
     out: str | Path,
@@ -68,6 +76,8 @@ def generate_package(
     floating: bool = False,
     poses: Mapping[str, Sequence[float]] | None = None,
     points: Mapping[str, str] | None = None,
+    compiler: Sequence[str] | None = None,
+    on_step: OnStep = unseen,
 ) -> Manifest:
     """Write a C99 package that computes a robot's impact model.
 
@@ -92,6 +102,9 @@ def generate_package(
             none. They must lie within the joints' limits. Not for robots without impacts.
         points: further contact points that ``speed_factor`` watches beside the tip: frames, or
             ``FRAME@x,y,z``, by a name that C can have.
+        compiler: words of a C compiler's command line, with which the package's own test is run
+            before anything is written; None leaves it out.
+        on_step: is told what comes next, and how many steps of how many are done.
 
     Returns:
         What was generated, as in the package's ``manifest.json``.
@@ -105,6 +118,7 @@ def generate_package(
         NoEquilibrium: a closed chain that rests nowhere near home.
         ForeignFolder: it holds files that the generator did not write.
         FolderNotWritable: the operating system refuses.
+        FailedOwnTest: the package misses its own golden results.
     """
     folder = Path(out)
     require_place(folder)
@@ -121,8 +135,12 @@ def generate_package(
         floating=floating,
         poses=poses,
         points=points,
+        on_step=on_step,
     )
     files, costs = render(package)
+    if compiler is not None:
+        on_step("own test", len(package.functions), len(package.functions) + 1)
+        replay(files, compiler)
     manifest = _manifest(package, costs, {path: sha256(text) for path, text in files.items()})
     replace_package(folder, {**files, MANIFEST: manifest.to_json()})
     return manifest
@@ -147,6 +165,7 @@ def package_of(
     floating: bool = False,
     poses: Mapping[str, Sequence[float]] | None = None,
     points: Mapping[str, str] | None = None,
+    on_step: OnStep = unseen,
 ) -> Package:
     """Return all that a package's files show, as ``generate_package`` takes it."""
     frame = robot.frame(tip or robot.tip or "").name
@@ -161,13 +180,16 @@ def package_of(
     parameters = frozen_parameters(defaults, freeze)
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
     measured = draw_samples(robot, parameters, MEASURED_SAMPLES, seed=2)
+    on_step("derivation", 0, 1)
     symbols = symbols_of(robot, frame, gravity, parameters)
     functions = functions_of(symbols, chain_order, floating=floating)
     golden = _regular(functions, golden, frame)
     tables = {function.name: golden_results(function, golden) for function in functions}
     sources = []
-    for function in functions:
-        record = _record(prefix, function, measured)
+    inputs = as_columns(measured)
+    for done, function in enumerate(functions):
+        on_step(function.name, done, len(functions) + 1)
+        record = _record(prefix, function, inputs)
         sources.append(CSource(prefix, robot.n, parameters, function, record))
     configuration = None
     if has_configuration(robot):
@@ -232,14 +254,15 @@ def _check(
 
 def _regular(functions: Sequence[CFunction], samples: Sequence[Sample], tip: str) -> list[Sample]:
     """Return golden inputs to which all functions have an answer."""
-    regular = np.all([is_regular(function, samples) for function in functions], axis=0)
+    inputs = as_columns(samples)
+    regular = np.all([is_regular(function, inputs) for function in functions], axis=0)
     if not regular.any():
         raise InvalidValue("tip", f"frame '{tip}' cannot move at any of the sampled configurations")
     return [samples[i] for i in np.flatnonzero(regular)[:GOLDEN_CASES]]
 
 
-def _record(prefix: str, function: CFunction, measured: Sequence[Sample]) -> FunctionRecord:
-    found = accuracy(function, measured)
+def _record(prefix: str, function: CFunction, inputs: Inputs) -> FunctionRecord:
+    found = accuracy(function, inputs)
     return FunctionRecord(
         name=f"{prefix}_{function.name}",
         flops=function.flops,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 import jinja2
@@ -17,10 +18,10 @@ from . import sine
 from .configuration_source import ConfigurationSource
 from .costs import Costs, stored_costs
 from .defaults import Default
-from .files import sha256
 from .functions import coordinates_of
 from .impact_source import ImpactSource
 from .inputs import SCALARS, Parameter, is_elastic
+from .interface import interface_of
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
@@ -118,8 +119,9 @@ class Package:
         return function in self.tables
 
 
-def render(package: Package) -> tuple[dict[str, str], Costs | None]:
-    """Return the text of every file but the manifest by its path, and what was measured of it."""
+@cache
+def _environment() -> jinja2.Environment:
+    """Return what compiles the templates, each once in a process."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         undefined=jinja2.StrictUndefined,
@@ -130,6 +132,12 @@ def render(package: Package) -> tuple[dict[str, str], Costs | None]:
     )
     environment.filters["number"] = _number
     environment.filters["comment"] = _comment
+    return environment
+
+
+def render(package: Package) -> tuple[dict[str, str], Costs | None]:
+    """Return the text of every file but the manifest by its path, and what was measured of it."""
+    environment = _environment()
     name = package.prefix
     context = {
         "package": package,
@@ -143,12 +151,16 @@ def render(package: Package) -> tuple[dict[str, str], Costs | None]:
         "regions": list(REGIONS.values()),
         "hertz_stiffness": HERTZ_STIFFNESS,
         "measured": MEASURED_SAMPLES,
+        "layout": 0,
     }
+    header = environment.get_template("header.h.jinja")
+    context["layout"] = interface_of(header.render(context), name).fingerprint()
     files = {
         f"include/{name}.h": "header.h",
         f"include/{name}_config.h": "config.h",
         f"src/{name}_internal.h": "internal.h",
         f"src/{name}_common.c": "common.c",
+        f"src/{name}_sines.c": "sines.c",
         "test/golden.h": "golden.h",
         "test/golden.c": "golden.c",
         "test/run_tests.c": "run_tests.c",
@@ -174,7 +186,7 @@ def render(package: Package) -> tuple[dict[str, str], Costs | None]:
     sources = sorted(path for path in rendered if path.startswith("src/") and path.endswith(".c"))
     cmake = environment.get_template("CMakeLists.txt.jinja")
     rendered["CMakeLists.txt"] = cmake.render(context, sources=sources)
-    costs = stored_costs(name, {path: sha256(text) for path, text in rendered.items()})
+    costs = stored_costs(name, rendered)
     readme = environment.get_template("README.md.jinja")
     rendered["README.md"] = readme.render(context, costs=costs)
     return dict(sorted(rendered.items())), costs

@@ -80,7 +80,7 @@ def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
     """
     robot = load_robot(model, toward=tip)
     arm = arm_of(robot, tip, tip)
-    q, direction = _posture(arm.robot)
+    q, direction = first_posture(arm.robot)
     path = model_path(model)
     name = model if path.name != Path(model).name else str(path.resolve())
     others = [frame for frame in robot.frames if frame != arm.robot.tip]
@@ -142,7 +142,7 @@ def _motors(robot: Robot) -> str:
     return "\n".join([*lines, "# reaction_time = 0.02  # s, from first touch on"])
 
 
-def _posture(robot: Robot) -> tuple[Array, tuple[float, ...]]:
+def first_posture(robot: Robot) -> tuple[Array, tuple[float, ...]]:
     """Return a configuration within the limits that moves well, and a direction it can move in."""
     lower, upper = (np.clip(bound, -np.pi, np.pi) for bound in robot.limits)
     middle, room = (lower + upper) / 2, (upper - lower) / 2

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from softimpact.symbolic import Coupling, JointKind, Robot, UnsupportedModel, load_robot
-from softimpact.symbolic.robot.constraints import Ball, Constraint, Terms
+from softimpact.symbolic.robot.constraints import Ball, Constraint, Terms, Through
 from softimpact.symbolic.robot.loading import model_path
 from softimpact.symbolic.robot.plausibility import implausible
 from softimpact.symbolic.robot.robot import BASE
@@ -107,7 +107,7 @@ def _constraint(loop: Constraint) -> dict[str, str]:
             "kind": kind,
             "ties": f"{_sum(loop.driven)} = {' + '.join(parts) or '0'}",
         }
-    if isinstance(loop, Ball):
+    if isinstance(loop, Ball | Through):
         return {"name": loop.name, "kind": kind, "ties": ", ".join(loop.joints)}
     return {"name": loop.name, "kind": kind, "ties": f"{loop.first} and {loop.second}"}
 

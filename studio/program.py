@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -104,11 +103,11 @@ def _watched(
     if not points:
         ((start, _), *_) = source.chunks(1)
         points = default_points(robot, start.q[0])
-    with _progress("reading", 1) as read:
+    with _progress("reading, %", 100) as read:
         share = [0.0]
 
         def so_far(new: float) -> None:
-            read(new - share[0])
+            read(100 * (new - share[0]))
             share[0] = new
 
         seen = survey(source, path, robot, points, so_far)
@@ -124,10 +123,7 @@ def _watched(
 
 @contextmanager
 def _progress(words: str, total: float) -> Iterator[Callable[[float], None]]:
-    """Show a bar on stderr if somebody looks at it."""
-    if not sys.stderr.isatty():
-        yield lambda count: None
-        return
+    """Show a bar on stderr, or a line now and then."""
     with progress_bar() as progress:
         task = progress.add_task(words, total=total)
         yield lambda count: progress.advance(task, count)

@@ -12,7 +12,7 @@ import numpy as np
 
 from softimpact.simulate.zones import Somebody
 
-from .output import Cell, print_table
+from .output import Cell, print_table, say
 from .program_run import Question, SlowedProgram
 
 GENERATOR = "softimpact program"
@@ -114,7 +114,7 @@ def print_program(found: ProgramResult, out: Path | None) -> None:
         ],
     )
     if out is not None:
-        print(f"wrote {out}")
+        say(f"wrote {out}")
 
 
 def in_a_sentence(record: dict[str, Any]) -> str:

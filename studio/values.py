@@ -15,7 +15,7 @@ from softimpact.symbolic.impact.drives import PerJoint
 
 
 def vector(field: str, text: str, length: int | None = None) -> list[float]:
-    """Return a JSON list of finite numbers; raises InvalidValue.
+    """Return finite numbers typed as a JSON list, brackets or not; raises InvalidValue.
 
     Args:
         field: name of the option, for messages.
@@ -108,8 +108,9 @@ def one_of(what: str, name: str, names: Any) -> Any:
 def _parsed(field: str, text: str) -> object:
     if _is_number(text):
         return float(text)
+    listed = f"[{text}]" if "," in text and "[" not in text else text  # as people type it, too
     try:
-        return json.loads(re.sub(r"\binf\b", "Infinity", text))  # which JSON lacks, Python's has
+        return json.loads(re.sub(r"\binf\b", "Infinity", listed))  # which JSON lacks, Python's has
     except (ValueError, RecursionError):
         raise InvalidValue(
             field, f"needs a number or a JSON list such as [0, 0.5], not '{text}'"

@@ -36,18 +36,12 @@ class Motion:
     horizon: float = 0.1
     steps: int = 4000
 
-    def packed(self, real: str) -> bytes:
-        """Return the bytes of the struct's last fields."""
-        times = np.array([self.reaction_time, self.horizon], dtype=KINDS[real][1])
-        return times.tobytes() + np.array([self.motors, self.steps], dtype=np.int32).tobytes()
-
 
 def packed_params(
-    parameters: Sequence[Sequence[float]], motion: Motion, real: str
-) -> ctypes.Array[ctypes.c_char]:
+    package: Generated, parameters: Sequence[Sequence[float]], motion: Motion, real: str
+) -> ctypes.c_char_p:
     """Return a parameter struct."""
-    fields = np.concatenate([(), *parameters]).astype(KINDS[real][1])
-    return ctypes.create_string_buffer(fields.tobytes() + motion.packed(real))
+    return ctypes.c_char_p(package.params(real, parameters, **vars(motion)).tobytes())
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +79,7 @@ class Impacts:
         real, kind = KINDS[self.real]
         out = np.full(2, np.nan, dtype=kind)
         q, n = (np.array(v, dtype=kind) for v in (sample.q, sample.n))
-        p = packed_params(sample.parameters, motion or Motion(), self.real)
+        p = packed_params(self.package, sample.parameters, motion or Motion(), self.real)
         status = self.entry(function)(
             *(ctypes.c_void_p(v.ctypes.data) for v in (q, n)),
             real(number),
@@ -145,7 +139,7 @@ def choose(
         ctypes.c_void_p(along.ctypes.data),
         real(speed),
         ctypes.byref(compiled.region("chest", clamped=True)),
-        packed_params(list(parameters), motion or Motion(), compiled.real),
+        packed_params(compiled.package, list(parameters), motion or Motion(), compiled.real),
         ctypes.byref(out),
     )
     return status, out

@@ -15,11 +15,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike, NDArray
 from sharing import once
 
 from softimpact.codegen.description import CFunction
 from softimpact.codegen.functions import functions_of, symbols_of
 from softimpact.codegen.inputs import SCALARS, Parameter, freeze, parameters_of
+from softimpact.codegen.interface import Interface, read_interface
 from softimpact.codegen.manifest import Manifest
 from softimpact.codegen.samples import Sample
 from softimpact.studio.pose_table import pose_table
@@ -101,6 +103,22 @@ class Generated:
         symbols = symbols_of(self.robot, self.tip, (x, y, z), self.parameters)
         return functions_of(symbols, m.chain_order, floating=m.floating)
 
+    @cached_property
+    def interface(self) -> Interface:
+        """What its header declares."""
+        return read_interface(self.folder)
+
+    def params(self, real: str, parameters: Sequence[ArrayLike], **motion: float) -> NDArray[Any]:
+        """Return a parameter struct: values of all parameters, and of what impacts go by."""
+        p = np.zeros(1, self.interface.dtype("params", real))
+        p["layout"] = self.interface.layout_in(real)
+        for parameter, values in zip(self.parameters, parameters, strict=True):
+            if parameter.frozen is None:
+                p[parameter.name] = np.reshape(values, parameter.shape)
+        for name, value in motion.items():
+            p[name] = value
+        return p
+
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """All parameters, frozen ones too."""
@@ -138,16 +156,15 @@ class Library:
         out = np.full(sum(sizes), np.nan, dtype=kind)
         scalars = dict(zip(SCALARS, sample.scalars, strict=True))
         vectors = [np.array(sample.q, dtype=kind), np.array(sample.n, dtype=kind)]
-        pairs = zip(self.package.parameters, sample.parameters, strict=True)
-        fields = [values for p, values in pairs if p.frozen is None]
-        vectors.append(np.concatenate([(), *fields]).astype(kind))
-        q, n, p = (ctypes.c_void_p(vector.ctypes.data) for vector in vectors)
+        if function.parameters:
+            vectors.append(self.package.params(self.real, sample.parameters))
+        q, n, *p = (ctypes.c_void_p(vector.ctypes.data) for vector in vectors)
         entry = getattr(self.library, f"{self.package.manifest.name}_{function.name}")
         status = entry(
             q,
             *([n] if function.direction else []),
             *(real(scalars[scalar]) for scalar in function.scalars),
-            *([p] if function.parameters else []),
+            *p,
             ctypes.c_void_p(out.ctypes.data),
         )
         parts = np.split(out.astype(float), np.cumsum(sizes)[:-1])

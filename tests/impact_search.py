@@ -126,20 +126,11 @@ class Robot:
         """Return status and the two numbers of peak_force or safe_speed."""
         c_real, kind = KINDS[real]
         library = self.package.load(real).library
-        p = (
-            np.concatenate(
-                [
-                    case.springs,
-                    case.rotors,
-                    case.gains,
-                    case.damping_gains,
-                    [case.reaction, case.horizon],
-                ]
-            )
-            .astype(kind)
-            .tobytes()
-            + np.array([case.motors, steps], dtype=np.int32).tobytes()
-        )
+        motion = {"reaction_time": case.reaction, "horizon": case.horizon}
+        drives = [case.springs, case.rotors, case.gains, case.damping_gains]
+        p = self.package.params(
+            real, drives, **motion, motors=case.motors, steps=steps
+        ).tobytes()  # fmt: skip
         region = (
             np.array(
                 [case.stiffness, case.damping, case.mass or 1.0, HERTZ_STIFFNESS, 0, 0], dtype=kind

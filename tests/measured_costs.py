@@ -11,7 +11,8 @@ from pathlib import Path
 from compiled_packages import Generated, run
 from cross_compiled import BOARD, CORES, GCC, OPTIMISE, build, compile_one, link, run_image
 
-from softimpact.codegen.costs import Costs, FunctionCost, Instructions, SharedCost, sources_digest
+from softimpact.codegen.cost_digests import cost_digests
+from softimpact.codegen.costs import Costs, FunctionCost, Instructions, SharedCost
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "[^"]*\\n(\d+) bytes \((.*?)\)')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
@@ -89,29 +90,49 @@ def count(
     return Instructions(int(numbers[1]), int(numbers[2]))
 
 
-def measure(package: Generated, folder: Path) -> Costs:
-    """Return the costs of all functions of a package, using a folder for what is compiled."""
+def measure(package: Generated, folder: Path, known: Sequence[FunctionCost] = ()) -> Costs:
+    """Return the costs of all functions of a package.
+
+    Args:
+        package: whose sources lie on disk.
+        folder: for what is compiled.
+        known: costs of functions that are taken over where their sources are still the same.
+    """
+    texts = {
+        str(p.relative_to(package.folder)): p.read_text() for p in package.folder.rglob("*.[ch]")
+    }
+    digests = cost_digests(package.manifest.name, texts)
+    kept = {f.name: f for f in known if f.digest == digests.get(f.name)}
+    asked = [call for call in calls(package) if call.function not in kept]
     counts: dict[str, dict[str, Instructions]] = {}
     for core in CORES:
         (folder / core).mkdir()
         objects = build(package, core, "float", folder / core)
         counts[core] = {
-            call.function: count(package, core, objects, call, folder / core)
-            for call in calls(package)
+            call.function: count(package, core, objects, call, folder / core) for call in asked
         }
     sizes = sizes_of(objects)
     stacks = stacks_of(folder / "m7")
     own = {source.stem for source in package.folder.glob("src/*.c")}
-    functions = counts["m7"]
+    functions = {
+        call.function: kept.get(call.function)
+        or FunctionCost(
+            call.function,
+            counts["m4"][call.function],
+            counts["m7"][call.function],
+            *sizes[call.function],
+            stacks[call.function],
+            digests[call.function],
+        )
+        for call in calls(package)
+    }
     return Costs(
-        sources=sources_digest(package.manifest.files),
         compiler=compiler_version(),
         flags=" ".join(OPTIMISE),
-        functions=tuple(
-            FunctionCost(name, counts["m4"][name], functions[name], *sizes[name], stacks[name])
-            for name in functions
+        functions=tuple(functions.values()),
+        shared=tuple(
+            SharedCost(name, *sizes[name], digests[name]) for name in sorted(own - functions.keys())
         ),
-        shared=tuple(SharedCost(name, *sizes[name]) for name in sorted(own - functions.keys())),
     )
 
 

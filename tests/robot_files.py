@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from random import Random
 from typing import Protocol
 
 from softimpact.symbolic import Robot
@@ -126,3 +127,27 @@ def two_links_urdf(**changes: str) -> str:
         "type1": "revolute",
     }
     return TWO_LINKS_URDF.format(**dict.fromkeys(empty, "") | plain | changes)
+
+
+def many_joints(count: int) -> str:
+    """Return an arm of many joints in general position, with a tool, as URDF."""
+    random = Random(1)
+
+    def numbers(low: float, high: float) -> str:
+        return " ".join(f"{random.uniform(low, high):.3f}" for _ in range(3))
+
+    parts = ['<robot name="long_arm"><link name="l0"/>']
+    for i in range(1, count + 1):
+        parts.append(
+            f'<link name="l{i}"><inertial><origin xyz="{numbers(-0.05, 0.1)}"/><mass value="1"/>'
+            '<inertia ixx="0.005" iyy="0.006" izz="0.004" ixy="0.0003" ixz="0.0001" iyz="0"/>'
+            f'</inertial></link><joint name="j{i}" type="revolute"><parent link="l{i - 1}"/>'
+            f'<child link="l{i}"/><axis xyz="0 0 1"/>'
+            f'<origin xyz="{numbers(-0.1, 0.2)}" rpy="{numbers(-3, 3)}"/>'
+            '<limit lower="-2.5" upper="2.5" effort="50" velocity="3"/></joint>'
+        )
+    parts.append(
+        '<link name="tool"/><joint name="fix" type="fixed"><origin xyz="0 0 0.1"/>'
+        f'<parent link="l{count}"/><child link="tool"/></joint></robot>'
+    )
+    return "\n".join(parts)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Count the instructions, code and stack of generated packages on a Cortex-M4F and an M7.
 
-Usage: python benchmarks/embedded/run.py [ROBOT ...]
+Usage: python benchmarks/embedded/run.py [--all] [ROBOT ...]
 
-Writes ``codegen/costs/ROBOT.json`` for each robot (default: all of ``generated/``), from which
-the generator fills in README and manifest of a package, and ``docs/embedded.md`` for the Panda.
+Measures what has changed since it was last measured, or everything with ``--all``, and writes
+``codegen/costs/ROBOT.json`` for each robot (default: all of ``generated/``), from which the
+generator fills in README and manifest of a package, and ``docs/embedded.md`` for the Panda.
 Needs arm-none-eabi-gcc, newlib and qemu-system-arm. The numbers depend on nothing but the
 compiler's version.
 """
@@ -19,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
 from compiled_packages import COMMITTED, Generated, candidate_poses  # noqa: E402
-from measured_costs import measure  # noqa: E402
+from measured_costs import compiler_version, measure  # noqa: E402
 
 from softimpact.codegen import generate_package  # noqa: E402
 from softimpact.codegen.costs import COSTS, Costs, FunctionCost  # noqa: E402
@@ -55,20 +56,24 @@ library's. What functions share:
 
 def main() -> None:
     """Measure, and write what was found."""
-    for name in sys.argv[1:] or COMMITTED:
+    afresh = "--all" in sys.argv
+    for name in [name for name in sys.argv[1:] if name != "--all"] or COMMITTED:
         with tempfile.TemporaryDirectory() as folder:
-            costs = measured(name, Path(folder))
+            costs = measured(name, Path(folder), afresh=afresh)
         (COSTS / f"{name}.json").write_text(costs.to_json(), encoding="utf-8")
         if name == "panda":
             PAGE.write_text(page(costs), encoding="utf-8")
         print(f"{name}: {len(costs.functions)} functions measured")
 
 
-def measured(name: str, folder: Path) -> Costs:
-    """Return the costs of a built-in robot's package."""
+def measured(name: str, folder: Path, *, afresh: bool) -> Costs:
+    """Return the costs of a built-in robot's package; afresh, or what has changed."""
     robot = load_robot(name)
     manifest = generate_package(robot, folder / name, poses=candidate_poses(name, robot))
-    return measure(Generated(robot, manifest.tip, folder / name, manifest), folder)
+    known = manifest.costs
+    same = known is not None and known.compiler == compiler_version() and not afresh
+    generated = Generated(robot, manifest.tip, folder / name, manifest)
+    return measure(generated, folder, known.functions if known and same else ())
 
 
 def page(costs: Costs) -> str:

@@ -29,7 +29,7 @@ def links_of(s: Symbols, points: tuple[str, ...]) -> CFunction:
         s: symbols of the package.
         points: frames of the contact points.
     """
-    M = s.model.mass_matrix(s.q) if is_elastic(s.robot) else s.model.generalised_mass(s.q).matrix
+    M = s.mass_matrix if is_elastic(s.robot) else s.model.generalised_mass(s.q).matrix
     outputs = [Output("M", ca.densify(M), "kg m^2", "over the joints", symmetric=True)]
     if has_potential(s):
         K = ca.densify(ca.SX(s.model.potential_stiffness(s.q)))

@@ -11,13 +11,13 @@ from .symbols import Symbols, function_over
 
 def mass_matrix(s: Symbols) -> CFunction:
     """Return M(q)."""
-    M = Output("M", s.model.mass_matrix(s.q), "kg m^2", "links only", symmetric=True)
+    M = Output("M", s.mass_matrix, "kg m^2", "links only", symmetric=True)
     return function_over(s, "mass_matrix", "Mass matrix M(q) of the links, without rotors.", (M,))
 
 
 def jacobian(s: Symbols) -> CFunction:
     """Return J(q)."""
-    J = Output("J", s.model.jacobian(s.q), "m/rad", "base axes")
+    J = Output("J", s.jacobian, "m/rad", "base axes")
     summary = "Translational Jacobian J(q) of the contact point: velocity = J dq/dt."
     return function_over(s, "jacobian", summary, (J,))
 

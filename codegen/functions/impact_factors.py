@@ -7,11 +7,14 @@ from dataclasses import replace
 
 from softimpact.symbolic import (
     Matrix,
+    contact_mobility,
     directional_giaf,
     extreme_directional_giaf,
     giaf,
     giif,
 )
+from softimpact.symbolic.matrices import count_flops
+from softimpact.symbolic.robot.robot import BASE
 
 from ..description import CFunction, Guard, Output
 from .guards import movable_in_space
@@ -20,7 +23,7 @@ from .symbols import Symbols, function_over
 
 def osim(s: Symbols) -> CFunction:
     """Return Λ and Λ_F."""
-    real, free = s.model.mobility(s.q), s.model.free_mobility(s.q)
+    real, free = s.mobility, s.free_mobility
     outputs = (
         Output("Lambda", real.inertia, "kg", "with rotors (GIAF Eq. 13)", symmetric=True),
         Output("Lambda_F", free.inertia, "kg", "without (GIAF Eq. 24)", symmetric=True),
@@ -30,15 +33,20 @@ def osim(s: Symbols) -> CFunction:
 
 
 def impact_factors(s: Symbols) -> CFunction:
-    """Return GIAF and GIIF in the axes in which they take the fewest operations."""
+    """Return GIAF and GIIF in the axes in which they take the fewest operations.
+
+    Those are the first joint's, where J has most zeros, or those in which J itself takes fewest.
+    """
     robot = s.robot
     path = robot.ancestors(robot.frame(s.model.tip).joint)
-    candidates = [_impact_factors_in(s, axes) for axes in (-1, *reversed(path))]
-    return min(candidates, key=lambda function: function.flops)
+    leanest = min(reversed(path), key=lambda axes: count_flops(s.model.jacobian(s.q, axes)))
+    axes = dict.fromkeys((BASE, min(path), leanest))
+    return min((_impact_factors_in(s, a) for a in axes), key=lambda function: function.flops)
 
 
 def _impact_factors_in(s: Symbols, axes: int) -> CFunction:
-    real, free = s.model.mobility(s.q, axes), s.model.free_mobility(s.q, axes)
+    J = s.model.jacobian(s.q, axes)
+    real, free = contact_mobility(s.rotor_mass_matrix, J), contact_mobility(s.mass_matrix, J)
     absorption, increment = "absorption factor (GIAF Eq. 28)", "increment factor (GIAF Eq. 27)"
     outputs = (
         Output("giaf", giaf(free, real), "dimensionless", absorption, scale=1.0),
@@ -50,7 +58,7 @@ def _impact_factors_in(s: Symbols, axes: int) -> CFunction:
 
 def directional_factor(s: Symbols) -> CFunction:
     """Return GIAF along n."""
-    real, free = s.model.mobility(s.q), s.model.free_mobility(s.q)
+    real, free = s.mobility, s.free_mobility
     value = directional_giaf(free, real, s.n)
     guards = _in_space(s, real.inertia, free.inertia)
     output = Output("giaf", value, "dimensionless", "1 if rotors do not count", scale=1.0)
@@ -60,7 +68,7 @@ def directional_factor(s: Symbols) -> CFunction:
 
 def absorption_extremes(s: Symbols) -> CFunction:
     """Return the least and the greatest GIAF along a direction, and where they are."""
-    real, free = s.model.mobility(s.q), s.model.free_mobility(s.q)
+    real, free = s.mobility, s.free_mobility
     found = extreme_directional_giaf(free, real)
     one_of_many = "unit vector; where two values meet, one of many"
     outputs = (

@@ -17,7 +17,7 @@ def joint_impulse(s: Symbols) -> CFunction:
     speed, restitution, other = (
         s.values[name] for name in ("speed", "restitution", "other_mobility")
     )
-    M, rotors = s.model.mass_matrix(s.q), s.values["rotor_inertia"]
+    M, rotors = s.mass_matrix, s.values["rotor_inertia"]
     found = impulse_along(M, rotors, push, speed, restitution, other)
     mass = impulse_along(M, rotors, push).contact
     outputs = (
@@ -32,7 +32,7 @@ def joint_impulse(s: Symbols) -> CFunction:
 
 def rotor_influence(s: Symbols) -> CFunction:
     """Return the derivatives of GIAF by each rotor's inertia and gear ratio."""
-    M, rotors, J = s.model.mass_matrix(s.q), s.values["rotor_inertia"], s.model.jacobian(s.q)
+    M, rotors, J = s.mass_matrix, s.values["rotor_inertia"], s.jacobian
     slope = giaf_by_rotor(M, rotors, J)
     by_gear = "for a change of the gear ratio by its own size: 2 b dGIAF/db"
     outputs = (
@@ -45,7 +45,7 @@ def rotor_influence(s: Symbols) -> CFunction:
 
 def single_joint(s: Symbols) -> CFunction:
     """Return GIAF with one rotor at a time."""
-    M, rotors, J = s.model.mass_matrix(s.q), s.values["rotor_inertia"], s.model.jacobian(s.q)
+    M, rotors, J = s.mass_matrix, s.values["rotor_inertia"], s.jacobian
     meaning = "with the rotor of each joint alone"
     output = Output("giaf", single_joint_giaf(M, rotors, J), "dimensionless", meaning, scale=1.0)
     summary = "Absorption factor of each joint alone (GIAF III.B)."
@@ -53,5 +53,5 @@ def single_joint(s: Symbols) -> CFunction:
 
 
 def _in_space(s: Symbols) -> tuple[Guard, ...]:
-    mobilities = (s.model.mobility(s.q), s.model.free_mobility(s.q))
+    mobilities = (s.mobility, s.free_mobility)
     return tuple(movable_in_space(s.robot, mobility.inertia) for mobility in mobilities)

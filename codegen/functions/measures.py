@@ -18,7 +18,7 @@ FLAT = 1e-3
 
 def manipulability(s: Symbols) -> CFunction:
     """Return ω_m and J Jᵀ; they have a value at every configuration."""
-    J = s.model.jacobian(s.q)
+    J = s.jacobian
     omega_m, most = ellipsoids.manipulability(J), ellipsoids.longest_manipulability(J)
     JJ = symmetric(lambda i, j: ca.dot(J[i, :], J[j, :]), 3)
     outputs = (
@@ -31,7 +31,7 @@ def manipulability(s: Symbols) -> CFunction:
 
 def force_measure(s: Symbols) -> CFunction:
     """Return ω_f."""
-    J = s.model.jacobian(s.q)
+    J = s.jacobian
     output = Output("omega_f", ellipsoids.force_measure(J), "rad^3/m^3", "")
     summary = "Force measure 1/omega_m (GIAF Eq. 3)."
     return function_over(s, "force_measure", summary, (output,), (_upright(J),))
@@ -39,7 +39,7 @@ def force_measure(s: Symbols) -> CFunction:
 
 def impact_measure(s: Symbols) -> CFunction:
     """Return ω_di and the matrix of the dynamic impact ellipsoid."""
-    H, J = s.model.rotor_mass_matrix(s.q), s.model.jacobian(s.q)
+    H, J = s.rotor_mass_matrix, s.jacobian
     omega_di, E = ellipsoids.dynamic_impact_measure(H, J), ellipsoids.impact_matrix(H, J)
     outputs = (
         Output("omega_di", omega_di, "kg^3 m^3", "sqrt(det E)"),

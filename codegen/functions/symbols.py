@@ -5,10 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import casadi as ca
 
-from softimpact.symbolic import Drives, ImpactModel, Matrix, Robot, closed_chain
+from softimpact.symbolic import Drives, ImpactModel, Matrix, Robot, closed_chain, contact_mobility
+from softimpact.symbolic.factors.contact_mobility import ContactMobility
 
 from ..description import CFunction, Guard, Output
 from ..inputs import SCALARS, Parameter, is_elastic
@@ -39,6 +41,31 @@ class Symbols:
     def robot(self) -> Robot:
         """Return the rigid robot with its payload."""
         return self.model.robot
+
+    @cached_property
+    def mass_matrix(self) -> Matrix:
+        """M(q); like what follows derived once for all functions."""
+        return self.model.mass_matrix(self.q)
+
+    @cached_property
+    def rotor_mass_matrix(self) -> Matrix:
+        """M + B."""
+        return self.model.rotor_mass_matrix(self.q)
+
+    @cached_property
+    def jacobian(self) -> Matrix:
+        """J(q) in the base's axes."""
+        return self.model.jacobian(self.q)
+
+    @cached_property
+    def mobility(self) -> ContactMobility:
+        """J (M+B)⁻¹ Jᵀ, with rotors."""
+        return contact_mobility(self.rotor_mass_matrix, self.jacobian)
+
+    @cached_property
+    def free_mobility(self) -> ContactMobility:
+        """J M⁻¹ Jᵀ, without."""
+        return contact_mobility(self.mass_matrix, self.jacobian)
 
 
 def symbols_of(

@@ -32,6 +32,7 @@ from platformdirs import user_cache_path
 import softimpact
 from softimpact.codegen import package_of
 from softimpact.codegen.inputs import SCALARS
+from softimpact.codegen.interface import Interface, interface_of
 from softimpact.codegen.render import Package, render
 from softimpact.symbolic import (
     REGIONS,
@@ -115,12 +116,13 @@ class CompiledPackage:
         return ctypes.CDLL(str(self.path))
 
     @cached_property
+    def _interface(self) -> Interface:
+        header = self.path.with_suffix(".h").read_text(encoding="utf-8")
+        return interface_of(header, self.package.prefix)
+
+    @cached_property
     def _params(self) -> np.dtype[Any]:
-        fields: list[Any] = [(p.name, self._kind, p.shape) for p in self.package.fields]
-        if self.package.impact:
-            fields += [("reaction_time", self._kind), ("horizon", self._kind)]
-            fields += [("motors", np.int32), ("steps", np.int32)]
-        return np.dtype(fields, align=True)
+        return self._interface.dtype("params", self.package.real)
 
     def _function(self, name: str, q: ArrayLike, n: ArrayLike | None, **options: Any) -> Arrays:
         (source,) = [f for f in self.package.functions if f.function.name == name]
@@ -190,8 +192,9 @@ class CompiledPackage:
     def _parameters(self, given: dict[str, Any]) -> NDArray[Any]:
         """Return parameter structs, one or one a row; takes the fields out of ``given``."""
         default = np.zeros(1, self._params)
-        getattr(self._library, f"{self.package.prefix}_default_params")(
-            ctypes.c_void_p(default.ctypes.data)
+        getattr(self._library, f"{self.package.prefix}_fill_params")(
+            ctypes.c_void_p(default.ctypes.data),
+            ctypes.c_uint(self._interface.layout_in(self.package.real)),
         )
         values = {f: np.asarray(given.pop(f)) for f in self._params.names or () if f in given}
         plain = {f: len(self._params[f].shape) for f in values}
@@ -325,6 +328,7 @@ def _built(package: Package) -> Path:
         use = f"-DBATCHED_USE_{package.real.upper()}=1"
         command = [compiler, *FLAGS, use, f"-I{folder}/include", *map(str, sources)]
         subprocess.run([*command, "-o", str(out), "-lm"], check=True, capture_output=True)
+        library.with_suffix(".h").write_text(files[f"include/{package.prefix}.h"], encoding="utf-8")
         out.replace(library)
     return library
 

@@ -186,6 +186,29 @@ def _jacobian(robot: Robot, name: str, axes_of: int, q: Matrix) -> Matrix:
     return ca.horzcat(*columns)
 
 
+def placed_point_jacobian(robot: Robot, q: Matrix, place: Matrix, moved_by: Matrix) -> Matrix:
+    """Return the translational 3×n Jacobian J of a point that is given by its place.
+
+    Args:
+        robot: any robot.
+        q: configuration, length n, of any matrix kind.
+        place: where the point is, base axes, length 3 [m].
+        moved_by: 1 for each joint that moves it, else 0, length n.
+    """
+    return on_scalars(_placed_jacobian, (customised(robot),), q, place, moved_by)
+
+
+def _placed_jacobian(robot: Robot, q: Matrix, place: Matrix, moved_by: Matrix) -> Matrix:
+    known = poses(robot, motions(robot, q))
+    columns = []
+    for i, joint in enumerate(robot.joints):
+        axis = ca.densify(known[i].rotation[:, 2])
+        turns = joint.kind is JointKind.HINGE
+        way = cross(axis, ca.SX(place) - known[i].position) if turns else axis
+        columns.append(moved_by[i] * way)
+    return ca.horzcat(*columns)
+
+
 def direction_jacobian(robot: Robot, frame: str, q: Matrix, direction: Matrix) -> Matrix:
     """Return the row J_c = nᵀJ (1×n) of a frame's origin along n: ẋ_c = J_c q̇ (MSM Eq. 4).
 

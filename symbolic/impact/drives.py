@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..content import ByContent
 from ..errors import InvalidValue
 from ..matrices import Matrix
 from ..robot.rigid import Array
@@ -20,7 +21,7 @@ PerJoint = float | Sequence[float] | Array
 
 
 @dataclass(frozen=True, eq=False)
-class Drives:
+class Drives(ByContent):
     """Rotors, springs and gains of all joints; numbers or symbols.
 
     Attributes:

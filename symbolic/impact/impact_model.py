@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..content import ByContent
 from ..dynamics.equations_of_motion import Gravity, mass_matrix, stiffness_of_potential
 from ..dynamics.kinematics import contact_point_jacobian, direction_jacobian
 from ..errors import InvalidValue, WrongLength
@@ -37,7 +38,7 @@ WEIGHTLESS = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
-class ImpactModel:
+class ImpactModel(ByContent):
     """A robot, its contact point and its drives; methods take q and n of any matrix kind.
 
     Link angles q have one entry a joint. Generalised coordinates are the motor angles followed by
@@ -179,17 +180,18 @@ class ImpactModel:
         """Return the chain of ``order`` masses, see ``softimpact.symbolic.impact.chain``."""
         return chain(self.linear(q, direction), order, end, reorthogonalise=reorthogonalise)
 
-    def jacobian(self, q: Matrix) -> Matrix:
-        """Return the contact point's translational J in the base's axes, 3×n."""
-        return self._point_jacobian(q)
+    def jacobian(self, q: Matrix, axes_of: int = BASE) -> Matrix:
+        """Return the contact point's translational J, 3×n, in the axes of a joint's frame."""
+        J = contact_point_jacobian(self.robot, self.tip, q, axes_of)
+        return ca.mtimes(J, loop_tangent(self.robot, q)) if self.robot.loops else J
 
-    def free_mobility(self, q: Matrix, axes_of: int = -1) -> ContactMobility:
+    def free_mobility(self, q: Matrix, axes_of: int = BASE) -> ContactMobility:
         """Return J M⁻¹ Jᵀ = Λ_F⁻¹, the mobility without rotors (GIAF Eq. 24)."""
-        return contact_mobility(self.mass_matrix(q), self._point_jacobian(q, axes_of))
+        return contact_mobility(self.mass_matrix(q), self.jacobian(q, axes_of))
 
-    def mobility(self, q: Matrix, axes_of: int = -1) -> ContactMobility:
+    def mobility(self, q: Matrix, axes_of: int = BASE) -> ContactMobility:
         """Return J (M+B)⁻¹ Jᵀ = Λ⁻¹, the mobility with rotors (GIAF Eq. 23)."""
-        return contact_mobility(self.rotor_mass_matrix(q), self._point_jacobian(q, axes_of))
+        return contact_mobility(self.rotor_mass_matrix(q), self.jacobian(q, axes_of))
 
     def with_springs(self, springs: Matrix) -> ImpactModel:
         """Return the model with other joint stiffnesses k_s, length n, numbers or symbols."""
@@ -216,10 +218,6 @@ class ImpactModel:
         if self.robot.loops:
             return constrained_stiffness(self.robot, q, self.gravity)
         return stiffness_of_potential(self.robot, q, self.gravity)
-
-    def _point_jacobian(self, q: Matrix, axes_of: int = BASE) -> Matrix:
-        J = contact_point_jacobian(self.robot, self.tip, q, axes_of)
-        return ca.mtimes(J, loop_tangent(self.robot, q)) if self.robot.loops else J
 
     def _direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
         row = direction_jacobian(self.robot, self.tip, q, direction)

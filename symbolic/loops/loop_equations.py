@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from ..content import ByContent
 from ..dynamics.equations_of_motion import potential_energy, stiffness_of_potential
 from ..dynamics.kinematics import motions, poses
 from ..matrices import Matrix, on_scalars
@@ -25,7 +26,7 @@ LONGEST_MINOR = 3
 
 
 @dataclass(frozen=True, eq=False)
-class ClosedChain:
+class ClosedChain(ByContent):
     """A robot's loops as equations between its joints' coordinates.
 
     Attributes:

@@ -55,7 +55,8 @@ def closed_chain(robot: Robot) -> ClosedChain:
     Raises:
         LoopCannotClose: no closed configuration was found near home.
         RedundantLoop: a loop's equations follow from the others'.
-        UnsupportedModel: it has ball joints, or bodies that its file welds together.
+        UnsupportedModel: it has ball joints, tendons through space, or bodies that its file welds
+            together.
         UnknownName: ``robot.independent`` names a joint that there is not.
         InvalidValue: it does not name one joint for each degree of freedom, or leaves out a motor.
         SingularLoop: the others do not follow from those it names.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from ..errors import ModelFileError, UnsupportedModel
-from .constraints import Ball, Constraint, Coupling, Loop, Weld
+from .constraints import Ball, Constraint, Coupling, Loop, Through, Weld
 from .description import WORLD, Body, Description
 from .rigid import Inertia, Placement
 from .robot import BASE, Frame, Joint, Robot
@@ -160,7 +160,7 @@ class _Assembly:
         }
         names = {joint.name for joint in self.joints}
         for constraint in self.description.constraints:
-            if isinstance(constraint, Coupling | Ball):
+            if isinstance(constraint, Coupling | Ball | Through):
                 if set(constraint.joints) <= names:
                     yield constraint
                 continue

@@ -39,6 +39,21 @@ class Ball:
 
 
 @dataclass(frozen=True)
+class Through:
+    """What pulls on joints along a path through space; no model of ours knows it.
+
+    Attributes:
+        name: of the element.
+        joints: that it crosses.
+        what: it does, in words: ``the spring of tendon 't'``.
+    """
+
+    name: str
+    joints: tuple[str, ...]
+    what: str
+
+
+@dataclass(frozen=True)
 class Coupling:
     """Joints tied by gears, belts or tendons: Σ aᵢ qᵢ = offset + p(Σ bⱼ qⱼ − reference).
 
@@ -102,7 +117,7 @@ class Coupling:
         )
 
 
-Constraint = Loop | Coupling | Weld | Ball
+Constraint = Loop | Coupling | Weld | Ball | Through
 """An equation between a robot's joints, or what no model of ours knows of them."""
 
 

@@ -20,6 +20,7 @@ from .description import Body, Description
 from .mjcf_drives import Motors, motors_of
 from .mjcf_equalities import constraints_of
 from .mjcf_inertia import Rules, body_inertias, placement, scaled, stated_inertia
+from .mjcf_paths import BALL, EACH_AXIS, names_of
 from .rigid import Array, Inertia, frame_along
 from .robot import BASE, Frame, Joint, JointKind
 
@@ -32,11 +33,9 @@ SPEED_LIMIT = "speed_limit"
 NAMELESS = "MuJoCo Model"
 """What MuJoCo calls a model without a name."""
 
-FREE, BALL, SLIDE, HINGE = (
-    int(getattr(mujoco.mjtJoint, f"mjJNT_{kind}")) for kind in ("FREE", "BALL", "SLIDE", "HINGE")
+FREE, SLIDE, HINGE = (
+    int(getattr(mujoco.mjtJoint, f"mjJNT_{kind}")) for kind in ("FREE", "SLIDE", "HINGE")
 )
-
-EACH_AXIS = (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)), ("z", (0.0, 0.0, 1.0)))
 
 
 def read_mjcf(path: Path) -> Description:
@@ -213,7 +212,7 @@ class _Reader:
             "" if name == NAMELESS else name,
             bodies,
             (*self._sites(), *self.ties.anchors),
-            (*self.ties.constraints, *self.balls),
+            (*self.ties.constraints, *self.balls, *self.motors.through),
             self.motors.tendons,
             texts.get("tip"),
             {
@@ -266,7 +265,7 @@ class _Reader:
         if int(model.jnt_type[i]) != BALL:
             yield self._joint(i)
             return
-        self.balls.append(Ball(name, tuple(f"{name}_{axis}" for axis, _ in EACH_AXIS)))
+        self.balls.append(Ball(name, names_of(model, i)))
         dof = int(model.jnt_dofadr[i])
         if float(model.jnt_stiffness[i]):
             self.warnings.append(f"the spring of ball joint '{name}' does not count")

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field, replace
 import mujoco
 import numpy as np
 
-from .constraints import Tendon
+from .constraints import Tendon, Through
+from .mjcf_paths import joints_under_motor, joints_under_tendon, names_of
 from .rigid import Array
 
 ON_JOINT = {int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT)}
@@ -42,11 +43,13 @@ class Motors:
     """Drives by joint, and tendons that act on several joints at once.
 
     Attributes:
+        through: what acts on joints through space.
         named: whether the file names motors at all; one that does not has them everywhere.
     """
 
     drives: dict[int, Drive] = field(default_factory=dict)
     tendons: tuple[Tendon, ...] = ()
+    through: list[Through] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     named: bool = False
 
@@ -70,7 +73,7 @@ def motors_of(model: mujoco.MjModel) -> Motors:
         elif kind == ON_TENDON and target in fixed:
             terms = fixed[target]
         else:
-            motors.warnings.append(f"motor '{name}' acts on no joint or fixed tendon: ignored")
+            _add_motor_through_space(motors, model, i, name, limits)
             continue
         motors.named = True
         _add_motor(motors, model, i, name, terms, limits)
@@ -143,6 +146,31 @@ def _add_motor(
         limits.setdefault(joint, []).append(force * abs(ratio) if ratio else 0.0)
 
 
+def _add_motor_through_space(
+    motors: Motors,
+    model: mujoco.MjModel,
+    i: int,
+    name: str,
+    limits: dict[int, list[float]],
+) -> None:
+    """Give each joint that it may move a motor of which nothing else is known."""
+    moved = joints_under_motor(model, i)
+    if not moved:
+        motors.warnings.append(f"motor '{name}' moves no joint: ignored")
+        return
+    motors.named = True
+    names = tuple(n for joint in moved for n in names_of(model, joint))
+    motors.warnings.append(
+        f"motor '{name}' acts through space on {', '.join(f'{n!r}' for n in names)}: each counts "
+        "as having a motor, of unknown rotor, gains and torque"
+    )
+    if _armature(model, i):
+        motors.through.append(Through(name, names, f"the rotor of motor '{name}'"))
+    for joint in moved:
+        motors.drives[joint] = replace(motors.drives.get(joint, Drive()), actuated=True)
+        limits.setdefault(joint, []).append(np.inf)
+
+
 def _servo(motors: Motors, model: mujoco.MjModel, i: int, name: str) -> tuple[float, float]:
     """K_p and K_d of a motor whose force is −K_p length − K_d velocity and what is commanded."""
     kind, gain = int(model.actuator_biastype[i]), int(model.actuator_gaintype[i])
@@ -193,20 +221,18 @@ def _tendons(
         number = _numbers(model, i)
         low, high = (float(x) for x in model.tendon_lengthspring[i])
         if number("stiffness") and low != high:
-            motors.warnings.append(f"the spring of tendon '{name}' has a slack range: ignored")
-        spring = number("stiffness") if low == high else 0.0
+            motors.warnings.append(
+                f"the spring of tendon '{name}' has a slack range: it counts as always taut"
+            )
+        spring = number("stiffness")
         if number("stiffnesspoly") or number("springyield"):
             motors.warnings.append(f"the spring of tendon '{name}' counts in its linear part only")
         armature = number("armature") + shared.get(i, 0.0)
         terms = fixed.get(i)
         if terms is None:
-            if any(number(x) for x in ("armature", "stiffness", "damping", "frictionloss")):
-                motors.warnings.append(
-                    f"tendon '{name}' runs through space: its spring, inertia, damping and "
-                    "friction do not count"
-                )
+            _add_through_space(motors, model, i, name, number)
             continue
-        rest = low - _length(model, terms, model.qpos0, float(model.tendon_length0[i]))
+        rest = (low + high) / 2 - _length(model, terms, model.qpos0, float(model.tendon_length0[i]))
         if len(terms) > 1:
             if number("damping") or number("frictionloss"):
                 motors.warnings.append(
@@ -226,6 +252,21 @@ def _tendons(
             spring=before.spring + spring * (weight * weight),
             spring_reference=rest / weight,
         )
+
+
+def _add_through_space(
+    motors: Motors, model: mujoco.MjModel, i: int, name: str, number: Callable[[str], float]
+) -> None:
+    """Note a tendon through space that would bind or load joints; motors on it are motors'."""
+    if number("damping") or number("frictionloss"):
+        motors.warnings.append(
+            f"tendon '{name}' runs through space: its damping and friction do not count"
+        )
+    parts = [w for field, w in (("stiffness", "spring"), ("armature", "inertia")) if number(field)]
+    crossed = joints_under_tendon(model, i)
+    if parts and crossed:
+        names = tuple(n for joint in crossed for n in names_of(model, joint))
+        motors.through.append(Through(name, names, f"the {' and '.join(parts)} of tendon '{name}'"))
 
 
 def _numbers(model: mujoco.MjModel, tendon: int) -> Callable[[str], float]:

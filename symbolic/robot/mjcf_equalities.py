@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
-from .constraints import Constraint, Coupling, Loop, Terms, Weld
+from .constraints import Constraint, Coupling, Loop, Terms, Through, Weld
 from .mjcf_drives import fixed_terms
+from .mjcf_paths import joints_under_tendon, names_of
 from .rigid import Placement
 from .robot import Frame
 
@@ -54,7 +55,7 @@ def constraints_of(model: mujoco.MjModel, joint: Namer, site: Namer, body: Namer
         elif kind == int(mujoco.mjtEq.mjEQ_TENDON):
             coupling = _tendons(model, i, name or f"coupling{i + 1}", joint)
             if coupling is None:
-                ties.warnings.append(f"equality '{name}' of tendons through space: ignored")
+                found += _through(model, i, name or f"coupling{i + 1}")
             else:
                 found.append(coupling)
         else:
@@ -111,6 +112,17 @@ def _tendons(model: mujoco.MjModel, i: int, name: str, joint: Namer) -> Coupling
     polynomial = tuple(float(x) for x in model.eq_data[i, :DEGREE])
     polynomial = _trimmed(polynomial) if second >= 0 else polynomial[:1]
     return Coupling(name, left, right, polynomial, left_reference, right_reference)
+
+
+def _through(model: mujoco.MjModel, i: int, name: str) -> list[Constraint]:
+    """Return an equation of tendons of which one at least runs through space."""
+    joints: set[int] = set()
+    for tendon in (int(model.eq_obj1id[i]), int(model.eq_obj2id[i])):
+        if tendon >= 0:
+            joints.update(joint for joint, _ in fixed_terms(model, tendon))
+            joints.update(joints_under_tendon(model, tendon))
+    names = tuple(n for joint in sorted(joints) for n in names_of(model, joint))
+    return [Through(name, names, f"equality '{name}' of tendons")] if names else []
 
 
 def _terms(model: mujoco.MjModel, tendon: int, joint: Namer) -> tuple[Terms, float]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..content import ByContent
 from ..errors import InvalidValue
 
 Array = NDArray[np.float64]
@@ -48,7 +49,7 @@ def product(first: ArrayLike, second: ArrayLike) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Placement:
+class Placement(ByContent):
     """Pose of a frame in its parent: x_parent = rotation x + translation [m]."""
 
     rotation: Array
@@ -104,7 +105,7 @@ def frame_along(axis: Array, position: Array) -> Placement:
 
 
 @dataclass(frozen=True, eq=False)
-class Inertia:
+class Inertia(ByContent):
     """Mass [kg], first moment m·c [kg m] and inertia about the frame's origin [kg m²].
 
     These ten numbers are linear in the mass distribution, so inertias of one frame simply add.

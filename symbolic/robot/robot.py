@@ -11,9 +11,10 @@ from enum import Enum
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..content import ByContent
 from ..errors import FrameNotFound, InvalidValue, UnknownName, WrongLength
 from ..matrices import Matrix
-from .constraints import Ball, Constraint, Coupling, Loop, Tendon
+from .constraints import Ball, Constraint, Coupling, Loop, Tendon, Through
 from .rigid import Array, Inertia, Placement, rotation_about_z, three_numbers
 
 BASE = -1
@@ -28,7 +29,7 @@ class JointKind(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
+class Joint(ByContent):
     """A joint, and all that moves rigidly with it.
 
     Attributes:
@@ -80,7 +81,7 @@ class Joint:
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class Frame(ByContent):
     """A named frame fixed to a joint's body (or to the base)."""
 
     name: str
@@ -89,7 +90,7 @@ class Frame:
 
 
 @dataclass(frozen=True, eq=False)
-class PointMass:
+class PointMass(ByContent):
     """A mass in a point, held at a frame.
 
     Attributes:
@@ -104,7 +105,7 @@ class PointMass:
 
 
 @dataclass(frozen=True, eq=False)
-class Robot:
+class Robot(ByContent):
     """A fixed-base tree of hinge and slide joints, parents before children, and the loops in it.
 
     Attributes:
@@ -243,7 +244,7 @@ class Robot:
 
     def moved_by(self, loop: Constraint) -> set[int]:
         """Indices of the joints that a coupling ties, or that part a loop's two frames."""
-        if isinstance(loop, Coupling | Ball):
+        if isinstance(loop, Coupling | Ball | Through):
             return {self.joint_names.index(name) for name in loop.joints}
         first, second = self.frame(loop.first).joint, self.frame(loop.second).joint
         return set(self.ancestors(first)) ^ set(self.ancestors(second))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InvalidValue, UnknownName, UnsupportedModel
-from .constraints import Ball, Constraint, Coupling, Tendon, Weld
+from .constraints import Ball, Constraint, Coupling, Tendon, Through, Weld
 from .plausibility import outside, require_sound_masses
 from .rigid import Placement
 from .robot import BASE, Frame, Joint, Robot
@@ -93,7 +93,7 @@ def _left(loops: tuple[Constraint, ...], locked: Mapping[str, float]) -> Iterato
     """Yield what is left of constraints when some joints are welded."""
     for loop in loops:
         if not isinstance(loop, Coupling):
-            if not (isinstance(loop, Ball) and set(loop.joints) <= set(locked)):
+            if not (isinstance(loop, Ball | Through) and set(loop.joints) <= set(locked)):
                 yield loop
             continue
         left = loop.with_locked(locked)
@@ -123,7 +123,8 @@ def chain_to(robot: Robot, frame: str, rest: ArrayLike | None = None) -> Robot:
 
     Raises:
         InvalidInertia: what the chain moves has no mass, an impossible one, or an unknown one.
-        UnsupportedModel: a ball joint is part of the chain, or its file welds bodies of it.
+        UnsupportedModel: a ball joint or a tendon through space is part of the chain, or its file
+            welds bodies of it.
     """
     path, loops = _with_loops(robot, set(robot.ancestors(robot.frame(frame).joint)))
     values = np.zeros(robot.n) if rest is None else robot.vector("rest", rest)
@@ -146,13 +147,20 @@ def chain_to(robot: Robot, frame: str, rest: ArrayLike | None = None) -> Robot:
 
 
 def require_modelled(robot: Robot) -> None:
-    """Raise UnsupportedModel for a ball joint that moves, or bodies that move and are welded."""
+    """Raise UnsupportedModel for what moves and that no model of ours knows."""
     for loop in robot.loops:
         if isinstance(loop, Weld):
             reason = f"equality weld '{loop.name}' holds what joints move; close loops with connect"
             raise UnsupportedModel(robot.source or robot.name, reason)
         if isinstance(loop, Ball):
             reason = f"joint '{loop.name}' is a ball joint; write it as three hinges"
+            raise UnsupportedModel(robot.source or robot.name, reason)
+        if isinstance(loop, Through):
+            moving = [f"'{name}'" for name in loop.joints if name in robot.joint_names]
+            reason = (
+                f"{loop.what} acts through space on {', '.join(moving)}; write it as a fixed "
+                "tendon, or lock what it moves"
+            )
             raise UnsupportedModel(robot.source or robot.name, reason)
 
 

@@ -13,24 +13,35 @@ from measured_costs import compiler_version, measure, stacks_of
 
 from softimpact.codegen import costs as costs_module
 from softimpact.codegen import generate_package
+from softimpact.codegen.cost_digests import cost_digests
 from softimpact.codegen.costs import (
     Costs,
     FunctionCost,
     Instructions,
     SharedCost,
-    sources_digest,
     stored_costs,
 )
 from softimpact.symbolic import load_robot
 
 AGAIN = "run `make bench-c`"
-HASHES = {"include/a.h": "1", "include/a_config.h": "2", "src/a_f.c": "3", "test/golden.c": "4"}
+FILES = {
+    "include/a.h": "#define A_N 3\ntypedef struct {\n    a_real x;\n} a_params;\n"
+    "/* What it does. */\nint a_f(const a_params *p);\n",
+    "src/a_internal.h": "void a_help(void);\n",
+    "src/a_f.c": '#include "a_internal.h"\nint a_f(const a_params *p)\n{\n    a_help();\n}\n',
+    "src/a_common.c": "void a_help(void)\n{\n    /* nothing */\n}\n",
+    "src/a_other.c": "int a_other(void)\n{\n    return A_N;\n}\n",
+    "test/golden.c": "const a_golden a_golden_inputs[1] = {\n    1,\n};\n",
+}
+DIGESTS = cost_digests("a", FILES)
 SMALL = Costs(
-    sources=sources_digest(HASHES),
     compiler="a compiler",
     flags="-O2",
-    functions=(FunctionCost("a_f", Instructions(9, 10), Instructions(7, 8), 100, 4, 16),),
-    shared=(SharedCost("a_common", 50, 0),),
+    functions=tuple(
+        FunctionCost(name, Instructions(9, 10), Instructions(7, 8), 100, 4, 16, DIGESTS[name])
+        for name in ("a_f", "a_other")
+    ),
+    shared=(SharedCost("a_common", 50, 0, DIGESTS["a_common"]),),
 )
 
 
@@ -75,13 +86,29 @@ def test_costs_come_back_for_their_sources_only(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(costs_module, "COSTS", tmp_path)
-    assert stored_costs("a", HASHES) is None
+    assert stored_costs("a", FILES) is None
     (tmp_path / "a.json").write_text(SMALL.to_json())
-    assert stored_costs("a", HASHES) == SMALL
-    assert stored_costs("a", {**HASHES, "include/a_config.h": "float", "README.md": "x"}) == SMALL
-    assert stored_costs("a", {**HASHES, "src/a_f.c": "other"}) is None
-    assert stored_costs("a", {**HASHES, "test/golden.c": "other"}) is None
-    assert stored_costs("b", HASHES) is None
+    assert stored_costs("a", FILES) == SMALL
+    assert stored_costs("b", FILES) is None
+
+    def left(changed: dict[str, str]) -> list[str]:
+        """Return the functions whose costs still hold when files change."""
+        found = stored_costs("a", {**FILES, **changed})
+        return [f.name for f in found.functions] if found else []
+
+    header, other = FILES["include/a.h"], FILES["src/a_other.c"]
+    both = ["a_f", "a_other"]
+    assert left({"README.md": "x", "include/a_config.h": "float"}) == both
+    assert left({"src/a_new.c": "int a_new(void)\n{\n}\n"}) == both
+    assert left({"include/a.h": header + "int a_new(void);\n"}) == both
+    assert left({"include/a.h": header.replace("What it does", "Why")}) == both
+    assert left({"src/a_other.c": other + "/* why */\n"}) == both
+    assert left({"src/a_other.c": other + "int b;\n"}) == ["a_f"]
+    assert left({"src/a_common.c": "void a_help(void)\n{\n    a_other();\n}\n"}) == ["a_other"]
+    assert left({"src/a_internal.h": "int a_help(int);\n"}) == ["a_other"]
+    assert left({"include/a.h": header.replace("a_real x", "a_real x[2]")}) == ["a_other"]
+    assert left({"include/a.h": header.replace("A_N 3", "A_N 4")}) == ["a_f"]
+    assert left({"test/golden.c": FILES["test/golden.c"].replace("1,", "2,")}) == []
 
 
 @pytest.mark.slow

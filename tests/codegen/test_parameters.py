@@ -57,10 +57,10 @@ CASES = [
             ("panda", None, ("joint_stiffness", "position_gain")),
             ("rr", None, ("rotor_inertia",)),
             ("rr", None, ("all",)),
+            ("rr", LOAD, ("all",)),
         ]
     ),
     ("rr", LOAD, ("payload_mass", "position_gain")),
-    ("rr", LOAD, ("all",)),
 ]
 
 
@@ -112,7 +112,7 @@ def test_struct_holds_what_is_not_frozen(make: Make) -> None:
     header = (everything.folder / "include/rr.h").read_text()
     struct = header[: header.index("} rr_params;")].rsplit("typedef struct {", 1)[1]
     kept = [line.split(";")[0].split()[-1] for line in struct.strip().splitlines()]
-    assert kept == ["reaction_time", "horizon", "motors", "steps"]  # what impacts go by
+    assert kept == ["layout", "reaction_time", "horizon", "motors", "steps"]  # what impacts go by
 
 
 @pytest.mark.slow

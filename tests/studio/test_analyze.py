@@ -156,6 +156,17 @@ def test_rigid_ur5_has_a_mass_and_nothing_behind_it() -> None:
     assert result["chain"] == {"mass": [pytest.approx(result["m_c"])], "stiffness": [0.0]}
 
 
+def test_lists_need_no_brackets() -> None:
+    options = ("--tip", "panda_hand_tcp", "--joint-stiffness", "1e4", "--rotor-inertia", "0.1")
+    path = example_urdf("panda.urdf")
+    bare = (",".join(str(x) for x in PANDA_Q), ",".join(str(x) for x in PUSH.tolist()))
+    lists = (PANDA_Q, PUSH.tolist())
+    typed = [
+        run_json("analyze", path, "--q", q, "--direction", n, *options) for q, n in (bare, lists)
+    ]
+    assert typed[0] == typed[1]
+
+
 def test_rotors_of_rigid_joints_are_felt() -> None:
     rotors = np.array(ROTORS[:6])
     result, ref = analyze_ur5("--rotor-inertia", ROTORS[:6]), ur5()

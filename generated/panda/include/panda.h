@@ -52,12 +52,18 @@ typedef enum {
     PANDA_NO_EQUILIBRIUM = 7, /* Newton's method found no stable rest at these motor angles
                                 (closed chains) */
     PANDA_UNRESOLVED = 8,     /* the budget of steps is used up, and no bound is known */
-    PANDA_BOUNDED = 9         /* the budget of steps is used up; what was written is a bound on the
+    PANDA_BOUNDED = 9,        /* the budget of steps is used up; what was written is a bound on the
                                 safe side */
+    PANDA_FOREIGN_PARAMS = 10 /* panda_default_params of this header, in this number type, has not
+                                filled in p */
 } panda_status;
 
 /* Text of a status, in English; never NULL. */
 const char *panda_status_text(int status);
+
+/* PANDA_VERSION and PANDA_MODEL_DIGEST of the library, which may not be those of this header. */
+const char *panda_version(void);
+const char *panda_model_digest(void);
 
 /*
  * What motors do from first touch until reaction_time; then they are released. Free ones turn with
@@ -71,7 +77,11 @@ typedef enum {
     PANDA_MOTORS_SERVO = 3
 } panda_motors;
 
+/* What structs and functions look like, in this number type. */
+#define PANDA_LAYOUT (0x7cc603b0u + (unsigned int)sizeof(panda_real))
+
 typedef struct {
+    unsigned int layout; /* PANDA_LAYOUT; panda_default_params sets it */
     panda_real joint_stiffness[7]; /* N m/rad, > 0; stiffness of the joint's spring */
     panda_real rotor_inertia[7]; /* kg m^2, > 0; rotor inertia, reflected to the joint */
     panda_real position_gain[7]; /* N m/rad, >= 0; proportional gain of the motor's controller */
@@ -82,12 +92,18 @@ typedef struct {
     int steps; /* > 0; budget of a call of peak_force, safe_speed or speed_factor */
 } panda_params;
 
+/* As panda_default_params, for a caller whose structs have a layout; others are refused. */
+int panda_fill_params(panda_params *p, unsigned int layout);
+
 /*
  * Fill in what is known of the model.
  * joint_stiffness is not: it is set to 0, and functions that need it return
  * PANDA_OUT_OF_RANGE until you set it.
  */
-int panda_default_params(panda_params *p);
+static inline int panda_default_params(panda_params *p)
+{
+    return panda_fill_params(p, PANDA_LAYOUT);
+}
 
 /*
  * Mass matrix M(q) of the links, without rotors.

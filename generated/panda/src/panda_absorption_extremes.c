@@ -11,6 +11,9 @@ int panda_absorption_extremes(
     if (q == NULL || p == NULL || out == NULL) {
         return PANDA_NULL_POINTER;
     }
+    if (p->layout != PANDA_LAYOUT) {
+        return PANDA_FOREIGN_PARAMS;
+    }
     if (!panda_all_finite(q, 7)) {
         return PANDA_NOT_FINITE;
     }

@@ -12,6 +12,9 @@ int panda_chain(
     if (q == NULL || n == NULL || p == NULL || out == NULL) {
         return PANDA_NULL_POINTER;
     }
+    if (p->layout != PANDA_LAYOUT) {
+        return PANDA_FOREIGN_PARAMS;
+    }
     if (!panda_all_finite(q, 7)) {
         return PANDA_NOT_FINITE;
     }

@@ -11,6 +11,9 @@ int panda_generalised_mass_matrix(
     if (q == NULL || p == NULL || M0 == NULL) {
         return PANDA_NULL_POINTER;
     }
+    if (p->layout != PANDA_LAYOUT) {
+        return PANDA_FOREIGN_PARAMS;
+    }
     if (!panda_all_finite(q, 7)) {
         return PANDA_NOT_FINITE;
     }

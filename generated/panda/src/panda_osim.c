@@ -8,6 +8,9 @@ int panda_osim(const panda_real q[7], const panda_params *p, panda_osim_t *out)
     if (q == NULL || p == NULL || out == NULL) {
         return PANDA_NULL_POINTER;
     }
+    if (p->layout != PANDA_LAYOUT) {
+        return PANDA_FOREIGN_PARAMS;
+    }
     if (!panda_all_finite(q, 7)) {
         return PANDA_NOT_FINITE;
     }

@@ -8,6 +8,9 @@ int panda_single_joint_giaf(const panda_real q[7], const panda_params *p, panda_
     if (q == NULL || p == NULL || giaf == NULL) {
         return PANDA_NULL_POINTER;
     }
+    if (p->layout != PANDA_LAYOUT) {
+        return PANDA_FOREIGN_PARAMS;
+    }
     if (!panda_all_finite(q, 7)) {
         return PANDA_NOT_FINITE;
     }

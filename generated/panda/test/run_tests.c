@@ -178,6 +178,10 @@ static void test_generalised_mass_matrix(void)
     expect(panda_generalised_mass_matrix(in.q, &in.p, M0) == PANDA_NOT_FINITE,
            name, "q is infinite");
     in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_generalised_mass_matrix(in.q, &in.p, M0) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = panda_golden_inputs[0];
     in.p.rotor_inertia[0] = (panda_real)NAN;
     expect(panda_generalised_mass_matrix(in.q, &in.p, M0) == PANDA_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -236,6 +240,10 @@ static void test_stiffness_matrix(void)
     in.q[6] = (panda_real)INFINITY;
     expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_NOT_FINITE,
            name, "q is infinite");
+    in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = panda_golden_inputs[0];
     in.p.joint_stiffness[0] = (panda_real)NAN;
     expect(panda_stiffness_matrix(in.q, &in.p, K0) == PANDA_NOT_FINITE,
@@ -407,6 +415,10 @@ static void test_reduced_model(void)
     expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
            name, "q is infinite");
     in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = panda_golden_inputs[0];
     in.n[1] = (panda_real)NAN;
     expect(panda_reduced_model(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
            name, "n is not a number");
@@ -498,6 +510,10 @@ static void test_chain(void)
     in.q[6] = (panda_real)INFINITY;
     expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
            name, "q is infinite");
+    in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = panda_golden_inputs[0];
     in.n[1] = (panda_real)NAN;
     expect(panda_chain(in.q, in.n, &in.p, &out) == PANDA_NOT_FINITE,
@@ -601,6 +617,10 @@ static void test_osim(void)
     expect(panda_osim(in.q, &in.p, &out) == PANDA_NOT_FINITE,
            name, "q is infinite");
     in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_osim(in.q, &in.p, &out) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = panda_golden_inputs[0];
     in.p.rotor_inertia[0] = (panda_real)NAN;
     expect(panda_osim(in.q, &in.p, &out) == PANDA_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -659,6 +679,10 @@ static void test_giaf(void)
     expect(panda_giaf(in.q, &in.p, &out) == PANDA_NOT_FINITE,
            name, "q is infinite");
     in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_giaf(in.q, &in.p, &out) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = panda_golden_inputs[0];
     in.p.rotor_inertia[0] = (panda_real)NAN;
     expect(panda_giaf(in.q, &in.p, &out) == PANDA_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -710,6 +734,10 @@ static void test_directional_giaf(void)
     in.q[6] = (panda_real)INFINITY;
     expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_NOT_FINITE,
            name, "q is infinite");
+    in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = panda_golden_inputs[0];
     in.n[1] = (panda_real)NAN;
     expect(panda_directional_giaf(in.q, in.n, &in.p, &giaf) == PANDA_NOT_FINITE,
@@ -794,6 +822,10 @@ static void test_absorption_extremes(void)
     in.q[6] = (panda_real)INFINITY;
     expect(panda_absorption_extremes(in.q, &in.p, &out) == PANDA_NOT_FINITE,
            name, "q is infinite");
+    in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_absorption_extremes(in.q, &in.p, &out) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = panda_golden_inputs[0];
     in.p.rotor_inertia[0] = (panda_real)NAN;
     expect(panda_absorption_extremes(in.q, &in.p, &out) == PANDA_NOT_FINITE,
@@ -949,6 +981,10 @@ static void test_impact_measure(void)
     expect(panda_impact_measure(in.q, &in.p, &out) == PANDA_NOT_FINITE,
            name, "q is infinite");
     in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_impact_measure(in.q, &in.p, &out) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = panda_golden_inputs[0];
     in.p.rotor_inertia[0] = (panda_real)NAN;
     expect(panda_impact_measure(in.q, &in.p, &out) == PANDA_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -1011,6 +1047,10 @@ static void test_rotor_influence(void)
     expect(panda_rotor_influence(in.q, &in.p, &out) == PANDA_NOT_FINITE,
            name, "q is infinite");
     in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_rotor_influence(in.q, &in.p, &out) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = panda_golden_inputs[0];
     in.p.rotor_inertia[0] = (panda_real)NAN;
     expect(panda_rotor_influence(in.q, &in.p, &out) == PANDA_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -1064,6 +1104,10 @@ static void test_single_joint_giaf(void)
     in.q[6] = (panda_real)INFINITY;
     expect(panda_single_joint_giaf(in.q, &in.p, giaf) == PANDA_NOT_FINITE,
            name, "q is infinite");
+    in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_single_joint_giaf(in.q, &in.p, giaf) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = panda_golden_inputs[0];
     in.p.rotor_inertia[0] = (panda_real)NAN;
     expect(panda_single_joint_giaf(in.q, &in.p, giaf) == PANDA_NOT_FINITE,
@@ -1140,6 +1184,10 @@ static void test_joint_impulse(void)
     in.q[6] = (panda_real)INFINITY;
     expect(panda_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == PANDA_NOT_FINITE,
            name, "q is infinite");
+    in = panda_golden_inputs[0];
+    ++in.p.layout;
+    expect(panda_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == PANDA_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = panda_golden_inputs[0];
     in.n[1] = (panda_real)NAN;
     expect(panda_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == PANDA_NOT_FINITE,
@@ -1308,6 +1356,12 @@ static void test_bad_impacts(void)
     }
     {
         panda_golden_impact bad = in;
+        bad.p.layout = 0;
+        expect(panda_peak_force(bad.q, bad.n, 1, &good, &bad.p, &peak) == PANDA_FOREIGN_PARAMS,
+               "panda_peak_force", "layout is 0");
+    }
+    {
+        panda_golden_impact bad = in;
         bad.p.horizon = 0;
         expect(panda_peak_force(bad.q, bad.n, 1, &good, &bad.p, &peak) == PANDA_OUT_OF_RANGE,
                "panda_peak_force", "horizon is 0");
@@ -1408,10 +1462,17 @@ static void test_common(void)
            "panda_default_params", "status");
     expect(panda_default_params(NULL) == PANDA_NULL_POINTER,
            "panda_default_params", "NULL");
-    for (int status = -1; status <= 10; ++status) {
+    panda_params other;
+    memset(&other, 0xA5, sizeof other);
+    expect(panda_fill_params(&other, PANDA_LAYOUT + 4u) == PANDA_FOREIGN_PARAMS,
+           "panda_fill_params", "other layout");
+    expect(is_untouched(&other, sizeof other), "panda_fill_params", "nothing written for bad inputs");
+    expect(strcmp(panda_version(), PANDA_VERSION) == 0, "panda_version", "is the header's");
+    expect(strcmp(panda_model_digest(), PANDA_MODEL_DIGEST) == 0, "panda_model_digest", "is the header's");
+    for (int status = -1; status <= 11; ++status) {
         expect(strlen(panda_status_text(status)) > 0, "panda_status_text", "has a text");
     }
-    expect(strcmp(panda_status_text(10), panda_status_text(PANDA_OK)) != 0,
+    expect(strcmp(panda_status_text(11), panda_status_text(PANDA_OK)) != 0,
            "panda_status_text", "unknown status");
 }
 

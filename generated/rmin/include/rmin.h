@@ -53,12 +53,18 @@ typedef enum {
     RMIN_NO_EQUILIBRIUM = 7, /* Newton's method found no stable rest at these motor angles
                                 (closed chains) */
     RMIN_UNRESOLVED = 8,     /* the budget of steps is used up, and no bound is known */
-    RMIN_BOUNDED = 9         /* the budget of steps is used up; what was written is a bound on the
+    RMIN_BOUNDED = 9,        /* the budget of steps is used up; what was written is a bound on the
                                 safe side */
+    RMIN_FOREIGN_PARAMS = 10 /* rmin_default_params of this header, in this number type, has not
+                                filled in p */
 } rmin_status;
 
 /* Text of a status, in English; never NULL. */
 const char *rmin_status_text(int status);
+
+/* RMIN_VERSION and RMIN_MODEL_DIGEST of the library, which may not be those of this header. */
+const char *rmin_version(void);
+const char *rmin_model_digest(void);
 
 /*
  * What motors do from first touch until reaction_time; then they are released. Free ones turn with
@@ -72,7 +78,11 @@ typedef enum {
     RMIN_MOTORS_SERVO = 3
 } rmin_motors;
 
+/* What structs and functions look like, in this number type. */
+#define RMIN_LAYOUT (0xbcf200a0u + (unsigned int)sizeof(rmin_real))
+
 typedef struct {
+    unsigned int layout; /* RMIN_LAYOUT; rmin_default_params sets it */
     rmin_real rotor_inertia[6]; /* kg m^2, >= 0; rotor inertia, reflected to the joint; may be 0 */
     rmin_real position_gain[6]; /* N m/rad, >= 0; proportional gain of the motor's controller */
     rmin_real damping_gain[6]; /* N m s/rad, >= 0; gain of the same on the motor's rate */
@@ -82,10 +92,16 @@ typedef struct {
     int steps; /* > 0; budget of a call of peak_force, safe_speed or speed_factor */
 } rmin_params;
 
+/* As rmin_default_params, for a caller whose structs have a layout; others are refused. */
+int rmin_fill_params(rmin_params *p, unsigned int layout);
+
 /*
  * Fill in what is known of the model.
  */
-int rmin_default_params(rmin_params *p);
+static inline int rmin_default_params(rmin_params *p)
+{
+    return rmin_fill_params(p, RMIN_LAYOUT);
+}
 
 /*
  * Joint coordinates q at which springs and gravity balance and the loops are closed, from the angles

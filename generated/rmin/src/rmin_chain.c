@@ -8,6 +8,9 @@ int rmin_chain(const rmin_real q[6], const rmin_real n[3], const rmin_params *p,
     if (q == NULL || n == NULL || p == NULL || out == NULL) {
         return RMIN_NULL_POINTER;
     }
+    if (p->layout != RMIN_LAYOUT) {
+        return RMIN_FOREIGN_PARAMS;
+    }
     if (!rmin_all_finite(q, 6)) {
         return RMIN_NOT_FINITE;
     }

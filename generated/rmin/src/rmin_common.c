@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: 0BSD */
-/* Status texts, default parameters and sines of rmin. */
+/* Status texts, default parameters and body regions of rmin. */
 #include "rmin_internal.h"
 
 const char *rmin_status_text(int status)
@@ -25,16 +25,32 @@ const char *rmin_status_text(int status)
         return "the budget of steps is used up, and no bound is known";
     case RMIN_BOUNDED:
         return "the budget of steps is used up; the result is a bound on the safe side";
+    case RMIN_FOREIGN_PARAMS:
+        return "the parameters were not filled in for this library";
     default:
         return "unknown status";
     }
 }
 
-int rmin_default_params(rmin_params *p)
+const char *rmin_version(void)
+{
+    return RMIN_VERSION;
+}
+
+const char *rmin_model_digest(void)
+{
+    return RMIN_MODEL_DIGEST;
+}
+
+int rmin_fill_params(rmin_params *p, unsigned int layout)
 {
     if (p == NULL) {
         return RMIN_NULL_POINTER;
     }
+    if (layout != RMIN_LAYOUT) {
+        return RMIN_FOREIGN_PARAMS;
+    }
+    p->layout = layout;
     p->rotor_inertia[0] = RMIN_R(0.0);
     p->rotor_inertia[1] = RMIN_R(0.0);
     p->rotor_inertia[2] = RMIN_R(0.0);
@@ -59,45 +75,6 @@ int rmin_default_params(rmin_params *p)
     p->steps = 8000;
     return RMIN_OK;
 }
-
-#if defined(RMIN_USE_FLOAT)
-static void ask_library(const float *x, int count, float *s, float *c)
-{
-    for (int i = 0; i < count; ++i) {
-        s[i] = sinf(x[i]);
-        c[i] = cosf(x[i]);
-    }
-}
-
-/*
- * Takes the nearest quarter turns off each angle; then a polynomial each. Error < 1.2e-07.
- * Whole turns are added before, so that truncation finds the nearest.
- */
-void rmin_sines_cosines(const float *x, int count, float *s, float *c)
-{
-    for (int i = 0; i < count; ++i) {
-        if (!(fabsf(x[i]) < 200.0f)) {
-            ask_library(x, count, s, c);
-            return;
-        }
-        const float quarters = x[i]*0.636619772f + 128.5f;
-        const int nearest = (int)quarters;
-        const unsigned int quarter = (unsigned int)nearest;
-        const float k = (float)nearest - 128.0f;
-        const float about = (x[i] - k*1.5703125f) - k*0.00048375129699707f;
-        const float r = about - k*7.54978995489188e-08f;
-        const float z = r*r;
-        const float odd = -0.166666552f + z*(0.00833217334f + z*-0.000195166562f);
-        const float even = 0.0416666456f + z*(-0.00138873619f + z*2.44377297e-05f);
-        const float sine = r + r*z*odd;
-        const float cosine = 1.0f - 0.5f*z + z*z*even;
-        const float first = (quarter & 1u) != 0u ? cosine : sine;
-        const float second = (quarter & 1u) != 0u ? sine : cosine;
-        s[i] = (quarter & 2u) != 0u ? -first : first;
-        c[i] = ((quarter + 1u) & 2u) != 0u ? -second : second;
-    }
-}
-#endif
 
 int rmin_body_region(int part, int clamped, rmin_region *region)
 {

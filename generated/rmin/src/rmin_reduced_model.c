@@ -12,6 +12,9 @@ int rmin_reduced_model(
     if (q == NULL || n == NULL || p == NULL || out == NULL) {
         return RMIN_NULL_POINTER;
     }
+    if (p->layout != RMIN_LAYOUT) {
+        return RMIN_FOREIGN_PARAMS;
+    }
     if (!rmin_all_finite(q, 6)) {
         return RMIN_NOT_FINITE;
     }

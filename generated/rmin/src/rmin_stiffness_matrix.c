@@ -8,6 +8,9 @@ int rmin_stiffness_matrix(const rmin_real q[6], const rmin_params *p, rmin_real 
     if (q == NULL || p == NULL || K0 == NULL) {
         return RMIN_NULL_POINTER;
     }
+    if (p->layout != RMIN_LAYOUT) {
+        return RMIN_FOREIGN_PARAMS;
+    }
     if (!rmin_all_finite(q, 6)) {
         return RMIN_NOT_FINITE;
     }

@@ -178,6 +178,10 @@ static void test_generalised_mass_matrix(void)
     expect(rmin_generalised_mass_matrix(in.q, &in.p, M0) == RMIN_NOT_FINITE,
            name, "q is infinite");
     in = rmin_golden_inputs[0];
+    ++in.p.layout;
+    expect(rmin_generalised_mass_matrix(in.q, &in.p, M0) == RMIN_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = rmin_golden_inputs[0];
     in.p.rotor_inertia[0] = (rmin_real)NAN;
     expect(rmin_generalised_mass_matrix(in.q, &in.p, M0) == RMIN_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -232,6 +236,10 @@ static void test_stiffness_matrix(void)
     in.q[5] = (rmin_real)INFINITY;
     expect(rmin_stiffness_matrix(in.q, &in.p, K0) == RMIN_NOT_FINITE,
            name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    ++in.p.layout;
+    expect(rmin_stiffness_matrix(in.q, &in.p, K0) == RMIN_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = rmin_golden_inputs[0];
     in.p.position_gain[0] = (rmin_real)NAN;
     expect(rmin_stiffness_matrix(in.q, &in.p, K0) == RMIN_NOT_FINITE,
@@ -331,6 +339,10 @@ static void test_reflected_mass(void)
     expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_NOT_FINITE,
            name, "q is infinite");
     in = rmin_golden_inputs[0];
+    ++in.p.layout;
+    expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = rmin_golden_inputs[0];
     in.n[1] = (rmin_real)NAN;
     expect(rmin_reflected_mass(in.q, in.n, &in.p, &m_c) == RMIN_NOT_FINITE,
            name, "n is not a number");
@@ -400,6 +412,10 @@ static void test_reduced_model(void)
     in.q[5] = (rmin_real)INFINITY;
     expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
            name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    ++in.p.layout;
+    expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = rmin_golden_inputs[0];
     in.n[1] = (rmin_real)NAN;
     expect(rmin_reduced_model(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
@@ -476,6 +492,10 @@ static void test_chain(void)
     in.q[5] = (rmin_real)INFINITY;
     expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
            name, "q is infinite");
+    in = rmin_golden_inputs[0];
+    ++in.p.layout;
+    expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = rmin_golden_inputs[0];
     in.n[1] = (rmin_real)NAN;
     expect(rmin_chain(in.q, in.n, &in.p, &out) == RMIN_NOT_FINITE,
@@ -653,6 +673,12 @@ static void test_bad_impacts(void)
     }
     {
         rmin_golden_impact bad = in;
+        bad.p.layout = 0;
+        expect(rmin_peak_force(bad.q, bad.n, 1, &good, &bad.p, &peak) == RMIN_FOREIGN_PARAMS,
+               "rmin_peak_force", "layout is 0");
+    }
+    {
+        rmin_golden_impact bad = in;
         bad.p.horizon = 0;
         expect(rmin_peak_force(bad.q, bad.n, 1, &good, &bad.p, &peak) == RMIN_OUT_OF_RANGE,
                "rmin_peak_force", "horizon is 0");
@@ -752,10 +778,17 @@ static void test_common(void)
            "rmin_default_params", "status");
     expect(rmin_default_params(NULL) == RMIN_NULL_POINTER,
            "rmin_default_params", "NULL");
-    for (int status = -1; status <= 10; ++status) {
+    rmin_params other;
+    memset(&other, 0xA5, sizeof other);
+    expect(rmin_fill_params(&other, RMIN_LAYOUT + 4u) == RMIN_FOREIGN_PARAMS,
+           "rmin_fill_params", "other layout");
+    expect(is_untouched(&other, sizeof other), "rmin_fill_params", "nothing written for bad inputs");
+    expect(strcmp(rmin_version(), RMIN_VERSION) == 0, "rmin_version", "is the header's");
+    expect(strcmp(rmin_model_digest(), RMIN_MODEL_DIGEST) == 0, "rmin_model_digest", "is the header's");
+    for (int status = -1; status <= 11; ++status) {
         expect(strlen(rmin_status_text(status)) > 0, "rmin_status_text", "has a text");
     }
-    expect(strcmp(rmin_status_text(10), rmin_status_text(RMIN_OK)) != 0,
+    expect(strcmp(rmin_status_text(11), rmin_status_text(RMIN_OK)) != 0,
            "rmin_status_text", "unknown status");
 }
 

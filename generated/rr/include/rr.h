@@ -51,12 +51,18 @@ typedef enum {
     RR_NO_EQUILIBRIUM = 7, /* Newton's method found no stable rest at these motor angles
                                 (closed chains) */
     RR_UNRESOLVED = 8,     /* the budget of steps is used up, and no bound is known */
-    RR_BOUNDED = 9         /* the budget of steps is used up; what was written is a bound on the
+    RR_BOUNDED = 9,        /* the budget of steps is used up; what was written is a bound on the
                                 safe side */
+    RR_FOREIGN_PARAMS = 10 /* rr_default_params of this header, in this number type, has not
+                                filled in p */
 } rr_status;
 
 /* Text of a status, in English; never NULL. */
 const char *rr_status_text(int status);
+
+/* RR_VERSION and RR_MODEL_DIGEST of the library, which may not be those of this header. */
+const char *rr_version(void);
+const char *rr_model_digest(void);
 
 /*
  * What motors do from first touch until reaction_time; then they are released. Free ones turn with
@@ -70,7 +76,11 @@ typedef enum {
     RR_MOTORS_SERVO = 3
 } rr_motors;
 
+/* What structs and functions look like, in this number type. */
+#define RR_LAYOUT (0xbaef0be0u + (unsigned int)sizeof(rr_real))
+
 typedef struct {
+    unsigned int layout; /* RR_LAYOUT; rr_default_params sets it */
     rr_real rotor_inertia[4]; /* kg m^2, >= 0; rotor inertia, reflected to the joint; may be 0 */
     rr_real position_gain[4]; /* N m/rad, >= 0; proportional gain of the motor's controller */
     rr_real damping_gain[4]; /* N m s/rad, >= 0; gain of the same on the motor's rate */
@@ -80,10 +90,16 @@ typedef struct {
     int steps; /* > 0; budget of a call of peak_force, safe_speed or speed_factor */
 } rr_params;
 
+/* As rr_default_params, for a caller whose structs have a layout; others are refused. */
+int rr_fill_params(rr_params *p, unsigned int layout);
+
 /*
  * Fill in what is known of the model.
  */
-int rr_default_params(rr_params *p);
+static inline int rr_default_params(rr_params *p)
+{
+    return rr_fill_params(p, RR_LAYOUT);
+}
 
 /*
  * Mass matrix M(q) of the links, without rotors.

@@ -8,6 +8,9 @@ int rr_chain(const rr_real q[4], const rr_real n[3], const rr_params *p, rr_chai
     if (q == NULL || n == NULL || p == NULL || out == NULL) {
         return RR_NULL_POINTER;
     }
+    if (p->layout != RR_LAYOUT) {
+        return RR_FOREIGN_PARAMS;
+    }
     if (!rr_all_finite(q, 4)) {
         return RR_NOT_FINITE;
     }

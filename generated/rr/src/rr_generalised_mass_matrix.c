@@ -8,6 +8,9 @@ int rr_generalised_mass_matrix(const rr_real q[4], const rr_params *p, rr_real M
     if (q == NULL || p == NULL || M0 == NULL) {
         return RR_NULL_POINTER;
     }
+    if (p->layout != RR_LAYOUT) {
+        return RR_FOREIGN_PARAMS;
+    }
     if (!rr_all_finite(q, 4)) {
         return RR_NOT_FINITE;
     }

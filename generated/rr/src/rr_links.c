@@ -8,6 +8,9 @@ int rr_links(const rr_real q[4], const rr_params *p, rr_links_t *out)
     if (q == NULL || p == NULL || out == NULL) {
         return RR_NULL_POINTER;
     }
+    if (p->layout != RR_LAYOUT) {
+        return RR_FOREIGN_PARAMS;
+    }
     if (!rr_all_finite(q, 4)) {
         return RR_NOT_FINITE;
     }

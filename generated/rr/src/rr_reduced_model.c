@@ -12,6 +12,9 @@ int rr_reduced_model(
     if (q == NULL || n == NULL || p == NULL || out == NULL) {
         return RR_NULL_POINTER;
     }
+    if (p->layout != RR_LAYOUT) {
+        return RR_FOREIGN_PARAMS;
+    }
     if (!rr_all_finite(q, 4)) {
         return RR_NOT_FINITE;
     }

@@ -178,6 +178,10 @@ static void test_generalised_mass_matrix(void)
     expect(rr_generalised_mass_matrix(in.q, &in.p, M0) == RR_NOT_FINITE,
            name, "q is infinite");
     in = rr_golden_inputs[0];
+    ++in.p.layout;
+    expect(rr_generalised_mass_matrix(in.q, &in.p, M0) == RR_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = rr_golden_inputs[0];
     in.p.rotor_inertia[0] = (rr_real)NAN;
     expect(rr_generalised_mass_matrix(in.q, &in.p, M0) == RR_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -232,6 +236,10 @@ static void test_stiffness_matrix(void)
     in.q[3] = (rr_real)INFINITY;
     expect(rr_stiffness_matrix(in.q, &in.p, K0) == RR_NOT_FINITE,
            name, "q is infinite");
+    in = rr_golden_inputs[0];
+    ++in.p.layout;
+    expect(rr_stiffness_matrix(in.q, &in.p, K0) == RR_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = rr_golden_inputs[0];
     in.p.position_gain[0] = (rr_real)NAN;
     expect(rr_stiffness_matrix(in.q, &in.p, K0) == RR_NOT_FINITE,
@@ -331,6 +339,10 @@ static void test_reflected_mass(void)
     expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_NOT_FINITE,
            name, "q is infinite");
     in = rr_golden_inputs[0];
+    ++in.p.layout;
+    expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = rr_golden_inputs[0];
     in.n[1] = (rr_real)NAN;
     expect(rr_reflected_mass(in.q, in.n, &in.p, &m_c) == RR_NOT_FINITE,
            name, "n is not a number");
@@ -400,6 +412,10 @@ static void test_reduced_model(void)
     in.q[3] = (rr_real)INFINITY;
     expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
            name, "q is infinite");
+    in = rr_golden_inputs[0];
+    ++in.p.layout;
+    expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = rr_golden_inputs[0];
     in.n[1] = (rr_real)NAN;
     expect(rr_reduced_model(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
@@ -476,6 +492,10 @@ static void test_chain(void)
     in.q[3] = (rr_real)INFINITY;
     expect(rr_chain(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
            name, "q is infinite");
+    in = rr_golden_inputs[0];
+    ++in.p.layout;
+    expect(rr_chain(in.q, in.n, &in.p, &out) == RR_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = rr_golden_inputs[0];
     in.n[1] = (rr_real)NAN;
     expect(rr_chain(in.q, in.n, &in.p, &out) == RR_NOT_FINITE,
@@ -566,6 +586,10 @@ static void test_joint_impulse(void)
     in.q[3] = (rr_real)INFINITY;
     expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NOT_FINITE,
            name, "q is infinite");
+    in = rr_golden_inputs[0];
+    ++in.p.layout;
+    expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = rr_golden_inputs[0];
     in.n[1] = (rr_real)NAN;
     expect(rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == RR_NOT_FINITE,
@@ -730,6 +754,12 @@ static void test_bad_impacts(void)
     }
     {
         rr_golden_impact bad = in;
+        bad.p.layout = 0;
+        expect(rr_peak_force(bad.q, bad.n, 1, &good, &bad.p, &peak) == RR_FOREIGN_PARAMS,
+               "rr_peak_force", "layout is 0");
+    }
+    {
+        rr_golden_impact bad = in;
         bad.p.horizon = 0;
         expect(rr_peak_force(bad.q, bad.n, 1, &good, &bad.p, &peak) == RR_OUT_OF_RANGE,
                "rr_peak_force", "horizon is 0");
@@ -829,10 +859,17 @@ static void test_common(void)
            "rr_default_params", "status");
     expect(rr_default_params(NULL) == RR_NULL_POINTER,
            "rr_default_params", "NULL");
-    for (int status = -1; status <= 10; ++status) {
+    rr_params other;
+    memset(&other, 0xA5, sizeof other);
+    expect(rr_fill_params(&other, RR_LAYOUT + 4u) == RR_FOREIGN_PARAMS,
+           "rr_fill_params", "other layout");
+    expect(is_untouched(&other, sizeof other), "rr_fill_params", "nothing written for bad inputs");
+    expect(strcmp(rr_version(), RR_VERSION) == 0, "rr_version", "is the header's");
+    expect(strcmp(rr_model_digest(), RR_MODEL_DIGEST) == 0, "rr_model_digest", "is the header's");
+    for (int status = -1; status <= 11; ++status) {
         expect(strlen(rr_status_text(status)) > 0, "rr_status_text", "has a text");
     }
-    expect(strcmp(rr_status_text(10), rr_status_text(RR_OK)) != 0,
+    expect(strcmp(rr_status_text(11), rr_status_text(RR_OK)) != 0,
            "rr_status_text", "unknown status");
 }
 

@@ -53,12 +53,18 @@ typedef enum {
     UR5E_NO_EQUILIBRIUM = 7, /* Newton's method found no stable rest at these motor angles
                                 (closed chains) */
     UR5E_UNRESOLVED = 8,     /* the budget of steps is used up, and no bound is known */
-    UR5E_BOUNDED = 9         /* the budget of steps is used up; what was written is a bound on the
+    UR5E_BOUNDED = 9,        /* the budget of steps is used up; what was written is a bound on the
                                 safe side */
+    UR5E_FOREIGN_PARAMS = 10 /* ur5e_default_params of this header, in this number type, has not
+                                filled in p */
 } ur5e_status;
 
 /* Text of a status, in English; never NULL. */
 const char *ur5e_status_text(int status);
+
+/* UR5E_VERSION and UR5E_MODEL_DIGEST of the library, which may not be those of this header. */
+const char *ur5e_version(void);
+const char *ur5e_model_digest(void);
 
 /*
  * What motors do from first touch until reaction_time; then they are released. Free ones turn with
@@ -72,7 +78,11 @@ typedef enum {
     UR5E_MOTORS_SERVO = 3
 } ur5e_motors;
 
+/* What structs and functions look like, in this number type. */
+#define UR5E_LAYOUT (0xc0e25320u + (unsigned int)sizeof(ur5e_real))
+
 typedef struct {
+    unsigned int layout; /* UR5E_LAYOUT; ur5e_default_params sets it */
     ur5e_real joint_stiffness[6]; /* N m/rad, > 0; stiffness of the joint's spring */
     ur5e_real rotor_inertia[6]; /* kg m^2, > 0; rotor inertia, reflected to the joint */
     ur5e_real position_gain[6]; /* N m/rad, >= 0; proportional gain of the motor's controller */
@@ -83,12 +93,18 @@ typedef struct {
     int steps; /* > 0; budget of a call of peak_force, safe_speed or speed_factor */
 } ur5e_params;
 
+/* As ur5e_default_params, for a caller whose structs have a layout; others are refused. */
+int ur5e_fill_params(ur5e_params *p, unsigned int layout);
+
 /*
  * Fill in what is known of the model.
  * joint_stiffness is not: it is set to 0, and functions that need it return
  * UR5E_OUT_OF_RANGE until you set it.
  */
-int ur5e_default_params(ur5e_params *p);
+static inline int ur5e_default_params(ur5e_params *p)
+{
+    return ur5e_fill_params(p, UR5E_LAYOUT);
+}
 
 /*
  * Mass matrix M(q) of the links, without rotors.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: 0BSD */
-/* Status texts, default parameters and sines of ur5e. */
+/* Status texts, default parameters and body regions of ur5e. */
 #include "ur5e_internal.h"
 
 const char *ur5e_status_text(int status)
@@ -25,16 +25,32 @@ const char *ur5e_status_text(int status)
         return "the budget of steps is used up, and no bound is known";
     case UR5E_BOUNDED:
         return "the budget of steps is used up; the result is a bound on the safe side";
+    case UR5E_FOREIGN_PARAMS:
+        return "the parameters were not filled in for this library";
     default:
         return "unknown status";
     }
 }
 
-int ur5e_default_params(ur5e_params *p)
+const char *ur5e_version(void)
+{
+    return UR5E_VERSION;
+}
+
+const char *ur5e_model_digest(void)
+{
+    return UR5E_MODEL_DIGEST;
+}
+
+int ur5e_fill_params(ur5e_params *p, unsigned int layout)
 {
     if (p == NULL) {
         return UR5E_NULL_POINTER;
     }
+    if (layout != UR5E_LAYOUT) {
+        return UR5E_FOREIGN_PARAMS;
+    }
+    p->layout = layout;
     p->joint_stiffness[0] = UR5E_R(0.0);
     p->joint_stiffness[1] = UR5E_R(0.0);
     p->joint_stiffness[2] = UR5E_R(0.0);
@@ -65,45 +81,6 @@ int ur5e_default_params(ur5e_params *p)
     p->steps = 8000;
     return UR5E_OK;
 }
-
-#if defined(UR5E_USE_FLOAT)
-static void ask_library(const float *x, int count, float *s, float *c)
-{
-    for (int i = 0; i < count; ++i) {
-        s[i] = sinf(x[i]);
-        c[i] = cosf(x[i]);
-    }
-}
-
-/*
- * Takes the nearest quarter turns off each angle; then a polynomial each. Error < 1.2e-07.
- * Whole turns are added before, so that truncation finds the nearest.
- */
-void ur5e_sines_cosines(const float *x, int count, float *s, float *c)
-{
-    for (int i = 0; i < count; ++i) {
-        if (!(fabsf(x[i]) < 200.0f)) {
-            ask_library(x, count, s, c);
-            return;
-        }
-        const float quarters = x[i]*0.636619772f + 128.5f;
-        const int nearest = (int)quarters;
-        const unsigned int quarter = (unsigned int)nearest;
-        const float k = (float)nearest - 128.0f;
-        const float about = (x[i] - k*1.5703125f) - k*0.00048375129699707f;
-        const float r = about - k*7.54978995489188e-08f;
-        const float z = r*r;
-        const float odd = -0.166666552f + z*(0.00833217334f + z*-0.000195166562f);
-        const float even = 0.0416666456f + z*(-0.00138873619f + z*2.44377297e-05f);
-        const float sine = r + r*z*odd;
-        const float cosine = 1.0f - 0.5f*z + z*z*even;
-        const float first = (quarter & 1u) != 0u ? cosine : sine;
-        const float second = (quarter & 1u) != 0u ? sine : cosine;
-        s[i] = (quarter & 2u) != 0u ? -first : first;
-        c[i] = ((quarter + 1u) & 2u) != 0u ? -second : second;
-    }
-}
-#endif
 
 int ur5e_body_region(int part, int clamped, ur5e_region *region)
 {

@@ -12,6 +12,9 @@ int ur5e_reduced_model(
     if (q == NULL || n == NULL || p == NULL || out == NULL) {
         return UR5E_NULL_POINTER;
     }
+    if (p->layout != UR5E_LAYOUT) {
+        return UR5E_FOREIGN_PARAMS;
+    }
     if (!ur5e_all_finite(q, 6)) {
         return UR5E_NOT_FINITE;
     }

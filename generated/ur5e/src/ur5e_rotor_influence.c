@@ -8,6 +8,9 @@ int ur5e_rotor_influence(const ur5e_real q[6], const ur5e_params *p, ur5e_rotor_
     if (q == NULL || p == NULL || out == NULL) {
         return UR5E_NULL_POINTER;
     }
+    if (p->layout != UR5E_LAYOUT) {
+        return UR5E_FOREIGN_PARAMS;
+    }
     if (!ur5e_all_finite(q, 6)) {
         return UR5E_NOT_FINITE;
     }

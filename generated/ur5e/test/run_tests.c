@@ -178,6 +178,10 @@ static void test_generalised_mass_matrix(void)
     expect(ur5e_generalised_mass_matrix(in.q, &in.p, M0) == UR5E_NOT_FINITE,
            name, "q is infinite");
     in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_generalised_mass_matrix(in.q, &in.p, M0) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = ur5e_golden_inputs[0];
     in.p.rotor_inertia[0] = (ur5e_real)NAN;
     expect(ur5e_generalised_mass_matrix(in.q, &in.p, M0) == UR5E_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -236,6 +240,10 @@ static void test_stiffness_matrix(void)
     in.q[5] = (ur5e_real)INFINITY;
     expect(ur5e_stiffness_matrix(in.q, &in.p, K0) == UR5E_NOT_FINITE,
            name, "q is infinite");
+    in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_stiffness_matrix(in.q, &in.p, K0) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = ur5e_golden_inputs[0];
     in.p.joint_stiffness[0] = (ur5e_real)NAN;
     expect(ur5e_stiffness_matrix(in.q, &in.p, K0) == UR5E_NOT_FINITE,
@@ -407,6 +415,10 @@ static void test_reduced_model(void)
     expect(ur5e_reduced_model(in.q, in.n, &in.p, &out) == UR5E_NOT_FINITE,
            name, "q is infinite");
     in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_reduced_model(in.q, in.n, &in.p, &out) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = ur5e_golden_inputs[0];
     in.n[1] = (ur5e_real)NAN;
     expect(ur5e_reduced_model(in.q, in.n, &in.p, &out) == UR5E_NOT_FINITE,
            name, "n is not a number");
@@ -498,6 +510,10 @@ static void test_chain(void)
     in.q[5] = (ur5e_real)INFINITY;
     expect(ur5e_chain(in.q, in.n, &in.p, &out) == UR5E_NOT_FINITE,
            name, "q is infinite");
+    in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_chain(in.q, in.n, &in.p, &out) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = ur5e_golden_inputs[0];
     in.n[1] = (ur5e_real)NAN;
     expect(ur5e_chain(in.q, in.n, &in.p, &out) == UR5E_NOT_FINITE,
@@ -601,6 +617,10 @@ static void test_osim(void)
     expect(ur5e_osim(in.q, &in.p, &out) == UR5E_NOT_FINITE,
            name, "q is infinite");
     in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_osim(in.q, &in.p, &out) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = ur5e_golden_inputs[0];
     in.p.rotor_inertia[0] = (ur5e_real)NAN;
     expect(ur5e_osim(in.q, &in.p, &out) == UR5E_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -659,6 +679,10 @@ static void test_giaf(void)
     expect(ur5e_giaf(in.q, &in.p, &out) == UR5E_NOT_FINITE,
            name, "q is infinite");
     in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_giaf(in.q, &in.p, &out) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = ur5e_golden_inputs[0];
     in.p.rotor_inertia[0] = (ur5e_real)NAN;
     expect(ur5e_giaf(in.q, &in.p, &out) == UR5E_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -710,6 +734,10 @@ static void test_directional_giaf(void)
     in.q[5] = (ur5e_real)INFINITY;
     expect(ur5e_directional_giaf(in.q, in.n, &in.p, &giaf) == UR5E_NOT_FINITE,
            name, "q is infinite");
+    in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_directional_giaf(in.q, in.n, &in.p, &giaf) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = ur5e_golden_inputs[0];
     in.n[1] = (ur5e_real)NAN;
     expect(ur5e_directional_giaf(in.q, in.n, &in.p, &giaf) == UR5E_NOT_FINITE,
@@ -794,6 +822,10 @@ static void test_absorption_extremes(void)
     in.q[5] = (ur5e_real)INFINITY;
     expect(ur5e_absorption_extremes(in.q, &in.p, &out) == UR5E_NOT_FINITE,
            name, "q is infinite");
+    in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_absorption_extremes(in.q, &in.p, &out) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = ur5e_golden_inputs[0];
     in.p.rotor_inertia[0] = (ur5e_real)NAN;
     expect(ur5e_absorption_extremes(in.q, &in.p, &out) == UR5E_NOT_FINITE,
@@ -949,6 +981,10 @@ static void test_impact_measure(void)
     expect(ur5e_impact_measure(in.q, &in.p, &out) == UR5E_NOT_FINITE,
            name, "q is infinite");
     in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_impact_measure(in.q, &in.p, &out) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = ur5e_golden_inputs[0];
     in.p.rotor_inertia[0] = (ur5e_real)NAN;
     expect(ur5e_impact_measure(in.q, &in.p, &out) == UR5E_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -1011,6 +1047,10 @@ static void test_rotor_influence(void)
     expect(ur5e_rotor_influence(in.q, &in.p, &out) == UR5E_NOT_FINITE,
            name, "q is infinite");
     in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_rotor_influence(in.q, &in.p, &out) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
+    in = ur5e_golden_inputs[0];
     in.p.rotor_inertia[0] = (ur5e_real)NAN;
     expect(ur5e_rotor_influence(in.q, &in.p, &out) == UR5E_NOT_FINITE,
            name, "rotor_inertia is not a number");
@@ -1064,6 +1104,10 @@ static void test_single_joint_giaf(void)
     in.q[5] = (ur5e_real)INFINITY;
     expect(ur5e_single_joint_giaf(in.q, &in.p, giaf) == UR5E_NOT_FINITE,
            name, "q is infinite");
+    in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_single_joint_giaf(in.q, &in.p, giaf) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = ur5e_golden_inputs[0];
     in.p.rotor_inertia[0] = (ur5e_real)NAN;
     expect(ur5e_single_joint_giaf(in.q, &in.p, giaf) == UR5E_NOT_FINITE,
@@ -1140,6 +1184,10 @@ static void test_joint_impulse(void)
     in.q[5] = (ur5e_real)INFINITY;
     expect(ur5e_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == UR5E_NOT_FINITE,
            name, "q is infinite");
+    in = ur5e_golden_inputs[0];
+    ++in.p.layout;
+    expect(ur5e_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == UR5E_FOREIGN_PARAMS,
+           name, "p is of another layout");
     in = ur5e_golden_inputs[0];
     in.n[1] = (ur5e_real)NAN;
     expect(ur5e_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out) == UR5E_NOT_FINITE,
@@ -1308,6 +1356,12 @@ static void test_bad_impacts(void)
     }
     {
         ur5e_golden_impact bad = in;
+        bad.p.layout = 0;
+        expect(ur5e_peak_force(bad.q, bad.n, 1, &good, &bad.p, &peak) == UR5E_FOREIGN_PARAMS,
+               "ur5e_peak_force", "layout is 0");
+    }
+    {
+        ur5e_golden_impact bad = in;
         bad.p.horizon = 0;
         expect(ur5e_peak_force(bad.q, bad.n, 1, &good, &bad.p, &peak) == UR5E_OUT_OF_RANGE,
                "ur5e_peak_force", "horizon is 0");
@@ -1407,10 +1461,17 @@ static void test_common(void)
            "ur5e_default_params", "status");
     expect(ur5e_default_params(NULL) == UR5E_NULL_POINTER,
            "ur5e_default_params", "NULL");
-    for (int status = -1; status <= 10; ++status) {
+    ur5e_params other;
+    memset(&other, 0xA5, sizeof other);
+    expect(ur5e_fill_params(&other, UR5E_LAYOUT + 4u) == UR5E_FOREIGN_PARAMS,
+           "ur5e_fill_params", "other layout");
+    expect(is_untouched(&other, sizeof other), "ur5e_fill_params", "nothing written for bad inputs");
+    expect(strcmp(ur5e_version(), UR5E_VERSION) == 0, "ur5e_version", "is the header's");
+    expect(strcmp(ur5e_model_digest(), UR5E_MODEL_DIGEST) == 0, "ur5e_model_digest", "is the header's");
+    for (int status = -1; status <= 11; ++status) {
         expect(strlen(ur5e_status_text(status)) > 0, "ur5e_status_text", "has a text");
     }
-    expect(strcmp(ur5e_status_text(10), ur5e_status_text(UR5E_OK)) != 0,
+    expect(strcmp(ur5e_status_text(11), ur5e_status_text(UR5E_OK)) != 0,
            "ur5e_status_text", "unknown status");
 }
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plots as SVG.
+
+const WORDS = { free: "motors free", driven: "motors drive on", servo: "servo" };
+
+/** A few round numbers from 0 to at least `most`. */
+export function ticksTo(most, count = 4) {
+  const rough = most / count;
+  const power = 10 ** Math.floor(Math.log10(rough || 1));
+  const step = [1, 2, 2.5, 5, 10].map((k) => k * power).find((k) => k >= rough * 0.999);
+  const last = Math.ceil(most / step - 1e-9);
+  return Array.from({ length: last + 1 }, (_, k) => Number((k * step).toPrecision(6)));
+}
+
+const tag = (name, attributes, text = "") =>
+  `<${name} ${Object.entries(attributes).map(([k, v]) => `${k}="${v}"`).join(" ")}>${text}</${name}>`;
+
+/** Force over time of each end of what motors may do, and the limits. */
+export function plotForce(svg, found, state, looks, band, at) {
+  const { width, height } = svg.getBoundingClientRect();
+  const box = { left: 44, right: width - 8, top: 20, bottom: height - 30 };
+  const ends = found.ends.filter((end) => end.ok);
+  const last = Math.max(0.02, ...ends.map(lastPressed)) * 1.08;
+  const times = ticksTo(1e3 * Math.min(last, state.horizon), 5);
+  const { force_limit: limit, quasi_static_limit: pressed } = found.region;
+  const top = Math.max(...ends.map((end) => end.force), band?.high ?? 0);
+  const showLimit = limit < 2.2 * top;
+  const forces = ticksTo(1.06 * Math.max(top, showLimit ? limit : 0), 5);
+  const [long, high] = [times.at(-1), forces.at(-1)];
+  const x = (ms) => box.left + ((box.right - box.left) * ms) / long;
+  const y = (N) => box.bottom - ((box.bottom - box.top) * N) / high;
+  const parts = [];
+  forces.forEach((N) => {
+    parts.push(tag("line", { x1: box.left, x2: box.right, y1: y(N), y2: y(N), stroke: looks.line, "stroke-width": N ? 0.6 : 1 }));
+    parts.push(tag("text", { x: box.left - 6, y: y(N) + 4, "text-anchor": "end", class: "tick" }, N));
+  });
+  times.forEach((ms) => parts.push(tag("text", { x: x(ms), y: box.bottom + 16, "text-anchor": "middle", class: "tick" }, ms)));
+  parts.push(tag("text", { x: box.left - 36, y: 10, class: "tick" }, "force, N"));
+  parts.push(tag("text", { x: box.right, y: box.bottom + 28, "text-anchor": "end", class: "tick" }, "time since first touch, ms"));
+  if (band) {
+    parts.push(tag("rect", { x: box.left, width: box.right - box.left, y: y(Math.min(band.high, high)), height: y(band.low) - y(Math.min(band.high, high)), fill: looks.band }));
+    parts.push(tag("text", { x: box.right - 4, y: y(Math.min(band.high, high)) - 4, "text-anchor": "end", class: "tick" }, "peak in 95 of 100 cases"));
+  }
+  const released = 1e3 * (state.reaction_time ?? Infinity);
+  if (released > 0 && released < long && ends.some((end) => end.kind !== "free")) {
+    parts.push(tag("line", { x1: x(released), x2: x(released), y1: box.top, y2: box.bottom, stroke: looks.soft, "stroke-dasharray": "2 4" }));
+    parts.push(tag("text", { x: x(released) + 5, y: box.bottom - 6, class: "tick" }, "motors released"));
+  }
+  if (showLimit) parts.push(limitLine(box, y(limit), looks, `limit ${limit.toFixed(0)} N`));
+  if (state.clamped && long > 499 && pressed < high) parts.push(limitLine(box, y(pressed), looks, `from 500 ms on ${pressed.toFixed(0)} N`));
+  ends.forEach((end) => parts.push(curve(end, x, y, long, looks[end.kind])));
+  parts.push(...labels(ends, x, y, box, looks, long, showLimit ? y(limit) : -99));
+  if (at !== null) parts.push(...reading(ends, at, box, x, y, long, looks));
+  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  svg.innerHTML = parts.join("");
+  return { timeAt: (px) => Math.min(long, Math.max(0, ((px - box.left) / (box.right - box.left)) * long)) };
+}
+
+function limitLine(box, at, looks, words) {
+  return (
+    tag("line", { x1: box.left, x2: box.right, y1: at, y2: at, stroke: looks.limit, "stroke-width": 1.4, "stroke-dasharray": "6 4" }) +
+    tag("text", { x: box.left + 5, y: at - 5, "font-weight": 600 }, words)
+  );
+}
+
+function lastPressed({ time, over_time: force, count, force: peak }) {
+  for (let k = count - 1; k >= 0; --k) if (force[k] > 0.01 * peak) return time[k];
+  return 0;
+}
+
+function curve({ time, over_time: force, count }, x, y, long, colour) {
+  let path = "";
+  for (let k = 0; k < count && 1e3 * time[Math.max(k - 1, 0)] <= long; ++k) {
+    path += `${k ? "L" : "M"}${x(Math.min(1e3 * time[k], long)).toFixed(1)} ${y(force[k]).toFixed(1)}`;
+  }
+  return tag("path", { d: path, fill: "none", stroke: colour, "stroke-width": 2.2, "stroke-linejoin": "round" });
+}
+
+/* A dot at each peak, and its words where they meet neither the limit's line nor other words. */
+function labels(ends, x, y, box, looks, long, line) {
+  const taken = [];
+  return [...ends].sort((a, b) => b.force - a.force).map((end) => {
+    const [px, py] = [x(Math.min(1e3 * end.peak_time, long)), y(end.force)];
+    const words = `${WORDS[end.kind]}: ${end.force.toFixed(0)} N`;
+    const half = 3.55 * words.length;
+    const middle = Math.min(box.right - half, Math.max(box.left + half + 2, px));
+    const meets = (at) => Math.abs(at - 4 - line) < 11 || at < box.top || taken.some((other) => Math.abs(at - other) < 15);
+    const places = [py - 9, py + 18, py - 26, py + 33, py + 48];
+    const at = places.find((place) => !meets(place)) ?? py - 9;
+    taken.push(at, py + 4);
+    return (
+      tag("circle", { cx: px, cy: py, r: 4, fill: looks[end.kind] }) +
+      tag("text", { x: middle, y: at, "text-anchor": "middle", style: `fill:${looks[end.kind]};font-weight:600` }, words)
+    );
+  });
+}
+
+function reading(ends, ms, box, x, y, long, looks) {
+  const values = ends.map((end) => forceAt(end, ms / 1e3));
+  const words = `${ms.toFixed(1)} ms: ${values.map((f) => `${f.toFixed(0)} N`).join(" / ")}`;
+  const flip = x(ms) > (box.left + box.right) / 2;
+  return [
+    tag("line", { x1: x(ms), x2: x(ms), y1: box.top, y2: box.bottom, stroke: looks.soft }),
+    ...values.map((f, k) => tag("circle", { cx: x(ms), cy: y(f), r: 3.4, fill: looks[ends[k].kind] })),
+    tag("text", { x: x(ms) + (flip ? -6 : 6), y: box.top - 6, "text-anchor": flip ? "end" : "start" }, words),
+  ];
+}
+
+/** Force at a moment, linear between those that were kept. */
+export function forceAt({ time, over_time: force, count }, t) {
+  let k = 1;
+  while (k < count - 1 && time[k] < t) ++k;
+  const share = (t - time[k - 1]) / (time[k] - time[k - 1] || 1);
+  return force[k - 1] + Math.min(1, Math.max(0, share)) * (force[k] - force[k - 1]);
+}
+
+/** A curve of safe speeds over something, with the present one marked; `points` are [x, y or null]. */
+export function plotTrend(svg, points, now, looks, { logarithmic, label, unit }) {
+  const { width, height } = svg.getBoundingClientRect();
+  const box = { left: 40, right: width - 10, top: 22, bottom: height - 28 };
+  const speeds = ticksTo(1.05 * Math.max(0.01, ...points.map(([, v]) => v ?? 0)), 3);
+  const scaled = logarithmic ? Math.log10 : (value) => value;
+  const [low, high] = [points[0][0], points.at(-1)[0]].map(scaled);
+  const x = (value) => box.left + ((box.right - box.left) * (scaled(value) - low)) / (high - low);
+  const y = (v) => box.bottom - ((box.bottom - box.top) * v) / speeds.at(-1);
+  const marks = logarithmic ? points.map(([value]) => value).filter((value) => /^1e?0*$/.test(String(value))) : ticksTo(points.at(-1)[0], 4).filter((value) => value <= points.at(-1)[0] * 1.001);
+  const parts = speeds.map(
+    (v) =>
+      tag("line", { x1: box.left, x2: box.right, y1: y(v), y2: y(v), stroke: looks.line, "stroke-width": 0.6 }) +
+      tag("text", { x: box.left - 5, y: y(v) + 4, "text-anchor": "end", class: "tick" }, v),
+  );
+  marks.forEach((value) => parts.push(tag("text", { x: x(value), y: box.bottom + 14, "text-anchor": "middle", class: "tick" }, logarithmic ? value.toLocaleString("en") : value)));
+  parts.push(tag("text", { x: box.right, y: box.bottom + 26, "text-anchor": "end", class: "tick" }, `${label}, ${unit}`));
+  parts.push(tag("text", { x: 2, y: 9, class: "tick" }, "safe speed, m/s"));
+  const path = points.filter(([, v]) => v !== null).map(([value, v], k) => `${k ? "L" : "M"}${x(value).toFixed(1)} ${y(v).toFixed(1)}`);
+  parts.push(tag("path", { d: path.join(""), fill: "none", stroke: looks.driven, "stroke-width": 2.2 }));
+  if (now && now[1] !== null && now[0] >= points[0][0] && now[0] <= points.at(-1)[0]) {
+    parts.push(tag("circle", { cx: x(now[0]), cy: y(now[1]), r: 4.5, fill: looks.arrow }));
+  }
+  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  svg.innerHTML = parts.join("");
+}

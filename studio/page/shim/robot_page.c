@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a page asks of robot_'s package: where things are, what stands for the robot, what happens. */
+#include "robot_page_steps.h"
+
+/* Share of a limit that counts as kept, as in robot_safe_speed.c; and halvings of a speed. */
+#define KEPT ROBOT_R(0.9975)
+#define HALVINGS 24
+/* Until when it is followed what still presses on a clamped body, s: as simulate has it. */
+#define PRESSED_UNTIL ROBOT_R(0.6)
+/* Speed of a contact point that counts as rest, m/s. */
+#define AT_REST ROBOT_R(1e-6)
+
+int robot_scene(const robot_real q[ROBOT_JOINTS], int body, const robot_real place[3], robot_scene_t *out)
+{
+    robot_end_t end;
+    int status = robot_frames(q, out->poses);
+    if (status == ROBOT_OK) {
+        status = robot_end(q, &end);
+    }
+    if (status != ROBOT_OK || body < 0 || body >= ROBOT_JOINTS) {
+        return status == ROBOT_OK ? ROBOT_OUT_OF_RANGE : status;
+    }
+    const robot_real *const pose = out->poses[body];
+    for (int k = 0; k < 3; ++k) {
+        out->contact[k] = pose[9 + k] + pose[3*k]*place[0] + pose[3*k + 1]*place[1]
+            + pose[3*k + 2]*place[2];
+        out->end[k] = end.position[k];
+    }
+    return ROBOT_OK;
+}
+
+int robot_masses(const robot_real q[ROBOT_JOINTS], const robot_real n[3], const robot_params *p,
+    robot_masses_t *out)
+{
+    static const robot_masses_t none;
+    *out = none;
+    out->mass_status = robot_reflected_mass(q, n, p, &out->m_c);
+    out->reduced_status = ROBOT_SINGULAR;
+    out->giaf_status = ROBOT_SINGULAR;
+    out->directional_status = ROBOT_SINGULAR;
+#if ROBOT_HAS_REDUCED_MODEL
+    robot_reduced_model_t reduced;
+    out->reduced_status = robot_reduced_model(q, n, p, &reduced);
+    if (out->reduced_status == ROBOT_OK) {
+        out->k_r = reduced.k_r;
+        out->m_a = reduced.m_a;
+    }
+#endif
+#if ROBOT_HAS_GIAF
+    robot_giaf_t giaf;
+    out->giaf_status = robot_giaf(q, p, &giaf);
+    if (out->giaf_status == ROBOT_OK) {
+        out->giaf = giaf.giaf;
+    }
+    out->directional_status = robot_directional_giaf(q, n, p, &out->directional_giaf);
+#endif
+    return ROBOT_OK;
+}
+
+/* The robot at first touch, with motors of one kind, for forces about as large as at a speed. */
+static int prepare(const robot_real *q, const robot_real *n, robot_real speed, const robot_region *region,
+    const robot_params *p, int motors, robot_impact *impact)
+{
+    int status = robot_check_impact(region, p);
+    if (status == ROBOT_OK) {
+        status = robot_links(ROBOT_LINKS_OF(q, p), &impact->arrival.links);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_arrive(n, 0, &impact->arrival);
+    }
+    return status == ROBOT_OK ? robot_impact_prepare(region, p, motors, -speed, impact) : status;
+}
+
+/* The force that presses on a clamped body from half a second on; infinite where nobody knows. */
+static robot_real pressing_at(const robot_real *q, const robot_real *n, robot_real speed,
+    const robot_region *region, const robot_params *p, int motors)
+{
+    robot_impact impact;
+    robot_peak peak;
+    robot_params longer = *p;
+    longer.horizon = PRESSED_UNTIL;
+    if (region->clamped == 0) {
+        return ROBOT_R(0.0);
+    }
+    return prepare(q, n, speed, region, &longer, motors, &impact) == ROBOT_OK
+        ? robot_run_seen(&impact, speed, p->steps, &peak, NULL) : ROBOT_REAL_MAX;
+}
+
+int robot_follow(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real speed,
+    const robot_region *region, const robot_params *p, robot_follow_t *out)
+{
+    robot_impact impact;
+    robot_peak peak;
+    robot_peak_force_t found;
+    const int status = robot_peak_force(q, n, speed, region, p, &found);
+    if (status != ROBOT_OK && status != ROBOT_BOUNDED) {
+        return status;
+    }
+    const int prepared = prepare(q, n, speed, region, p, p->motors, &impact);
+    if (prepared != ROBOT_OK) {
+        return prepared;
+    }
+    out->count = 0;
+    (void)robot_run_seen(&impact, speed, p->steps, &peak, out);
+    out->force = found.force;
+    out->peak_time = found.time;
+    out->contact = peak.contact;
+    out->pressing = pressing_at(q, n, speed, region, p, p->motors);
+    for (int i = 0; i < ROBOT_JOINTS; ++i) {
+        out->rates[i] = impact.arrival.rates[i]*speed;
+    }
+    return status;
+}
+
+/* Whether what presses in the end keeps its limit at a speed, whatever motors do. */
+static bool presses_little(const robot_real *q, const robot_real *n, robot_real speed,
+    const robot_region *region, const robot_params *p)
+{
+    int first;
+    int last;
+    robot_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last; ++motors) {
+        if (pressing_at(q, n, speed, region, p, motors) > KEPT*region->quasi_static_limit) {
+            return false;
+        }
+    }
+    return true;
+}
+
+int robot_keeping(const robot_real q[ROBOT_JOINTS], const robot_real n[3], const robot_region *region,
+    const robot_params *p, robot_keeping_t *out)
+{
+    robot_safe_speed_t safe;
+    const int status = robot_safe_speed(q, n, region->force_limit, region, p, &safe);
+    if (status != ROBOT_OK && status != ROBOT_BOUNDED) {
+        return status;
+    }
+    out->speed = safe.speed;
+    out->pressed = 0;
+    if (presses_little(q, n, safe.speed, region, p)) {
+        return status;
+    }
+    robot_real low = ROBOT_R(0.0);
+    robot_real high = safe.speed;
+    for (int k = 0; k < HALVINGS; ++k) {
+        const robot_real middle = ROBOT_R(0.5)*(low + high);
+        const bool kept = presses_little(q, n, middle, region, p);
+        low = kept ? middle : low;
+        high = kept ? high : middle;
+    }
+    out->speed = low;
+    out->pressed = 1;
+    return low > ROBOT_R(0.0) ? status : ROBOT_UNRESOLVED;
+}
+
+int robot_two_body(robot_real speed, robot_real moving_mass, const robot_region *region,
+    const robot_params *p, robot_two_body_t *out)
+{
+    const robot_real zero = ROBOT_R(0.0);
+    const robot_real one = ROBOT_R(1.0);
+    const robot_real robot = ROBOT_R(0.5)*moving_mass + p->payload_mass;
+    const robot_real body = region->clamped != 0 ? zero : one/region->effective_mass;
+    if (!(robot > zero)) {
+        return ROBOT_OUT_OF_RANGE;
+    }
+    const robot_real slope = ROBOT_SQRT(region->stiffness/(one/robot + body));
+    out->force = slope*speed;
+    out->speed = region->force_limit/slope;
+    return ROBOT_OK;
+}
+
+int robot_aim(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS], const robot_params *p,
+    robot_aim_t *out)
+{
+    robot_links_t links;
+    robot_real v[3];
+    const int status = robot_links(ROBOT_LINKS_OF(q, p), &links);
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    for (int k = 0; k < 3; ++k) {
+        v[k] = ROBOT_R(0.0);
+        for (int i = 0; i < ROBOT_N; ++i) {
+            v[k] += links.J[k][i]*dq[i];
+        }
+    }
+    out->speed = ROBOT_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    return out->speed > AT_REST ? robot_unit_vector(v, out->n) : ROBOT_ZERO_DIRECTION;
+}
