@@ -10,7 +10,7 @@ import typer
 from typer.core import TyperCommand
 
 from . import options as o
-from .simulate_command import BODY, Clamped, Cover, Horizon, Report, Shape
+from .simulate_command import BODY, Clamped, Cover, Horizon, Shape
 
 
 class SeveralValues(TyperCommand):
@@ -128,7 +128,7 @@ def program(
     band: Band = False,
     engine: Engine = "auto",
     out: Out = None,
-    report: Report = None,
+    report: o.Report = None,
     json: o.Json = False,
 ) -> None:
     """Find the factor by which to slow a motion down, so that no watched point can hurt."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import refusal, run
+from pages import well_formed
 
 from softimpact.symbolic import load_robot
 
@@ -192,3 +193,17 @@ def test_json_needs_no_folder(motion: Path) -> None:
         "program", motion, "--model", "panda", "--regions", "abdomen", *slow
     )
     assert found["out"] is None
+
+
+def test_the_report_is_one_page_with_the_answer(motion: Path, tmp_path: Path) -> None:
+    path = tmp_path / "program.html"
+    shape = ("--shape", "sphere:0.01")
+    found = run_json_with_warnings(*arguments(motion, "hand", *QUICK, *shape, "--report", path))
+    page = path.read_text("utf-8")
+    assert well_formed(page)
+    worst = found["worst"][0]
+    assert f"It must slow down to {100 * worst['factor']:.0f} % at {worst['t']:.4g} s" in page
+    assert worst["limit"] == "transient pressure"
+    assert worst["pressure"] > 0
+    assert page.count('<svg class="arm"') == 5
+    assert "&#34;faint&#34;" in page

@@ -35,8 +35,9 @@ function drawArm(svg) {
     const [x, y] = flat(hit.place);
     const back = hit.direction && hit.direction.map((d, k) => hit.place[k] - 0.45 * reach * d);
     const arrow = back ? line(back, hit.place, colour, 0.022) : "";
+    const [side, anchor] = x > 0.55 ? [-0.07, "end"] : [0.07, "start"];
     return arrow + dot(hit.place, colour, 0.045) +
-      `<text x="${x + 0.07}" y="${y - 0.05}" font-size="0.1" fill="#1a1a1a" stroke="#fff" ` +
+      `<text x="${x + side}" y="${y - 0.05}" text-anchor="${anchor}" font-size="0.09" fill="#1a1a1a" stroke="#fff" ` +
       `stroke-width="0.025" paint-order="stroke">${Math.round(100 * hit.share)} %</text>`;
   }
   function paint() {
