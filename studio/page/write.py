@@ -20,9 +20,22 @@ from .package import page_package
 
 FRONT = Path(__file__).parent / "front"
 
-SCRIPTS = (
-    "package vectors parts camera arm answers plot state solver worst motion controls strip main"
-).split()
+SCRIPTS = [
+    "package",
+    "vectors",
+    "parts",
+    "camera",
+    "arm",
+    "answers",
+    "plot",
+    "state",
+    "solver",
+    "worst",
+    "motion",
+    "controls",
+    "strip",
+    "main",
+]
 """In an order in which each has what it imports; the first is the packages' glue."""
 
 IMPORT = re.compile(r'^import \{ (.*?) \} from "\./(\w+)\.js";\n', re.MULTILINE)
