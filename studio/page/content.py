@@ -43,7 +43,7 @@ def content_of(opened: Opened) -> dict[str, Any]:
     """Return all of it as JSON holds it."""
     robot, drives = opened.robot, opened.drives
     model = ImpactModel(robot, str(robot.tip), drives)
-    unknown = unknown_rotors(model)
+    unknown = _unknown(model)
     return {
         "title": opened.title,
         "robot": robot.name,
@@ -76,6 +76,14 @@ def content_of(opened: Opened) -> dict[str, Any]:
         "motion": None if opened.motion is None else _motion(opened),
         "varied": _varied(robot.n),
     }
+
+
+def _unknown(model: ImpactModel) -> list[str]:
+    """Return the joints whose rotors nobody stated, or stated to be nothing behind a spring."""
+    robot, rotors = model.robot, np.array(model.drives.rotors, dtype=float).ravel()
+    nothing = np.array(model.drives.elastic) & np.array(robot.actuated) & (rotors == 0)
+    names = {robot.joint_names[i] for i in np.flatnonzero(nothing)} | {*unknown_rotors(model)}
+    return [name for name in robot.joint_names if name in names]
 
 
 def _parts(robot: Robot, body: int) -> Iterator[list[list[float]]]:
