@@ -14,7 +14,16 @@ import numpy as np
 from softimpact.optimize import Study, load_study
 from softimpact.robots import built_in_robots
 from softimpact.simulate.trajectory import Trajectory
-from softimpact.symbolic import Drives, InvalidValue, Robot, arm_of, drives, load_robot
+from softimpact.symbolic import (
+    Contact,
+    Drives,
+    InvalidValue,
+    Robot,
+    arm_of,
+    body_region,
+    drives,
+    load_robot,
+)
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
@@ -63,8 +72,7 @@ class Opened:
         q: posture, length n.
         direction: unit vector.
         speed: [m/s].
-        region: name.
-        clamped: whether it is held.
+        body: that is hit.
         kind: of the motors; None for both ends of the bracket.
         reaction_time: [s].
         horizon: [s].
@@ -80,8 +88,7 @@ class Opened:
     q: Array
     direction: Array
     speed: float = SPEED
-    region: str = REGION
-    clamped: bool = True
+    body: Contact = field(default_factory=lambda: Contact(body_region(REGION)))
     kind: str | None = None
     reaction_time: float = REACTION_TIME
     horizon: float = 0.5
@@ -129,8 +136,7 @@ def of_study(study: Study) -> Opened:
         q=study.task_pose.q,
         direction=study.direction,
         speed=study.speed,
-        region=study.contact.region.name,
-        clamped=study.contact.clamped,
+        body=study.contact,
         kind=kinds.pop() if len(kinds) == 1 else None,
         reaction_time=study.motors[0].reaction_time,
         horizon=study.horizon,
@@ -205,8 +211,7 @@ def _of_program(record: Mapping[str, Any]) -> Opened:
         q=np.array(worst["q"]),
         direction=np.array(worst.get("direction", (0.0, 0.0, -1.0))),
         speed=worst.get("speed", SPEED),
-        region=worst.get("region", REGION),
-        clamped=record["clamped"],
+        body=Contact(body_region(worst.get("region", REGION)), record["clamped"]),
         kind=kinds[0] if len(kinds) == 1 else None,
         horizon=record["horizon"],
         motion=motion,

@@ -79,7 +79,8 @@ def test_programs_open_at_their_worst_moment(tmp_path: Path) -> None:
     path = tmp_path / "results.json"
     path.write_text(json.dumps(program))
     found = opened(str(tmp_path))
-    assert (found.speed, found.region, found.kind, found.clamped) == (0.7, "hand", "driven", False)
+    assert (found.speed, found.kind) == (0.7, "driven")
+    assert (found.body.region.name, found.body.clamped) == ("hand", False)
     assert found.motion is not None
     assert len(found.motion.time) == 3
     path.write_text(json.dumps({**program, "motion": "gone.csv"}))
@@ -90,4 +91,4 @@ def test_studies_open_in_their_task_and_with_all_poses() -> None:
     found = opened(str(STUDY))
     assert found.q.tolist() == Q9
     assert len(found.postures) == 24
-    assert (found.region, found.speed, found.kind) == ("chest", 1.0, None)
+    assert (found.body.region.name, found.speed, found.kind) == ("chest", 1.0, None)

@@ -108,7 +108,11 @@ export function writeNotes(place, found, state, content, unknown) {
   place.innerHTML = notes.join("");
 }
 
-export function captionOf(found) {
-  const curves = found.ends?.map((end) => MOTORS[end.kind]).join(" (lower bound) and ") ?? "";
-  return found.failed ? "" : `Contact force with ${found.ends.length > 1 ? curves.replace(" (lower bound)", "") : curves}.`;
+export function captionOf(found, kept) {
+  if (found.failed) return "";
+  const curves = `Contact force with ${found.ends.map((end) => MOTORS[end.kind]).join(" and ")}${found.lumped ? "; dotted: two masses and a spring, the rung below, which knows nothing of motors" : ""}.`;
+  if (!kept) return curves;
+  const change = (100 * (found.worst.force - kept.worst.force)) / kept.worst.force;
+  const safe = kept.keeping ? `, safe up to ${downwards(kept.keeping.speed)} m/s` : "";
+  return `${curves} Dashed: kept, ${kept.worst.force.toFixed(0)} N${safe}; now ${Math.abs(change).toFixed(1)} % ${change > 0 ? "more" : "less"}.`;
 }

@@ -22,7 +22,7 @@ const fail = (words) => {
 
 function looksOf() {
   const style = getComputedStyle(document.documentElement);
-  const names = ["ground", "ink", "soft", "line", "free", "driven", "servo", "good", "bad", "limit", "arm", "arm-edge", "arm-light", "joint", "arrow", "shadow", "band"];
+  const names = ["ground", "ink", "soft", "line", "free", "driven", "servo", "two_mass", "good", "bad", "limit", "arm", "arm-edge", "arm-light", "joint", "arrow", "shadow", "band"];
   return Object.fromEntries(names.map((name) => [name.replace(/-(.)/, (_, c) => c.toUpperCase()), style.getPropertyValue(`--${name}`).trim()]));
 }
 
@@ -36,7 +36,7 @@ function start(pkg, content) {
   solver.worst = (state) => worstDirection(solver, state);
   let state = fromHash(location.hash, content);
   let looks = looksOf();
-  let found = null, picture = null, plotted = null, band = null, reading = null, pending = false, quiet = null;
+  let found = null, picture = null, plotted = null, band = null, reading = null, kept = null, pending = false, quiet = null;
   const times_ = [];
   const camera = cameraOn(content, solver.scene(state));
   const canvas = byId("arm");
@@ -77,9 +77,9 @@ function start(pkg, content) {
 
   function drawPlot() {
     byId("force").style.visibility = found.failed ? "hidden" : "";
-    byId("force-caption").textContent = captionOf(found);
+    byId("force-caption").textContent = captionOf(found, kept);
     if (found.failed) return;
-    plotted = plotForce(byId("force"), found, state, looks, band, reading);
+    plotted = plotForce(byId("force"), found, state, looks, band, reading, kept);
     byId("force").setAttribute("aria-label", `Contact force over time. ${sentence(found, state)}`);
   }
 
@@ -200,6 +200,12 @@ function start(pkg, content) {
         window.prompt("The link to this state:", location.href);
       }
       setTimeout(() => { byId("copy").textContent = "Copy link"; }, 1500);
+    });
+    byId("keep").addEventListener("click", () => {
+      kept = kept || found.failed ? null : found;
+      byId("keep").setAttribute("aria-pressed", String(Boolean(kept)));
+      byId("keep").textContent = kept ? "Let go" : "Keep to compare";
+      drawPlot();
     });
     byId("reset").addEventListener("click", () => changed(firstState(content)));
     window.addEventListener("hashchange", () => changed(fromHash(location.hash, content)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plots as SVG.
 
-const WORDS = { free: "motors free", driven: "motors drive on", servo: "servo" };
+const WORDS = { free: "motors free", driven: "motors drive on", servo: "servo", two_mass: "two masses" };
 
 /** A few round numbers from 0 to at least `most`. */
 export function ticksTo(most, count = 4) {
@@ -16,14 +16,15 @@ const tag = (name, attributes, text = "") =>
   `<${name} ${Object.entries(attributes).map(([k, v]) => `${k}="${v}"`).join(" ")}>${text}</${name}>`;
 
 /** Force over time of each end of what motors may do, and the limits. */
-export function plotForce(svg, found, state, looks, band, at) {
+export function plotForce(svg, found, state, looks, band, at, kept) {
   const { width, height } = svg.getBoundingClientRect();
   const box = { left: 44, right: width - 8, top: 20, bottom: height - 30 };
   const ends = found.ends.filter((end) => end.ok);
-  const last = Math.max(0.02, ...ends.map(lastPressed)) * 1.08;
+  const drawn = found.lumped ? [...ends, found.lumped] : ends;
+  const last = Math.max(0.02, ...[...drawn, ...(kept ? [kept.worst] : [])].map(lastPressed)) * 1.08;
   const times = ticksTo(1e3 * Math.min(last, state.horizon), 5);
   const { force_limit: limit, quasi_static_limit: pressed } = found.region;
-  const top = Math.max(...ends.map((end) => end.force), band?.high ?? 0);
+  const top = Math.max(...drawn.map((end) => end.force), band?.high ?? 0, kept?.worst.force ?? 0);
   const showLimit = limit < 2.2 * top;
   const forces = ticksTo(1.06 * Math.max(top, showLimit ? limit : 0), 5);
   const [long, high] = [times.at(-1), forces.at(-1)];
@@ -49,8 +50,9 @@ export function plotForce(svg, found, state, looks, band, at) {
   }
   if (showLimit) parts.push(limitLine(box, y(limit), looks, `limit ${limit.toFixed(0)} N`));
   if (state.clamped && long > 499 && pressed < high) parts.push(limitLine(box, y(pressed), looks, `from 500 ms on ${pressed.toFixed(0)} N`, "start"));
-  ends.forEach((end) => parts.push(curve(end, x, y, long, looks[end.kind])));
-  parts.push(...labels(ends, x, y, box, looks, long, showLimit ? y(limit) : -99));
+  if (kept) parts.push(curve(kept.worst, x, y, long, looks.soft, "5 3"));
+  [...drawn].reverse().forEach((end) => parts.push(curve(end, x, y, long, looks[end.kind], end.kind === "two_mass" ? "1.5 3.5" : "none")));
+  parts.push(...labels(drawn, x, y, box, looks, long, showLimit ? y(limit) : -99));
   if (at !== null) parts.push(...reading(ends, at, box, x, y, long, looks));
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.innerHTML = parts.join("");
@@ -69,12 +71,12 @@ function lastPressed({ time, over_time: force, count, force: peak }) {
   return 0;
 }
 
-function curve({ time, over_time: force, count }, x, y, long, colour) {
+function curve({ time, over_time: force, count }, x, y, long, colour, dashes = "none") {
   let path = "";
   for (let k = 0; k < count && 1e3 * time[Math.max(k - 1, 0)] <= long; ++k) {
     path += `${k ? "L" : "M"}${x(Math.min(1e3 * time[k], long)).toFixed(1)} ${y(force[k]).toFixed(1)}`;
   }
-  return tag("path", { d: path, fill: "none", stroke: colour, "stroke-width": 2.2, "stroke-linejoin": "round" });
+  return tag("path", { d: path, fill: "none", stroke: colour, "stroke-width": 2.2, "stroke-linejoin": "round", "stroke-dasharray": dashes });
 }
 
 /* A dot at each peak, and its words where they meet neither the limit's line nor other words. */

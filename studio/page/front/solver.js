@@ -71,6 +71,7 @@ export function solverOf(pkg, content) {
       const found = pkg.follow({ q, n, speed, region: what, p: { ...all, motors: KINDS[kind] } });
       return { kind, ...found, ok: WRITTEN.includes(found.status) };
     });
+    const lumped = unknown(state) || state.motors === "servo" ? null : pkg.follow_two_masses({ q, n, speed, region: what, p: all });
     const failed = ends.find((end) => !end.ok);
     const keeping = pkg.keeping({ q, n, region: what, p: all });
     const worst = ends.reduce((a, b) => (b.ok && (!a || b.force > a.force) ? b : a), null);
@@ -79,6 +80,7 @@ export function solverOf(pkg, content) {
       region: what,
       ends,
       worst,
+      lumped: lumped?.status === 0 ? { kind: "two_mass", ok: true, ...lumped } : null,
       failed: failed && pkg.status_text({ status: failed.status }),
       keeping: WRITTEN.includes(keeping.status) ? keeping : null,
       masses: pkg.masses({ q, n, p: all }),
