@@ -5,22 +5,39 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from command_line import refusal
+from compiled_packages import tool
 
 from softimpact.studio.page import module
 from softimpact.studio.page.opened import opened
+from softimpact.studio.page.package import page_package
 from softimpact.studio.page.write import bundled
-from softimpact.symbolic import load_robot
+from softimpact.symbolic import drives, load_robot
 
 ROOT = Path(__file__).parents[2]
 STUDY = ROOT / "robots" / "studies" / "panda_24_poses.toml"
 PANDA = load_robot("panda")
 Q9 = [-1.22, 0.84, 0.72, -2.41, 0.79, 1.97, -2.04]
+
+
+@pytest.mark.slow
+def test_shim_is_clean_c(tmp_path: Path) -> None:
+    robot = load_robot("rr")
+    files = module.sources_of(page_package(robot, drives(robot, joint_stiffness=1e4)))
+    for path, text in files.items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text(text)
+    sources = sorted((tmp_path / "src").glob("page_page*.c"))
+    assert len(sources) == 3
+    flags = ("-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only")
+    compiler = tool("gcc")
+    subprocess.run([compiler, *flags, f"-I{tmp_path / 'include'}", *sources], check=True)
 
 
 def test_scripts_need_nothing_from_a_file(tmp_path: Path) -> None:

@@ -125,7 +125,7 @@ static void lump(const robot_reduced_model_t *reduced, robot_impact *impact)
     modes->rigid = 1;
     modes->squared[0] = ROBOT_R(0.0);
     modes->squared[1] = reduced->k_r*(one/reduced->m_c + one/reduced->m_a);
-    modes->fastest = modes->squared[1];
+    modes->fastest = ROBOT_REAL_MAX; /* all frequencies are known */
     modes->row[0] = one/ROBOT_SQRT(both);
     modes->row[1] = ROBOT_SQRT(reduced->m_a/(reduced->m_c*both));
     modes->start[0] = ROBOT_SQRT(both);
