@@ -23,6 +23,7 @@ FRONT = Path(__file__).parent / "front"
 SCRIPTS = [
     "package",
     "vectors",
+    "sizes",
     "parts",
     "camera",
     "arm",

@@ -68,23 +68,29 @@ def test_no_direction_is_worse_than_the_worst(tmp_path: Path) -> None:
     robot = load_robot("panda")
     model = ImpactModel(robot, "hand_tcp", drives(robot, joint_stiffness=1e4))
     source = np.random.default_rng(4)
+    rows, postures, directions, rates = [], [], [], []
     for k in range(0, len(found["q"]), 3):
-        q, rows, rates = np.array(found["q"][k]), [], []
-        J = np.array(model.jacobian(q))
-        for along in source.normal(size=(40, 3)):
+        q = np.array(found["q"][k])
+        for along in source.normal(size=(30, 3)):
             n = along / np.linalg.norm(along)
             try:
                 rates.append(approach_velocity(model, q, n))
             except SingularDirection:
                 continue
-            rows.append(n)
-        directions = np.array(rows)
-        reach = abs(directions @ J) @ robot.speed_limits
-        at = Samples(np.tile(q, (len(rows), 1)), directions, np.array(rates))
-        chest = Contact(body_region("chest"), clamped=False)
-        speeds = safe_speeds(model, at, np.full(len(rows), 8.0), chest, Motors("driven"), 0.1).safe
-        can = speeds < reach
-        assert found["safe_speed"][k] < 1.01 * speeds[can].min()
+            rows.append(k)
+            postures.append(q)
+            directions.append(n)
+    at = Samples(np.array(postures), np.array(directions), np.array(rates))
+    chest = Contact(body_region("chest"), clamped=False)
+    tried = np.full(len(rows), 8.0)
+    speeds = safe_speeds(model, at, tried, chest, Motors("driven"), 0.1).safe
+    compared = 0
+    for k, q, n, speed in zip(rows, postures, directions, speeds, strict=True):
+        reach = abs(n @ np.array(model.jacobian(q))) @ robot.speed_limits
+        if speed < reach:  # in other directions the joints keep the tip slower
+            assert found["safe_speed"][k] < 1.01 * speed
+            compared += 1
+    assert compared > len(rows) / 4
 
 
 @pytest.mark.slow

@@ -209,7 +209,7 @@ function start(pkg, content) {
     });
     byId("reset").addEventListener("click", () => changed(firstState(content)));
     window.addEventListener("hashchange", () => changed(fromHash(location.hash, content)));
-    window.addEventListener("resize", redraw);
+    window.addEventListener("laid-out", redraw);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { looks = looksOf(); draw(); settle(); });
   }
 }

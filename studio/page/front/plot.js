@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plots as SVG.
+import { sizeOf } from "./sizes.js";
 
 const WORDS = { free: "motors free", driven: "motors drive on", servo: "servo", two_mass: "two masses" };
 
@@ -17,7 +18,7 @@ const tag = (name, attributes, text = "") =>
 
 /** Force over time of each end of what motors may do, and the limits. */
 export function plotForce(svg, found, state, looks, band, at, kept) {
-  const { width, height } = svg.getBoundingClientRect();
+  const { width, height } = sizeOf(svg);
   const box = { left: 44, right: width - 8, top: 20, bottom: height - 30 };
   const ends = found.ends.filter((end) => end.ok);
   const drawn = found.lumped ? [...ends, found.lumped] : ends;
@@ -119,7 +120,7 @@ export function forceAt({ time, over_time: force, count }, t) {
 
 /** A curve of safe speeds over something, with the present one marked; `points` are [x, y or null]. */
 export function plotTrend(svg, points, now, looks, { logarithmic, label, unit }) {
-  const { width, height } = svg.getBoundingClientRect();
+  const { width, height } = sizeOf(svg);
   const box = { left: 40, right: width - 10, top: 22, bottom: height - 28 };
   const speeds = ticksTo(1.05 * Math.max(0.01, ...points.map(([, v]) => v ?? 0)), 3);
   const scaled = logarithmic ? Math.log10 : (value) => value;

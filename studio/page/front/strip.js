@@ -3,6 +3,7 @@
 import { shown } from "./answers.js";
 import { plotTrend } from "./plot.js";
 import { readMotion } from "./motion.js";
+import { sizeOf } from "./sizes.js";
 
 function section(title, html) {
   const box = document.createElement("section");
@@ -91,7 +92,7 @@ export function designStrip(content, changed) {
     changed({ q: [...design.q], springs: [...design.springs] });
   };
   function draw(looks, state) {
-    const { width, height } = svg.getBoundingClientRect();
+    const { width, height } = sizeOf(svg);
     if (!known.length || !width) return;
     const colours = [looks.driven, looks.free, looks.good, looks.soft];
     const bends = known.map((d) => 1e3 * Math.max(d.deflection, 1e-6));
@@ -150,7 +151,7 @@ export function trendStrip(content, solver) {
   let last = null;
   function draw(looks, state, found) {
     last = [looks, state, found];
-    if (!found.scene?.contact || !svg.getBoundingClientRect().width) return;
+    if (!found.scene?.contact || !sizeOf(svg).width) return;
     const how = over[select.value];
     if (select.value === "reaction" && solver.unknown(state)) { // motors that let go need their rotors
       svg.innerHTML = "";
