@@ -69,6 +69,8 @@ def content_of(opened: Opened) -> dict[str, Any]:
         "moving_mass": float(moving_mass(robot)),
         "elastic": all(drives.elastic),
         "unknown_rotors": unknown,
+        "warnings": opened.warnings,
+        "assumed": opened.assumed,
         "start": _start(opened),
         "postures": [{"name": k, "q": _list(q)} for k, q in opened.postures.items()],
         "designs": [vars(design) for design in opened.designs],

@@ -19,7 +19,6 @@ from softimpact.symbolic import (
     Drives,
     InvalidValue,
     Robot,
-    arm_of,
     body_region,
     drives,
     load_robot,
@@ -31,6 +30,7 @@ from .. import design_report, pareto_record, program_record
 from ..first_study import NOMINAL, first_posture
 from ..motion_file import read_motion
 from ..results_folder import RESULTS
+from ..situation import TypedArm, loaded_arm
 from ..waypoints import read_waypoints
 
 SPEED = 0.5
@@ -80,6 +80,8 @@ class Opened:
         designs: from results.
         motion: of a program.
         limit: that the designs were held against [N]; None without designs.
+        warnings: what of a file was ignored, a line each.
+        assumed: what the page says until somebody changes it, a line each.
     """
 
     title: str
@@ -96,34 +98,48 @@ class Opened:
     designs: Sequence[DesignPoint] = ()
     motion: Trajectory | None = None
     limit: float | None = None
+    warnings: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
 
 
-def opened(what: str) -> Opened:
+def opened(what: str, arm: TypedArm | None = None) -> Opened:
     """Return what a robot's name, a model file, a study or a folder of results opens.
+
+    Args:
+        what: to open.
+        arm: of a model, what of it is meant; None: what its file says.
 
     Raises:
         InvalidValue: a folder without results, or with some that have no page.
         SoftImpactError: a model or a study that cannot be read.
     """
     path = Path(what)
-    if what not in built_in_robots() and path.is_dir():
-        return _of_results(path)
-    return of_study(load_study(path)) if path.suffix == ".toml" else of_model(what)
+    is_folder = what not in built_in_robots() and path.is_dir()
+    if not is_folder and path.suffix != ".toml":
+        return of_model(arm or TypedArm(what))
+    if arm is not None:
+        raise InvalidValue("tip", "and the like are a model's; studies and results have theirs")
+    return _of_results(path) if is_folder else of_study(load_study(path))
 
 
-def of_model(model: str) -> Opened:
+def of_model(typed: TypedArm) -> Opened:
     """Return a robot in a posture in which it moves well."""
-    whole = load_robot(model)
-    if whole.tip is None:
-        known = ", ".join(list(whole.frames)[:8])
-        raise InvalidValue(
-            "model",
-            f"'{whole.name}' names no end of its arm; write a study with robot.tip, one of {known}",
-        )
-    robot = arm_of(whole).robot
+    arm = loaded_arm(typed)
+    robot = arm.robot
     q, direction = first_posture(robot)
-    stiff = drives(robot, joint_stiffness=NOMINAL)
-    return Opened(robot.name, robot, stiff, q, np.array(direction), postures={"first": q})
+    return Opened(
+        title=robot.name,
+        robot=robot,
+        drives=drives(robot, joint_stiffness=NOMINAL),
+        q=q,
+        direction=np.array(direction),
+        postures={"first": q},
+        warnings=arm.warnings,
+        assumed=(
+            f"The joints' stiffness is a guess, {NOMINAL:g} N·m/rad: a robot's file does not say "
+            "it.",
+        ),
+    )
 
 
 def of_study(study: Study) -> Opened:

@@ -59,6 +59,8 @@ def test_other_things_are_refused_in_one_line(
     assert "gone.toml, which is not there" in refusal("studio", tmp_path)
     assert "gone.urdf" in refusal("studio", "gone.urdf")
     assert "holds" in refusal("studio", "panda", "--out", ROOT / "docs")
+    assert "studies and results have theirs" in refusal("studio", STUDY, "--tip", "hand_tcp")
+    assert "nobody" in refusal("studio", "panda", "--tip", "nobody")
     monkeypatch.setattr(module, "find_spec", lambda name: None)
     assert "pip install" in refusal("studio", "rr", "--out", tmp_path / "page")
     assert not (tmp_path / "page").exists()

@@ -93,10 +93,12 @@ export function writeNotes(place, found, state, content, unknown) {
   const notes = [];
   const warn = (text) => notes.push(`<li class="warn">${escaped(text)}</li>`);
   const say = (text) => notes.push(`<li>${escaped(text)}</li>`);
+  const changed = state.springs.some((k, i) => k !== content.start.springs[i]);
+  if (!changed) content.assumed.forEach(say);
   if (unknown.length) say(`Rotor inertia of ${unknown.join(", ")} is unknown: motors are taken to keep their speed without an end, the worse case. Enter it under “Rotor inertia”.`);
   (found.worst?.rates ?? []).forEach((rate, i) => {
-    const { name, speed } = content.joints[i];
-    if (speed !== null && Math.abs(rate) > speed * 1.0001) warn(`${name} would turn at ${shown(Math.abs(rate))}, beyond its limit of ${shown(speed)} rad/s.`);
+    const { name, speed, turns } = content.joints[i];
+    if (speed !== null && Math.abs(rate) > speed * 1.0001) warn(`${name} would move at ${shown(Math.abs(rate))}, beyond its limit of ${shown(speed)} ${turns ? "rad/s" : "m/s"}.`);
   });
   state.q.forEach((x, i) => {
     const { name, lower, upper } = content.joints[i];

@@ -222,7 +222,9 @@ export function controlsOf(form, content, solver, changed) {
     group("Hardware", hardwareParts(content)),
   ];
   if (content.elastic) groups.push(group("Joint stiffness, each (N·m/rad)", eachJoint(content, "springs", "Stiffness", { low: SOFTEST, high: STIFFEST, logarithmic: true }), { folded: true }));
-  groups.push(group("Rotor inertia, each (kg·m²)", eachJoint(content, "rotors", "Reflected rotor inertia", { low: 0.001, high: 10, logarithmic: true }), { folded: !content.unknown_rotors.length }));
+  const inertia = { low: 0.001, high: 10, logarithmic: true };
+  const together = slider("rotors", "all", { ...inertia, title: "Reflected rotor inertia of all joints", read: (s) => s.rotors.reduce((a, b) => a + b) / s.rotors.length, write: (b) => ({ rotors: all(content, b) }) });
+  groups.push(group("Rotor inertia (kg·m²)", [together, ...eachJoint(content, "rotors", "Reflected rotor inertia", inertia)], { folded: !content.unknown_rotors.length }));
   form.append(...groups.map(({ box }) => box));
   const parts = groups.flatMap((g) => g.parts);
   parts.forEach((part) => part.watch(changed));

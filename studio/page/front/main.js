@@ -111,6 +111,11 @@ function start(pkg, content) {
   watchCanvas();
   watchPlot();
   watchPage();
+  if (content.warnings.length) {
+    byId("ignored").hidden = false;
+    byId("ignored").querySelector("summary").textContent = `What to know of the robot's file (${content.warnings.length})`;
+    byId("ignored").querySelector("ul").append(...content.warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+  }
   byId("main").hidden = false;
   draw();
   settle();

@@ -152,11 +152,8 @@ export function trendStrip(content, solver) {
   function draw(looks, state, found) {
     last = [looks, state, found];
     if (!found.scene?.contact || !sizeOf(svg).width) return;
+    if (select.value === "reaction" && solver.unknown(state)) select.value = "payload"; // motors that let go need their rotors
     const how = over[select.value];
-    if (select.value === "reaction" && solver.unknown(state)) { // motors that let go need their rotors
-      svg.innerHTML = "";
-      return;
-    }
     const points = how.values.map((value) => [value, solver.safeSpeed(how.at(state, value), found.scene.contact)]);
     if (points.every(([, v]) => v === null)) { svg.innerHTML = ""; return; }
     const now = how.now(state);
