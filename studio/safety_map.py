@@ -82,6 +82,7 @@ class SafetyMap:
     """A map; arrays have an entry for each posture, NaN where the tip cannot go that way.
 
     Attributes:
+        arm: as typed.
         model: the robot.
         over: what it is over.
         postures: in the order of the map, N×n.
@@ -106,6 +107,7 @@ class SafetyMap:
         warnings: a line each.
     """
 
+    arm: TypedArm
     model: ImpactModel
     over: Over
     postures: Array
@@ -194,6 +196,7 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
     seen(len(rows))
     formula = two_body(body.region, body.clamped, float(moving_mass(robot)), arm.load)
     return SafetyMap(
+        arm=how.arm,
         model=model,
         over=over,
         postures=ground.postures,

@@ -19,8 +19,8 @@ What = Annotated[
     str,
     typer.Argument(
         metavar="[MODEL|STUDY|RESULTS]",
-        help="Built-in robot, model file, study (.toml), or folder that design, pareto or program "
-        "wrote.",
+        help="Built-in robot, model file, study (.toml), or folder that design, pareto, program "
+        "or map wrote.",
         show_default=False,
     ),
 ]

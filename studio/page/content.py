@@ -76,6 +76,7 @@ def content_of(opened: Opened) -> dict[str, Any]:
         "designs": [vars(design) for design in opened.designs],
         "designs_limit": opened.limit,
         "motion": None if opened.motion is None else _motion(opened),
+        "map": None if opened.map is None else vars(opened.map),
         "varied": _varied(robot.n),
     }
 

@@ -26,7 +26,7 @@ from softimpact.symbolic import (
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
-from .. import design_report, pareto_record, program_record
+from .. import design_report, map_files, pareto_record, program_record
 from ..first_study import NOMINAL, first_posture
 from ..motion_file import read_motion
 from ..results_folder import RESULTS
@@ -62,6 +62,27 @@ class DesignPoint:
 
 
 @dataclass(frozen=True, eq=False)
+class MapShown:
+    """A map over a plane; lists have an entry a posture.
+
+    Attributes:
+        axes: of the plane, ``xz`` for example.
+        place: of the tip along these two [m].
+        step: between places [m].
+        safe_speed: [m/s]; None where the tip cannot go so.
+        q: posture.
+        direction: of the impact there.
+    """
+
+    axes: str
+    place: Sequence[Sequence[float]]
+    step: float
+    safe_speed: Sequence[float | None]
+    q: Sequence[Sequence[float]]
+    direction: Sequence[Sequence[float]]
+
+
+@dataclass(frozen=True, eq=False)
 class Opened:
     """What a page shows first, and what it can go to.
 
@@ -79,6 +100,7 @@ class Opened:
         postures: by name.
         designs: from results.
         motion: of a program.
+        map: over a plane.
         limit: that the designs were held against [N]; None without designs.
         warnings: what of a file was ignored, a line each.
         assumed: what the page says until somebody changes it, a line each.
@@ -97,6 +119,7 @@ class Opened:
     postures: Mapping[str, Array] = field(default_factory=dict)
     designs: Sequence[DesignPoint] = ()
     motion: Trajectory | None = None
+    map: MapShown | None = None
     limit: float | None = None
     warnings: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
@@ -170,9 +193,13 @@ def _of_results(folder: Path) -> Opened:
     generator = str(record.get("generator")) if isinstance(record, dict) else ""
     if generator == program_record.GENERATOR:
         return _of_program(record)
+    if generator == map_files.GENERATOR:
+        return _of_map(record)
     points = {pareto_record.GENERATOR: _fronts, design_report.GENERATOR: _winners}.get(generator)
     if points is None:
-        raise InvalidValue("results", f"{folder} holds no results of design, pareto or program")
+        raise InvalidValue(
+            "results", f"{folder} holds no results of design, pareto, program or map"
+        )
     source = Path(record["study"]["source"])
     if not source.is_file():
         raise InvalidValue(
@@ -231,4 +258,40 @@ def _of_program(record: Mapping[str, Any]) -> Opened:
         kind=kinds[0] if len(kinds) == 1 else None,
         horizon=record["horizon"],
         motion=motion,
+    )
+
+
+def _of_map(record: Mapping[str, Any]) -> Opened:
+    """Return a robot where its map begins."""
+    arm = loaded_arm(TypedArm(**record["arm"]))
+    springs = [NOMINAL if k is None else k for k in record["joint_stiffness"]]
+    kinds, begun = list(record["motors"]), record["begun"]
+    reaction = record["motors"][kinds[0]]["reaction_time"]
+    shown = None
+    if record["plane"]:
+        flat = ["xyz".index(axis) for axis in record["plane"]]
+        grid = next(values for values in record["grid"].values() if len(values) > 1)
+        shown = MapShown(
+            axes=record["plane"],
+            place=[[place[k] for k in flat] for place in record["place"]],
+            step=grid[1] - grid[0],
+            safe_speed=record["safe_speed"],
+            q=record["q"],
+            direction=record["direction"],
+        )
+    rigid = None in record["joint_stiffness"]
+    return Opened(
+        title=f"{record['robot']}: map",
+        robot=arm.robot,
+        drives=drives(arm.robot, joint_stiffness=springs, rotor_inertia=record["rotor_inertia"]),
+        q=np.array(record["q"][begun]),
+        direction=np.array(record["direction"][begun]),
+        speed=record["speed"],
+        body=Contact(body_region(record["region"]), record["clamped"]),
+        kind=kinds[0] if len(kinds) == 1 else None,
+        reaction_time=np.inf if reaction is None else reaction,
+        horizon=record["horizon"],
+        map=shown,
+        warnings=arm.warnings,
+        assumed=(f"Rigid joints have springs here, {NOMINAL:g} N·m/rad.",) if rigid else (),
     )

@@ -35,6 +35,7 @@ SCRIPTS = [
     "motion",
     "controls",
     "strip",
+    "map",
     "main",
 ]
 """In an order in which each has what it imports; the first is the packages' glue."""

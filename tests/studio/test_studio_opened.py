@@ -51,7 +51,7 @@ def test_other_things_are_refused_in_one_line(
 ) -> None:
     assert "holds no results.json" in refusal("studio", tmp_path)
     (tmp_path / "results.json").write_text('{"generator": "somebody"}')
-    assert "no results of design, pareto or program" in refusal("studio", tmp_path)
+    assert "no results of design, pareto, program or map" in refusal("studio", tmp_path)
     (tmp_path / "results.json").write_text("{")
     assert "is no JSON" in refusal("studio", tmp_path)
     gone = {"generator": "softimpact pareto", "study": {"source": "gone.toml"}}

@@ -32,7 +32,7 @@ function slider(name, label, { low, high, step, read, write, logarithmic = false
       if (row.hidden) return;
       if (document.activeElement !== range) range.value = logarithmic ? Math.log10(Math.max(now, low)) : now;
       range.setAttribute("aria-valuetext", shown(now, digits));
-      if (document.activeElement !== number) number.value = shown(now, digits + 1);
+      if (document.activeElement !== number) number.value = logarithmic ? shown(now, digits + 1) : Number(now.toFixed(4));
     },
   };
 }

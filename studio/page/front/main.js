@@ -7,6 +7,7 @@ import { cameraOn, orbit, zoomBy } from "./camera.js";
 import { controlsOf } from "./controls.js";
 import { plotForce } from "./plot.js";
 import { asHash, cautious, firstState, fromHash, unknownRotors, withinLimits } from "./state.js";
+import { mapStrip } from "./map.js";
 import { solverOf } from "./solver.js";
 import { designStrip, programStrip, trendStrip } from "./strip.js";
 import { worstDirection } from "./worst.js";
@@ -107,6 +108,7 @@ function start(pkg, content) {
   const controls = controlsOf(byId("controls"), content, solver, changed);
   const strips = [programStrip(content, changed, solver, fail), trendStrip(content, solver)];
   if (content.designs.length) strips.unshift(designStrip(content, changed));
+  if (content.map) strips.unshift(mapStrip(content, changed));
   byId("strip").append(...strips.map((strip) => strip.box));
   watchCanvas();
   watchPlot();
