@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from softimpact.robots import study_path
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
@@ -210,14 +211,14 @@ def load_study(path: str | Path, overrides: dict[str, dict[str, Any]] | None = N
     """Read and check a study file.
 
     Args:
-        path: a TOML file.
+        path: a TOML file, or the name of a built-in study.
         overrides: values that replace the file's, by section and field, as a command line gives.
 
     Raises:
         InvalidValue: a field is missing, unknown, of the wrong type or out of range; names file
             and field.
     """
-    source = Path(path)
+    source = study_path(path)
     return build_study(read_study_file(source, overrides or {}), source)
 
 

@@ -39,7 +39,14 @@ from softimpact.symbolic.robot.robot import BASE
 from .motion_file import limits_left, read_motion
 from .program_record import ProgramResult, program_record
 from .progress import progress_bar
-from .situation import TypedArm, TypedDrives, drives_of, gravity_of, loaded_arm
+from .situation import (
+    TypedArm,
+    TypedDrives,
+    counted_as_rigid,
+    drives_of,
+    gravity_of,
+    loaded_arm,
+)
 from .typed_motors import TypedMotors, motors_of
 from .waypoints import read_waypoints
 
@@ -90,7 +97,8 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
             model, motion, points, bodies, ends, horizon=horizon, payload=arm.load, seen=seen
         )
     safe = safe_program(motion, dangers)
-    warnings = [*arm.warnings, *told, *assumed, *_cautions(robot, motion, bodies, dangers)]
+    rigid = counted_as_rigid(model, how.drives)
+    warnings = [*arm.warnings, *rigid, *told, *assumed, *_cautions(robot, motion, bodies, dangers)]
     record = program_record(
         path, how.clamped, model, motion, points, ends, horizon, dangers, safe, warnings
     )

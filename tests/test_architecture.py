@@ -16,7 +16,7 @@ MAY_IMPORT = {
     "symbolic": {"robots"},
     "codegen": {"symbolic"},
     "simulate": {"symbolic"},
-    "optimize": {"symbolic"},
+    "optimize": {"robots", "symbolic"},  # built-in studies by name
     "studio": {"robots", "symbolic", "codegen", "simulate", "optimize"},
     "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from softimpact.optimize import Study, load_study
-from softimpact.robots import built_in_robots
+from softimpact.robots import built_in_robots, study_path
 from softimpact.simulate.trajectory import Trajectory
 from softimpact.symbolic import Drives, InvalidValue, Robot, drives, load_robot
 from softimpact.symbolic.impact.motors import REACTION_TIME
@@ -101,7 +101,7 @@ def opened(what: str) -> Opened:
     path = Path(what)
     if what not in built_in_robots() and path.is_dir():
         return _of_results(path)
-    return of_study(load_study(path)) if path.suffix == ".toml" else of_model(what)
+    return of_study(load_study(path)) if study_path(what).suffix == ".toml" else of_model(what)
 
 
 def of_model(model: str) -> Opened:
