@@ -305,16 +305,16 @@ def test_built_in_studies_go_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_joints_that_are_locked_leave_the_arm(tmp_path: Path) -> None:
     """Coupled arms, too: the joint that follows a locked one stays where that puts it."""
     mimic = '<mimic joint="j1" multiplier="-1"/>'
-    text = many_joints(5).replace("</joint>", f"{mimic}</joint>", 2).replace(mimic, "", 1)
+    text = many_joints(7).replace("</joint>", f"{mimic}</joint>", 2).replace(mimic, "", 1)
     (tmp_path / "arm.urdf").write_text(text)
     robot = {"model": "arm.urdf", "tip": "tool", "rotor_inertia": 0.1, "lock": {"j1": 0.3}}
     content = changed({"robot": robot}, ("q9",))
-    content["poses"] = [{"name": "q9", "q": [0.1, 0.2, 0.3]}]
+    content["poses"] = [{"name": "q9", "q": [0.1, 0.2, 0.3, 0.4, 0.5]}]
     study = load_study(written(tmp_path, content))
-    assert study.robot.joint_names == ("j3", "j4", "j5")
+    assert study.robot.joint_names == ("j3", "j4", "j5", "j6", "j7")
     whole = load_robot(tmp_path / "arm.urdf", "tool")
     same = arm_of(whole, "tool", locked={"j1": 0.3, "j2": -0.3}).robot
-    q, n = [0.1, 0.2, 0.3], [0.0, 1.0, 0.0]
+    q, n = [0.1, 0.2, 0.3, 0.4, 0.5], [0.0, 1.0, 0.0]
     found = study.model.reflected_mass(q, n)
     assert float(found) == pytest.approx(float(impact_model(same).reflected_mass(q, n)), rel=1e-12)
     del content["robot"]["lock"]
