@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.symbolic import InvalidValue, Motors
+from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
@@ -108,7 +109,7 @@ class Answers:
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class Design(Record):
     """Results of a study.
 
     Attributes:
@@ -122,6 +123,8 @@ class Design:
         compiled: whether the NLP ran as machine code.
     """
 
+    UNSHOWN = ("study", "timing")
+
     study: Study
     poses: tuple[PoseResult, ...]
     winner: Outcome
@@ -129,6 +132,25 @@ class Design:
     answers: Answers
     timing: Timing
     compiled: bool
+
+    def rows(self) -> list[Row]:
+        """Return a line for each search: the pose it began with, posture, springs and force."""
+        names = self.study.robot.joint_names
+        return [
+            {
+                "pose": found.name,
+                "mode": mode,
+                "force": found.force,
+                "force_before": pose.force_before,
+                "deflection": largest_deflection(self.study, found.q, found.springs),
+                "solved": found.solved,
+                **{f"q_{name}": float(x) for name, x in zip(names, found.q, strict=True)},
+                **{f"k_{name}": float(k) for name, k in zip(names, found.springs, strict=True)},
+            }
+            for pose in self.poses
+            for mode, found in (("table", pose.table), ("free", pose.free))
+            if found is not None
+        ]
 
     def outcomes(self, mode: Mode) -> list[Outcome]:
         """Return the outcomes of a mode, in the study's order."""

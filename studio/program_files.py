@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from softimpact.simulate.program import Danger
+from softimpact.symbolic.record import plain
 
 from .figures.program import program_figure
 from .figures.style import save
-from .output import plain, write_json
+from .output import write_json
 from .program_record import ProgramResult
 from .program_table import ProgramTable
 from .results_folder import RESULTS
