@@ -109,7 +109,18 @@ def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
         ),
         q=[round(float(x), 3) for x in q],
     )
-    return text, [*arm.robot.warnings, *arm.warnings]
+    return text, [*arm.robot.warnings, *arm.warnings, *_tied(arm.robot)]
+
+
+def _tied(robot: Robot) -> list[str]:
+    """Say what a study does not take, before somebody fills it in."""
+    if not robot.loops:
+        return []
+    names = ", ".join(f"'{loop.name}'" for loop in robot.loops)
+    return [
+        f"the arm has joints that are tied together ({names}), which studies do not follow: hold "
+        "some still by robot.lock"
+    ]
 
 
 def _upper(robot: Robot, q: Array, direction: tuple[float, ...]) -> float:
