@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, Reaction
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -52,7 +53,7 @@ class MotorsSection(_Section):
     reaction_time: Annotated[float, Field(ge=0)] = REACTION_TIME
     reaction: Reaction = "release"
     stopping_time: Positive = STOPPING_TIME
-    horizon: Positive = 0.5
+    horizon: Positive = QUASI_STATIC_FROM
 
 
 class HardwareSection(_Section):

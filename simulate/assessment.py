@@ -17,7 +17,7 @@ from softimpact.symbolic.impact.motors import refuse_held
 from softimpact.symbolic.impact.two_body import TwoBody, moving_mass, two_body
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Approach, arrival_of
+from .arrival import Approach, arrival_of
 from .band import ImpactBand, impact_band
 from .bracket import bracket
 from .controller import Controller
