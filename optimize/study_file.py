@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from softimpact.robots import built_in_studies
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.errors import did_you_mean
 from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, Reaction
 
@@ -55,7 +56,7 @@ class MotorsSection(_Section):
     reaction_time: Annotated[float, Field(ge=0)] = REACTION_TIME
     reaction: Reaction = "release"
     stopping_time: Positive = STOPPING_TIME
-    horizon: Positive = 0.5
+    horizon: Positive = QUASI_STATIC_FROM
 
 
 class HardwareSection(_Section):
