@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -155,20 +156,26 @@ def sources(package: Package, show: Templates) -> dict[str, str]:
     return files
 
 
+@cache
+def _environment() -> jinja2.Environment:
+    """Return what compiles the templates, each once in a process."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        undefined=jinja2.StrictUndefined,
+        autoescape=False,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["number"] = _number
+    environment.filters["comment"] = _comment
+    return environment
+
+
 class Templates:
     """A package's templates, which are shown by the name of what they make."""
 
     def __init__(self, package: Package) -> None:
-        self.environment = jinja2.Environment(
-            loader=jinja2.FileSystemLoader(TEMPLATES),
-            undefined=jinja2.StrictUndefined,
-            autoescape=False,
-            trim_blocks=True,
-            lstrip_blocks=True,
-            keep_trailing_newline=True,
-        )
-        self.environment.filters["number"] = _number
-        self.environment.filters["comment"] = _comment
         name = package.prefix
         self.context: dict[str, Any] = {
             "package": package,
@@ -188,7 +195,7 @@ class Templates:
 
     def __call__(self, template: str, **more: Any) -> str:
         """Return the text of a template."""
-        return self.environment.get_template(f"{template}.jinja").render(self.context, **more)
+        return _environment().get_template(f"{template}.jinja").render(self.context, **more)
 
 
 def runtime(name: str) -> dict[str, str]:

@@ -2,7 +2,7 @@
 """Design problems: which joint stiffness and which posture hurt least."""
 
 from .co_design import Design, Gains, PoseResult, design
-from .failure import Infeasible, SolverFailure
+from .failure import Infeasible, SolverFailure, Unavailable
 from .front import Front, ParetoPoint
 from .pareto import Pareto, pareto_fronts
 from .poses import Candidate, candidates
@@ -23,6 +23,7 @@ __all__ = [
     "PoseResult",
     "SolverFailure",
     "Study",
+    "Unavailable",
     "candidates",
     "design",
     "load_study",

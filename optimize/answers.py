@@ -11,9 +11,11 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import POSE, Program
-from .solve import Found, Instance
+from .bounds import STEEPNESS, Bound
+from .ipopt import Bounds, Found, Instance
+from .nlp import Program
 from .study import Study
+from .tip_pose import POSE
 
 INDIFFERENT = 0.005
 """Share of the force that counts as no loss."""
@@ -21,69 +23,83 @@ INDIFFERENT = 0.005
 HALVINGS = 7
 """Bisections of the logarithm of a range: its ends are then right to 5 % or better."""
 
-WORTHLESS = 1e-3
-"""Price [N] below which a bound is not named."""
+WORTHLESS = 3e-6
+"""Share of the objective below which a bound is not named: a thousandth of a newton or so."""
+
+ROOM = 0.1
+"""Share of a limit whose price is told."""
 
 
 @dataclass(frozen=True)
 class Price:
-    """What a bound costs: how much force a little more room buys.
+    """What a bound costs: how much a little more room buys, to first order.
 
     Attributes:
         bound: its name.
-        newtons: force saved [N] by that room, to first order.
+        newtons: force saved [N]; None where no force is made small.
         room: in words, such as "0.1 mm more".
+        gain: of the objective.
+        unit: of ``gain``.
     """
 
     bound: str
-    newtons: float
+    newtons: float | None
     room: str
+    gain: float
+    unit: str
 
 
 def indifferent_ranges(
-    study: Study,
-    springs: Array,
-    force: Callable[[Array], float],
+    bounds: Bounds,
+    v: Array,
+    cost: Callable[[Array], float],
     keeps: Callable[[Array], bool],
 ) -> Array:
-    """Return the range of each joint's stiffness that costs less than 0.5 %, n×2 [N·m/rad].
+    """Return the range of each value that costs less than 0.5 %, length of v × 2.
 
-    One group of joints is changed at a time, the others held; the ranges do not hold together.
+    One value is changed at a time, the others held; the ranges do not hold together.
 
     Args:
-        study: whose bounds on the stiffness count, and which joints share a spring.
-        springs: the optimum, length n [N·m/rad].
-        force: what is minimised, of springs.
-        keeps: whether springs keep all other bounds.
+        bounds: limits of v.
+        v: the optimum, log10 of all values.
+        cost: what is minimised, of v; greater than zero.
+        keeps: whether all bounds are kept, of v.
     """
-    least = force(springs) * (1 + INDIFFERENT)
-    groups, ranges = np.array(study.groups), np.empty((springs.size, 2))
+    least = cost(v) * (1 + INDIFFERENT)
+    ranges = np.empty((v.size, 2))
 
-    def good(group: int, value: float) -> bool:
-        changed = np.where(groups == group, value, springs)
-        return keeps(changed) and force(changed) <= least
+    def good(place: int, value: float) -> bool:
+        changed = v.copy()
+        changed[place] = value
+        return keeps(changed) and cost(changed) <= least
 
-    for group in range(groups.max() + 1):
-        joints = groups == group
-        own = float(springs[joints][0])
-        for side, end in enumerate((study.lower[joints].max(), study.upper[joints].min())):
-            ranges[joints, side] = _farthest(partial(good, group), own, float(end))
+    for i, own in enumerate(v):
+        for side, ends in enumerate((bounds.lower, bounds.upper)):
+            ranges[i, side] = 10 ** _farthest(partial(good, i), float(own), float(ends[i]))
     return ranges
 
 
+def by_name(study: Study, rows: Array) -> dict[str, list[float]]:
+    """Return a row for each joint, and for each other value of the hardware, by its name."""
+    joints = zip(study.robot.joint_names, study.groups, strict=True)
+    springs = max(study.groups) + 1
+    found = {name: rows[group].tolist() for name, group in joints}
+    return found | dict(zip(study.range.names[springs:], rows[springs:].tolist(), strict=True))
+
+
 def _farthest(good: Callable[[float], bool], own: float, end: float) -> float:
-    """Return how far towards an end a value may go, by bisection of its logarithm."""
+    """Return how far towards an end a logarithm may go, by bisection."""
     if own == end or good(end):
         return end
-    near, far = np.log(own), np.log(end)
+    near, far = own, end
     for _ in range(HALVINGS):
         middle = (near + far) / 2
-        near, far = (middle, far) if good(float(np.exp(middle))) else (near, middle)
-    return float(np.exp(near))
+        near, far = (middle, far) if good(middle) else (near, middle)
+    return near
 
 
 def prices_of(
-    study: Study, instance: Instance, found: Found, unit: float, program: Program
+    study: Study, instance: Instance, found: Found, worth: tuple[float, str], program: Program
 ) -> tuple[Price, ...]:
     """Return what each binding bound costs, the dearest first.
 
@@ -91,23 +107,49 @@ def prices_of(
         study: whose bounds they are.
         instance: the NLP that was solved.
         found: its optimum.
-        unit: force that its objective counts as one [N].
+        worth: what the objective counts as one, with its unit.
         program: its functions.
     """
+    one, unit = worth
+
+    def price(bound: str, gain: float, room: str) -> Price:
+        return Price(bound, gain * one if unit == "N" else None, room, gain * one, unit)
+
     tasks = found.multipliers[: instance.shape.postures * program.rows]
-    accuracy = float(tasks.reshape(-1, program.rows)[:, POSE:].sum())
-    # each row is |deflection|²/bound² − 1, whose slope by the bound is −2/bound where it binds
-    room = 0.1 * study.max_deflection
+    by_row = tasks.reshape(-1, program.rows)[:, POSE:].sum(axis=0)
+    pieces = np.split(by_row, np.cumsum(program.bound_rows)[:-1])
     prices = [
-        Price("accuracy.max_deflection", 2 * accuracy * 0.1 * unit, f"{1e3 * room:g} mm more")
+        price(bound.name, STEEPNESS[bound.sense] * float(piece.sum()) * ROOM, _room(bound))
+        for bound, piece in zip(study.bounds, pieces, strict=True)
     ]
-    for group, multiplier in enumerate(found.spring_multipliers):
-        joints = [
-            n for n, g in zip(study.robot.joint_names, study.groups, strict=True) if g == group
-        ]
-        end = "upper" if multiplier > 0 else "lower"
-        gain = abs(float(multiplier)) * float(np.log10(1.1)) * unit
-        room_in_words = "10 % stiffer" if multiplier > 0 else "10 % softer"
-        prices.append(Price(f"stiffness.{end} of {', '.join(joints)}", gain, room_in_words))
-    kept = [price for price in prices if price.newtons > WORTHLESS]
-    return tuple(sorted(kept, key=lambda price: -price.newtons))
+    names = study.range.names
+    for i, multiplier in enumerate(found.range_multipliers):
+        up, spring = multiplier > 0, i <= max(study.groups)
+        end, more = ("upper", "stiffer" if spring else "more") if up else ("lower", "less")
+        if spring and not up:
+            more = "softer"
+        name = f"stiffness.{end} of {names[i]}" if spring else f"hardware: {end} of {names[i]}"
+        gain = abs(float(multiplier)) * float(np.log10(1 + ROOM))
+        prices.append(price(name, gain, f"10 % {more}"))
+    kept = [each for each in prices if each.gain > WORTHLESS * one]
+    return tuple(sorted(kept, key=lambda each: -each.gain))
+
+
+def _room(bound: Bound) -> str:
+    """Return a tenth of a limit in words."""
+    room, unit = ROOM * bound.limit, bound.unit
+    if unit == "m":
+        room, unit = 1e3 * room, "mm"
+    return f"{room:g} {unit} {'more' if bound.sense == 'most' else 'less'}"
+
+
+def worth_of(study: Study, force: float) -> tuple[float, str]:
+    """Return what an objective's cost of one is worth, and its unit.
+
+    Args:
+        study: whose objective it is.
+        force: that counts as one [N].
+    """
+    if study.objective.scales_speed:  # costs are logarithms, or shares of a time
+        return 100.0, "%"
+    return force, "N"

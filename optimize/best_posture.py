@@ -14,12 +14,14 @@ from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
 from .impact_program import impact_program
-from .nlp import task_numbers, tip_pose_error
-from .poses import tip_pose
+from .ipopt import Bounds, Instance, one_posture
+from .nlp import task_numbers
 from .problem import study_impacts, study_program
-from .solve import Bounds, Instance, Start, one_posture, quiet, solve
+from .solve import Start, solve
+from .solver_options import quiet
 from .study import Study
 from .timing import impact_timing
+from .tip_pose import tip_pose, tip_pose_error
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +80,8 @@ def posture_of_least_force(study: Study, start: Array) -> BestPosture:
     impact = impact_program(free.model, timing.nodes, timing.substeps, compiled=False)
     impacts = study_impacts(free, timing.step)
     task = task_numbers(free, *tip_pose(free.model, start))
-    shape = one_posture(free.groups, len(impacts))
+    shape = one_posture(len(impacts))
     instance = Instance(shape, task[None, :], impacts, np.full(len(impacts), 100.0))
-    bounds = Bounds(*free.robot.limits, springs, springs)
     program = study_program(free, (impact,))
-    found = solve(program, Start("start", "free", ((start, springs),)), bounds, instance)
+    found = solve(program, Start("start", "free", ((start, springs),)), Bounds.of(free), instance)
     return BestPosture(found.q, found.force, found.status, found.solved)

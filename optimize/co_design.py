@@ -12,13 +12,15 @@ import numpy as np
 from softimpact.symbolic import InvalidValue, Motors
 from softimpact.symbolic.robot.rigid import Array
 
-from .answers import Price, indifferent_ranges, prices_of
-from .failure import Infeasible, SolverFailure
+from .answers import Price, indifferent_ranges, prices_of, worth_of
+from .evaluation import largest_deflection, largest_share
+from .failure import SolverFailure
+from .ipopt import IN_TURN, minimise
 from .poses import Candidate, candidates, leaves_a_choice
-from .problem import Problem, peak_force, prepare, study_impacts
-from .repair import accurate_springs, largest_deflection
-from .solve import IN_TURN, Mode, Outcome, Start, better, minimise, solve
-from .stiffest import stiffest
+from .problem import Problem, felt_numbers, peak_force, prepare, study_impacts
+from .reach import infeasible, reach, reachable
+from .repair import accurate_springs
+from .solve import Mode, Outcome, Start, better, solve
 from .study import Study
 from .timing import Timing
 from .workers import as_completed, workers
@@ -91,8 +93,8 @@ class Answers:
 
     Attributes:
         deflection: of the winner [m].
-        indifferent: range of each joint's stiffness that costs less than 0.5 %, the others held,
-            n×2 [N·m/rad].
+        indifferent: range of each value of the hardware that costs less than 0.5 %, the others
+            held, as many rows as ``study.range`` has names.
         prices: what each binding bound costs.
         worst_motors: under which the winner's force is largest.
         reference: that keeps the bounds, to compare with.
@@ -193,17 +195,17 @@ def design(
 def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -> Answers:
     """Return what the winner means: bounds that bind, numbers that matter, and a fair reference."""
     study, instance, program = problem.study, problem.numbers(), problem.program
-    free = winner.mode == "free"
+    free, limits = winner.mode == "free", problem.bounds
     with IN_TURN:
         again = minimise(
-            program, instance, problem.bounds, winner.q[None, :], winner.springs, free=free
+            program, instance, limits, winner.q[None, :], winner.springs, winner.others, free=free
         )
 
-    def force(springs: Array) -> float:
-        return peak_force(study, program.impacts[0], problem.timing, winner.q, springs)
+    def force(v: Array) -> float:
+        return peak_force(study, program.impacts[0], problem.timing, winner.q, *limits.parted(v))
 
-    def keeps(springs: Array) -> bool:
-        return largest_deflection(study, winner.q, springs) <= study.max_deflection * KEEPS
+    def keeps(v: Array) -> bool:
+        return largest_share(study, winner.q, *limits.parted(v)) <= KEEPS
 
     task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
     accurate = study.nominal
@@ -211,9 +213,13 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
         accurate = accurate_springs(study, task.candidate.q, study.nominal)
     at = task.candidate.q
     return Answers(
-        deflection=largest_deflection(study, winner.q, winner.springs),
-        indifferent=indifferent_ranges(study, winner.springs, force, keeps),
-        prices=prices_of(study, instance, again, float(instance.units[0]), program),
+        deflection=largest_deflection(study, winner.q, winner.springs, winner.others),
+        indifferent=indifferent_ranges(
+            limits, limits.vector(winner.springs, winner.others), force, keeps
+        ),
+        prices=prices_of(
+            study, instance, again, worth_of(study, float(instance.units[0])), program
+        ),
         worst_motors=_worst_motors(problem, winner),
         reference=Reference(
             accurate,
@@ -225,26 +231,21 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
 
 def _worst_motors(problem: Problem, winner: Outcome) -> Motors:
     """Return what the motors do where the winner's force is largest."""
-    x = np.concatenate([winner.q, np.log10(winner.springs)])
-    peaks = problem.program.impacts[0]["peaks"]
+    impact = problem.program.impacts[0]
+    y = felt_numbers(problem.study, impact.parts, winner.springs, winner.others)
+    x, peaks = np.concatenate([winner.q, y]), impact["peaks"]
     rows = study_impacts(problem.study, problem.timing.step)
     forces = [np.array(peaks(x, row, 0)).max() for row in rows]
     return problem.study.motors[int(np.argmax(forces))]
 
 
 def require_reachable(study: Study, modes: Sequence[Mode]) -> None:
-    """Raise Infeasible if no springs, and no posture if it is sought, are accurate enough."""
-    postures = [pose.q for pose in candidates(study)]
-    ends = []
-    for mode in modes:
-        for pose, q in zip(study.poses, postures, strict=True):
-            if largest_deflection(study, q, study.upper) <= study.max_deflection:
-                return
-            ends.append((stiffest(study, q, mode), pose.name, mode))
-            if ends[-1][0].deflection <= study.max_deflection:
-                return
-    least, name, mode = min(ends, key=lambda end: end[0].deflection)
-    raise Infeasible.of(study, least, name, free=mode == "free")
+    """Raise Infeasible if no hardware keeps the bounds in any pose, moved if that is sought."""
+    poses, free = candidates(study), "free" in modes
+    if any(reachable(study, pose.q, free=free) for pose in poses):
+        return
+    nearest = min(poses, key=lambda pose: reach(study, [pose.q], study.bounds, free=free).excess)
+    raise infeasible(study, [nearest], free=free)
 
 
 def applicable(study: Study, modes: Sequence[Mode]) -> tuple[Mode, ...]:

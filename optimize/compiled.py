@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import hashlib
+import logging
 import os
 import platform
 import subprocess
@@ -19,6 +20,8 @@ from pathlib import Path
 import casadi as ca
 
 from softimpact.toolchain import Command, cache_folder
+
+LOGGER = logging.getLogger(__name__)
 
 FLAGS = ("-O2", "-fPIC", "-shared", "-fno-math-errno")
 
@@ -36,12 +39,16 @@ def compiled_functions(functions: Sequence[ca.Function], compiler: Command | Non
     """
     folder = cache_folder()
     if compiler is None or folder is None:
+        LOGGER.info(
+            "no %s: impacts run in CasADi's virtual machine", "cache" if compiler else "C compiler"
+        )
         return None
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
             return _compile(functions, compiler, folder, Path(scratch))
-    except OSError:
+    except OSError as error:
+        LOGGER.info("impacts run in CasADi's virtual machine: %s", error)
         return None
 
 
@@ -56,10 +63,14 @@ def _compile(
     key = hashlib.sha256(source.read_bytes())
     key.update(" ".join([*compiler, *FLAGS, sys.platform, platform.machine()]).encode())
     library = folder / f"impact_{key.hexdigest()[:24]}.so"
-    if not library.exists():
+    if library.exists():
+        LOGGER.info("take compiled impacts from %s", library)
+    else:
+        LOGGER.info("compile impacts with %s into %s", compiler[0], library)
         built = scratch / "functions.so"
         command = [*compiler, *FLAGS, str(source), "-o", str(built), "-lm"]
         if subprocess.run(command, capture_output=True, check=False).returncode != 0:
+            LOGGER.info("the compiler failed: impacts run in CasADi's virtual machine")
             return None
         ctypes.CDLL(str(built))  # raises OSError for code of another machine
         built.replace(library)

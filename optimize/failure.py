@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .solve import FEASIBLE, Outcome, preference
+from .bounds import Bound
+from .ipopt import FEASIBLE
+from .solve import Outcome, preference
 from .stiffest import Stiffest
-from .study import Study
 
 
 class SolverFailure(Exception):
@@ -55,28 +56,52 @@ class Infeasible(Exception):
         super().__init__(message)
 
     @staticmethod
-    def of(study: Study, least: Stiffest, pose: str, *, free: bool) -> Infeasible:
-        """Return the failure of springs that are too soft for the accuracy wanted.
+    def of(
+        least: Stiffest,
+        ends: Sequence[tuple[Bound, float]],
+        poses: Sequence[str],
+        at: str,
+        *,
+        free: bool,
+    ) -> Infeasible:
+        """Return the failure of bounds that cannot be kept.
 
         Args:
-            study: what was asked.
-            least: the design of least deflection.
-            pose: where that is.
+            least: the design that comes nearest to the first of them.
+            ends: bounds, none of which could be left out, each with the best figure there is while
+                the others are kept.
+            poses: names of those in which they cannot be kept.
+            at: limits of the springs that hold the design back.
             free: whether the posture was sought as well.
         """
-        by = "springs and posture" if free else "springs"
-        stiff = least.springs >= study.upper * (1 - 1e-3)
-        names = [n for n, s in zip(study.robot.joint_names, stiff, strict=True) if s]
-        at = f"stiffness.upper of {', '.join(names)}" if names else "stiffness"
-        conflicts = ("accuracy.max_deflection", at, f"the pose of the tip in '{pose}'")
+        by = "hardware and posture" if free else "hardware"
+        where = ("pose " if len(poses) == 1 else "poses ") + ", ".join(f"'{p}'" for p in poses)
+        conflicts = (
+            *(b.name for b, _ in ends),
+            at,
+            *(f"the pose of the tip in '{p}'" for p in poses),
+        )
+        asked = " and ".join(
+            f"{b.name} {'below' if b.sense == 'most' else 'above'} {_figure(b.limit, b.unit)}"
+            for b, _ in ends
+        )
+        reached = "; ".join(
+            f"the {'least' if b.sense == 'most' else 'largest'} that can be reached is "
+            f"{_figure(figure, b.unit)}" + (f" of {b.name}" if len(ends) > 1 else "")
+            for b, figure in ends
+        )
+        springs = ", ".join(f"{k:.0f}" for k in least.springs)
+        kept = " while the other is kept" if len(ends) > 1 else ""
         return Infeasible(
-            f"no {by} keep the deflection below {1e3 * study.max_deflection:.4g} mm in pose "
-            f"'{pose}': the least that can be reached is {1e3 * least.deflection:.4g} mm, with "
-            f"k_s = [{', '.join(f'{k:.0f}' for k in least.springs)}] N·m/rad; raise "
-            f"accuracy.max_deflection or {at}",
+            f"no {by} keeps {asked} in {where}: {reached}{kept}, with k_s = [{springs}] N·m/rad; "
+            f"change {' or '.join(b.name for b, _ in ends)} or {at}",
             least,
             conflicts,
         )
+
+
+def _figure(value: float, unit: str) -> str:
+    return f"{1e3 * value:.4g} mm" if unit == "m" else f"{value:.4g} {unit}"
 
 
 def _in_words(best: Outcome) -> str:
@@ -90,3 +115,20 @@ def _in_words(best: Outcome) -> str:
         f"{best.violation:.2g} (m or rad of the tip's pose, or the square of deflection over bound "
         f"less 1) and has {found}"
     )
+
+
+class Unavailable(Exception):
+    """No springs of a catalogue keep the bounds.
+
+    Attributes:
+        share: of a limit that the best of them still uses.
+    """
+
+    exit_code = 3
+
+    def __init__(self, share: float) -> None:
+        self.share = share
+        super().__init__(
+            "hardware.catalogue: no combination of its springs that was tried keeps all bounds; "
+            f"the nearest uses {share:.3g} times a limit; add stiffer springs"
+        )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from .repair import largest_deflection
+from .evaluation import largest_deflection
 from .solve import Outcome
 from .study import Study
 

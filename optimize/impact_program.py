@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The force of one impact and its derivatives, as functions of posture, springs and numbers.
+"""The force of one impact and its derivatives, as functions of posture, hardware and numbers.
 
 Whatever a study asks, its impacts differ in numbers alone: direction, speed, contact, load and
-motors. So one program serves them all, compiled once for a robot and its contact point.
+motors. So one program serves them all, compiled once for a robot, its contact point, and the parts
+of the hardware that are sought.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -28,6 +30,7 @@ from softimpact.symbolic.robot.rigid import Array
 from softimpact.toolchain import c_compiler
 
 from .compiled import compiled_functions
+from .hardware import Hardware, Machine
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .motor_laws import MotorLaws
 from .peaks import peaks_in_windows
@@ -37,10 +40,25 @@ SIZES = {"direction": 3, "speed": 1, "contact": 4, "motors": 5, "payload": 1, "s
 
 NUMBERS = sum(SIZES.values())
 
+PARTS = ("springs", "rotors", "masses", "cover", "speed")
+"""What of the hardware an impact feels, and a factor on its speed, in the order of x."""
+
+Parts = tuple[str, ...]
+"""Those of ``PARTS`` that are sought; springs always are."""
+
+SPRINGS: Parts = ("springs",)
+
+
+def part_sizes(parts: Parts, n: int) -> list[int]:
+    """Return how many numbers each part has."""
+    return [1 if part in ("cover", "speed") else n for part in parts]
+
 
 @dataclass(frozen=True)
 class ImpactProgram:
-    """Functions of x = [q, log10 k_s] and an impact's numbers p, that a process can load.
+    """Functions of x = [q, log10 of the parts sought] and an impact's numbers p.
+
+    A process can load them.
 
     Attributes:
         functions: names and serialised functions, none where there is a library, since every job
@@ -49,12 +67,14 @@ class ImpactProgram:
         library: their compiled form, None to run in CasADi's virtual machine.
         n: number of joints.
         nodes: times at which the force is taken.
+        parts: of the hardware that are sought.
     """
 
     functions: tuple[tuple[str, str], ...]
     library: Path | None
     n: int
     nodes: int
+    parts: Parts = SPRINGS
 
     def __getitem__(self, name: str) -> ca.Function:
         """Return a function by name."""
@@ -92,7 +112,13 @@ def impact_numbers(
 
 
 def impact_program(
-    model: ImpactModel, nodes: int, substeps: int, point: str | None = None, *, compiled: bool
+    model: ImpactModel,
+    nodes: int,
+    substeps: int,
+    point: str | None = None,
+    parts: Parts = SPRINGS,
+    *,
+    compiled: bool,
 ) -> ImpactProgram:
     """Return the program of a robot whose joints are all elastic.
 
@@ -101,29 +127,32 @@ def impact_program(
         nodes: times at which the force is taken.
         substeps: time steps from node to node.
         point: frame that hits; default the model's tip, which carries the load.
+        parts: of the hardware that are sought.
         compiled: whether to compile, if there is a compiler.
     """
-    functions = impact_functions(model, nodes, substeps, point or model.tip)
+    functions = impact_functions(model, nodes, substeps, point or model.tip, parts)
     library = compiled_functions(functions, c_compiler()) if compiled else None
-    serialised = tuple((function.name(), function.serialize()) for function in functions)
-    carried = serialised if library is None else ()
-    return ImpactProgram(carried, library, model.robot.n, nodes)
+    carried: tuple[tuple[str, str], ...] = ()
+    if library is None:
+        carried = tuple((function.name(), function.serialize()) for function in functions)
+    return ImpactProgram(carried, library, model.robot.n, nodes, parts)
 
 
 def impact_functions(
-    model: ImpactModel, nodes: int, substeps: int, point: str
+    model: ImpactModel, nodes: int, substeps: int, point: str, parts: Parts = SPRINGS
 ) -> tuple[ca.Function, ...]:
     """Return the functions of ``ImpactProgram``.
 
     The derivative goes backwards through the impact, once for each window, to what the posture
-    gives (masses, Jacobian, springs), and from there forwards to the posture: three to four times
-    the price of the forces, whatever the number of joints.
+    gives (masses, Jacobian, springs), and from there forwards to posture and hardware: three to
+    four times the price of the forces, whatever the number of joints.
     """
-    x, p = ca.MX.sym("x", 2 * model.robot.n), ca.MX.sym("p", NUMBERS)
+    n = model.robot.n
+    x, p = ca.MX.sym("x", n + sum(part_sizes(parts, n))), ca.MX.sym("p", NUMBERS)
     boundary = ca.MX.sym("boundary")
-    posture, slope = _posture(model, point)
+    posture, slope = _posture(model, point, parts)
     given = ca.MX.sym("given", posture.numel_out(0))
-    forces = _forces(model, given, p, nodes, substeps)
+    forces = _forces(model, given, p, nodes, substeps, parts)
     peaks = peaks_in_windows(forces, boundary)
     arguments = [given, p, boundary]
     backwards = ca.Function(
@@ -140,25 +169,41 @@ def impact_functions(
     )
 
 
-def _posture(model: ImpactModel, point: str) -> tuple[ca.Function, ca.Function]:
+def hardware_of(model: ImpactModel, parts: Parts, logarithms: Sequence[Matrix]) -> Hardware:
+    """Return the hardware whose parts have these logarithms; speed is none of it."""
+    own = Hardware.of(model)
+    values = {p: 10**log for p, log in zip(parts, logarithms, strict=True) if p != "speed"}
+    return replace(own, **values)
+
+
+def _posture(model: ImpactModel, point: str, parts: Parts) -> tuple[ca.Function, ca.Function]:
     """Return what an impact needs of a posture, in one column, and its derivative by x."""
     n = model.robot.n
-    x, p = ca.SX.sym("x", 2 * n), ca.SX.sym("p", NUMBERS)
-    q, s = ca.vertsplit(x, n)
+    sizes = part_sizes(parts, n)
+    x, p = ca.SX.sym("x", n + sum(sizes)), ca.SX.sym("p", NUMBERS)
+    q, *logarithms = ca.vertsplit(x, np.cumsum([0, n, *sizes]).tolist())
     numbers = _split(p)
-    mass = model.mass_matrix(q)
-    end = contact_point_jacobian(model.robot, model.tip, q)
-    loaded = mass + numbers["payload"] * ca.mtimes(end.T, end)
+    machine = Machine.of(model, hardware_of(model, parts, logarithms))
+    end = machine.jacobian(q)
+    loaded = machine.mass_matrix(q) + numbers["payload"] * ca.mtimes(end.T, end)
     J = contact_point_jacobian(model.robot, point, q)
-    given = ca.vertcat(
+    speed = numbers["speed"]
+    if "speed" in parts:
+        speed = speed * 10 ** logarithms[parts.index("speed")]
+    given = [
         ca.vec(Factorisation(loaded).solve(ca.SX.eye(n))),
         direction_jacobian(model.robot, point, q, numbers["direction"]).T,
-        least_velocity(J, numbers["direction"]) * numbers["speed"],
-        10**s,
-        ca.vec(ca.densify(ca.SX(model.position_gains(q)))),
-    )
-    value = ca.Function("posture", [x, p], ca.cse([given]))
-    both = ca.Function("slope", [x, p], ca.cse([given, ca.densify(ca.jacobian(given, x))]))
+        least_velocity(J, numbers["direction"]) * speed,
+        machine.hardware.springs,
+        ca.vec(ca.densify(ca.SX(machine.model.position_gains(q)))),
+    ]
+    if "rotors" in parts:
+        given.append(machine.hardware.rotors)
+    if "cover" in parts:
+        given.append(machine.hardware.cover)
+    column = ca.vertcat(*given)
+    value = ca.Function("posture", [x, p], ca.cse([column]))
+    both = ca.Function("slope", [x, p], ca.cse([column, ca.densify(ca.jacobian(column, x))]))
     return value, both
 
 
@@ -167,25 +212,35 @@ def _split(p: Matrix) -> dict[str, Matrix]:
     return dict(zip(SIZES, ca.vertsplit(p, offsets), strict=True))
 
 
-def _forces(model: ImpactModel, given: Matrix, p: Matrix, nodes: int, substeps: int) -> Matrix:
+def _forces(
+    model: ImpactModel, given: Matrix, p: Matrix, nodes: int, substeps: int, parts: Parts
+) -> Matrix:
     n = model.robot.n
-    parts = ca.vertsplit(given, np.cumsum([0, n * n, n, n, n, n * n]).tolist())
-    mobility, jacobian, velocity, springs, gains = parts
+    sizes = [n * n, n, n, n, n * n, n * ("rotors" in parts), int("cover" in parts)]
+    offsets = np.cumsum([0, *sizes]).tolist()
+    mobility, jacobian, velocity, springs, gains, rotors, cover = ca.vertsplit(given, offsets)
     pattern = ca.DM(model.position_gains(ca.SX.sym("q", n)).sparsity(), 1)
     damping = model.drives.damping_gains
     dynamics = ImpactDynamics(
         mobility=ca.reshape(mobility, n, n),
         jacobian=jacobian.T,
         springs=springs,
-        rotors=known_rotors(model),
+        rotors=rotors if "rotors" in parts else known_rotors(model),
         gains=ca.project(ca.reshape(gains, n, n), pattern.sparsity()),
         damping=ca.DM.zeros(n) if damping is None else damping,
         velocity=velocity,
     )
     numbers = _split(p)
     contact = ContactParameters(*ca.vertsplit(numbers["contact"]))
+    if "cover" in parts:
+        contact = contact._replace(hertz_stiffness=in_series(contact.hertz_stiffness, cover))
     laws = MotorLaws(*ca.vertsplit(numbers["motors"]))
     return contact_forces(dynamics, contact, laws, numbers["step"], nodes, substeps)
+
+
+def in_series(first: Matrix, second: Matrix) -> Matrix:
+    """Return the stiffness of two Hertz laws in series: k^(-2/3) adds up."""
+    return (first ** (-2 / 3) + second ** (-2 / 3)) ** (-1.5)
 
 
 def known_rotors(model: ImpactModel) -> ca.DM:

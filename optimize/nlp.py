@@ -1,32 +1,34 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The co-design problem as a nonlinear program: least worst force over postures and stiffness.
+"""The co-design problem as a nonlinear program: an objective over hardware and postures.
 
-Variables are h = log10 k_s of each group of joints, the link angles q of each posture, and F. F is
-minimised over its epigraph: each peak of each impact, over the force that counts as one there, is
-at most F. Each posture holds its tip's pose and keeps the bounds on hardware, such as the springs'
-deflection. Impacts are simulated inside the constraints (``impact_forces``): there are no states.
+Variables are v, the log10 of the hardware's values, the link angles q of each posture, and the
+objective's own, such as F, the largest force over what counts as one. Each peak of each impact is
+at most what the objective allows. Each posture holds its tip's pose and keeps the bounds. Impacts
+are simulated inside the constraints (``impact_forces``): there are no states.
+
+Variables, bounds and objectives are stacked here and known nowhere else.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, Matrix, contact_point_jacobian, frame_pose
+from softimpact.symbolic import Matrix
 from softimpact.symbolic.robot.rigid import Array
 
-from .impact_program import NUMBERS, ImpactProgram
+from .bounds import row
+from .evaluation import equipped
+from .hardware import Hardware, Machine
+from .impact_program import NUMBERS, SIZES, ImpactProgram, Parts
+from .objectives import Objective, WorstForce
+from .objectives.objective import Indices
 from .peaks import WINDOWS
 from .study import Study
-
-HALF_TURN = 1e-12
-"""Keeps the pose error of a tip turned by exactly half a turn finite, and from vanishing there."""
-
-POSE = 6
-"""Equations that a pose of the tip stands for; an arm of fewer joints has no posture to choose."""
+from .tip_pose import tip_pose_error
 
 
 @dataclass(frozen=True)
@@ -36,15 +38,21 @@ class Program:
     Attributes:
         impacts: one for each contact point.
         task: serialised (x, b) -> the tip's pose error and the bounds' rows (at most zero), and
-            its derivative by x = [q, log10 k_s].
+            its derivative by x = [q, v].
+        hardware: serialised v -> log10 of the parts that impacts feel, and its derivative.
         n: number of joints.
+        variables: number of entries of v.
+        bound_rows: number of rows of each bound.
         rows: of the task.
         size: of its numbers b.
     """
 
     impacts: tuple[ImpactProgram, ...]
     task: str
+    hardware: str
     n: int
+    variables: int
+    bound_rows: tuple[int, ...]
     rows: int
     size: int
 
@@ -56,73 +64,73 @@ class Program:
 
 @dataclass(frozen=True)
 class Shape:
-    """Which variables and impacts an NLP has.
+    """Which postures and impacts an NLP has, and what it makes small.
 
     Attributes:
-        groups: of each joint, length n: joints of the same group share their stiffness.
         postures: number of them.
         impacts: posture and contact point of each, by place.
+        scenarios: number of each impact's, counted from zero on without gaps; of the impacts that
+            differ in what the motors do alone it is the same.
+        objective: of the search.
     """
 
-    groups: tuple[int, ...]
     postures: int
     impacts: tuple[tuple[int, int], ...]
-
-    @property
-    def springs(self) -> int:
-        """Number of stiffness variables."""
-        return max(self.groups) + 1
-
-    @property
-    def sharing(self) -> Array:
-        """Matrix from the groups' log10 k_s to the joints', n×groups."""
-        return np.eye(self.springs)[list(self.groups)]
+    scenarios: tuple[int, ...]
+    objective: Objective = field(default_factory=WorstForce)
 
 
-def tip_pose_error(model: ImpactModel, q: Matrix, position: Matrix, rotation: Matrix) -> Matrix:
-    """Return the tip's pose error, length 6: position [m] and 2 sin(angle/2) about its axis [rad].
+def hardware_function(study: Study, parts: Parts) -> ca.Function:
+    """Return v -> log10 of the parts that impacts feel, and its derivative."""
+    v = ca.SX.sym("v", study.range.lower.size)
+    hardware = _hardware(study, v)
+    values = {
+        "springs": hardware.springs,
+        "rotors": hardware.reflected_rotors,
+        "masses": hardware.masses,
+        "cover": hardware.cover,
+    }
+    y = ca.vertcat(*[ca.log10(values[part]) for part in parts if part != "speed"])
+    return ca.Function("hardware", [v], [y, ca.densify(ca.jacobian(y, v))])
 
-    The half angle matters: the sine of the whole angle also vanishes for a tip turned round.
+
+def _hardware(study: Study, v: Matrix) -> Hardware:
+    """Return the hardware of v; the springs come first in it."""
+    springs = max(study.groups) + 1
+    own, values = study.variables[0], 10**v
+    return equipped(
+        study, own.apply(Hardware.of(study.model), values[:springs]).springs, values[springs:]
+    )
+
+
+def task_function(study: Study) -> tuple[ca.Function, tuple[int, ...]]:
+    """Return (x, b) -> (rows, their derivative by x), and how many rows each bound has.
+
+    x is [q, v], and b as ``task_numbers`` has it.
     """
-    pose = frame_pose(model.robot, model.tip, q)
-    E = ca.mtimes(rotation.T, pose.rotation)
-    sine = ca.vertcat(E[2, 1] - E[1, 2], E[0, 2] - E[2, 0], E[1, 0] - E[0, 1])
-    square = ca.fmax(1 + ca.trace(E), 0) + HALF_TURN  # 4 cos²(angle/2)
-    return ca.vertcat(pose.position - position, sine / ca.sqrt(square) + HALF_TURN / square)
-
-
-def deflections(model: ImpactModel, q: Matrix, springs: Matrix, forces: Matrix) -> Matrix:
-    """Return the tip's displacements by the springs alone, 3×k [m], under forces 3×k [N].
-
-    The motors hold their positions, so that K⁻¹ = J k_s⁻¹ Jᵀ.
-    """
-    J = contact_point_jacobian(model.robot, model.tip, q)
-    return ca.mtimes(J, ca.mtimes(J.T, forces) / ca.repmat(springs, 1, forces.shape[1]))
-
-
-def task_function(model: ImpactModel, wrenches: int) -> ca.Function:
-    """Return (x, b) -> (rows, their derivative by x); b as ``task_numbers`` has it."""
-    n = model.robot.n
-    x, b = ca.SX.sym("x", 2 * n), ca.SX.sym("b", 13 + 3 * wrenches)
-    q, s = ca.vertsplit(x, n)
-    position, rotation, bound, forces = ca.vertsplit(b, [0, 3, 12, 13, b.numel()])
-    moved = deflections(model, q, 10**s, ca.reshape(forces, 3, wrenches))
-    error = tip_pose_error(model, q, position, ca.reshape(rotation, 3, 3))
-    rows = ca.vertcat(error, ca.sum1(moved**2).T / bound**2 - 1)
-    outputs = ca.cse([rows, ca.densify(ca.jacobian(rows, x))])
-    return ca.Function("task", [x, b], outputs)
+    n, bounds = study.robot.n, study.bounds
+    x = ca.SX.sym("x", n + study.range.lower.size)
+    b = ca.SX.sym("b", 12 + len(bounds))
+    position, rotation, limits = ca.vertsplit(b, [0, 3, 12, b.numel()])
+    q, v = ca.vertsplit(x, [0, n, x.numel()])
+    machine = Machine.of(study.model, _hardware(study, v), study.motions, study.margin)
+    error = tip_pose_error(study.model, q, position, ca.reshape(rotation, 3, 3))
+    kept = [row(b.sense, b.figures(machine, q), limits[i]) for i, b in enumerate(bounds)]
+    rows = ca.vertcat(error, *kept)
+    task = ca.Function("task", [x, b], ca.cse([rows, ca.densify(ca.jacobian(rows, x))]))
+    return task, tuple(each.numel() for each in kept)
 
 
 def task_numbers(study: Study, position: Array, rotation: Array) -> Array:
     """Return what a posture must do, as numbers.
 
     Args:
-        study: whose forces and bound count.
+        study: whose bounds count.
         position: where the tip is held, length 3 [m].
         rotation: how the tip is held, 3×3.
     """
-    pose = np.concatenate([position, rotation.ravel(order="F")])
-    return np.concatenate([pose, [study.max_deflection], study.forces.ravel()])
+    limits = [bound.limit for bound in study.bounds]
+    return np.concatenate([position, rotation.ravel(order="F"), limits])
 
 
 def problem_functions(program: Program, shape: Shape) -> dict[str, ca.Function]:
@@ -131,54 +139,75 @@ def problem_functions(program: Program, shape: Shape) -> dict[str, ca.Function]:
     Parameters are each posture's numbers b, then each impact's: its own, the force that counts as
     one [N], and the boundary of its windows.
     """
-    n, G, K, C = program.n, shape.springs, shape.postures, len(shape.impacts)
-    x = ca.MX.sym("x", G + K * n + 1)
+    n, V, K, C = program.n, program.variables, shape.postures, len(shape.impacts)
+    of, scenarios = shape.objective, np.array(shape.scenarios)
+    O = of.own(scenarios, np.ones(C), np.ones(C)).lower.size  # noqa: E741 - as K and C
+    x = ca.MX.sym("x", V + K * n + O)
     p = ca.MX.sym("p", K * program.size + C * (NUMBERS + 2))
-    h, *postures, peak = ca.vertsplit(x, [0, *(G + n * k for k in range(K + 1)), G + K * n + 1])
+    v, *postures, own = ca.vertsplit(x, [0, *(V + n * k for k in range(K + 1)), V + K * n + O])
     cuts = [program.size * k for k in range(K)]
     cuts += [program.size * K + (NUMBERS + 2) * c for c in range(C + 1)]
     given = ca.vertsplit(p, cuts)
-    sharing = ca.DM(shape.sharing)
-    s = ca.mtimes(sharing, h)
+    y, by_v = ca.Function.deserialize(program.hardware)(v)
     task = ca.Function.deserialize(program.task)
+    levels, speeds, *by_own = _allowed(of, scenarios, O)(own)
     value, slope = [], []
 
-    def placed(by_x: Matrix, k: int, by_peak: float) -> Matrix:
-        """Put a derivative by q and s of one posture into a row of all variables."""
-        rows = by_x.shape[0]
-        return ca.horzcat(
-            ca.mtimes(by_x[:, n:], sharing),
-            ca.DM(rows, n * k),
-            by_x[:, :n],
-            ca.DM(rows, n * (K - 1 - k)),
-            ca.DM.ones(rows, 1) * by_peak if by_peak else ca.DM(rows, 1),
-        )
+    def placed(of_v: Matrix, of_q: Matrix, k: int, of_own: Matrix) -> Matrix:
+        """Put a derivative by v, q of one posture and own into a row of all variables."""
+        rows = of_v.shape[0]
+        before, after = ca.DM(rows, n * k), ca.DM(rows, n * (K - 1 - k))
+        return ca.horzcat(of_v, before, of_q, after, of_own)
 
     for k, q in enumerate(postures):
-        rows, by_x = task(ca.vertcat(q, s), given[k])
+        rows, by_x = task(ca.vertcat(q, v), given[k])
         value.append(rows)
-        slope.append(placed(by_x, k, 0.0))
+        slope.append(placed(by_x[:, n:], by_x[:, :n], k, ca.DM(program.rows, O)))
     for c, (k, point) in enumerate(shape.impacts):
         numbers, unit, boundary = ca.vertsplit(given[K + c], [0, NUMBERS, NUMBERS + 1, NUMBERS + 2])
-        at = ca.vertcat(postures[k], s), numbers, boundary
-        value.append(program.impacts[point]["peaks"](*at) / unit - peak)
-        by_x = program.impacts[point]["slopes"](*at)[1]
-        slope.append(placed(by_x / unit, k, -1.0))
+        speed = [speeds[c]] if of.scales_speed else []
+        at = ca.vertcat(postures[k], y, *speed), numbers, boundary
+        value.append(program.impacts[point]["peaks"](*at) / unit - levels[c])
+        by_x = program.impacts[point]["slopes"](*at)[1] / unit
+        of_own = -ca.repmat(by_own[0][c, :], WINDOWS, 1)
+        if of.scales_speed:
+            of_own = of_own + ca.mtimes(by_x[:, -1], by_own[1][c, :])
+        springs = by_x[:, n : n + y.numel()]
+        slope.append(placed(ca.mtimes(springs, by_v), by_x[:, :n], k, of_own))
     g, J = ca.vertcat(*value), ca.vertcat(*slope)
-    slope_of_peak = ca.densify(ca.jacobian(peak, x)).T
+    at_speed = ca.vertcat(*[given[K + c][SPEED] for c in range(C)])
+    cost = of.cost(own, scenarios, at_speed)
+    slope_of_cost = ca.densify(ca.jacobian(cost, x)).T
     return {
-        "grad_f": ca.Function("nlp_grad_f", [x, p], [peak, slope_of_peak]),
-        "nlp": ca.Function("nlp", [x, p], [peak, g], ["x", "p"], ["f", "g"]),
+        "f": ca.Function("nlp_f", [x, p], [cost], ["x", "p"], ["f"]),
+        "g": ca.Function("nlp_g", [x, p], [g], ["x", "p"], ["g"]),
+        "grad_f": ca.Function("nlp_grad_f", [x, p], [cost, slope_of_cost]),
         "jac_g": ca.Function("nlp_jac_g", [x, p], [g, J], ["x", "p"], ["g", "jac_g_x"]),
     }
+
+
+def _allowed(of: Objective, scenarios: Indices, size: int) -> ca.Function:
+    """Return own -> levels, log10 of the factors on speeds, and the derivatives of both."""
+    own = ca.SX.sym("own", size)
+    both = ca.SX(of.levels(own, scenarios)), ca.SX(of.speeds(own, scenarios))
+    slopes = (ca.densify(ca.jacobian(each, own)) for each in both)
+    return ca.Function("allowed", [own], [*map(ca.densify, both), *slopes])
+
+
+SPEED = list(SIZES).index("speed") + SIZES["direction"] - 1
+"""Place of the speed among an impact's numbers."""
 
 
 def nlp_solver(program: Program, shape: Shape, options: dict[str, Any]) -> ca.Function:
     """Return Ipopt on the problem."""
     functions = problem_functions(program, shape)
-    x, p = (ca.MX.sym(name, functions["nlp"].numel_in(name)) for name in ("x", "p"))
-    f, g = functions["nlp"](x, p)
-    problem: dict[str, Any] = {"x": x, "p": p, "f": f, "g": g}
+    x, p = (ca.MX.sym(name, functions["g"].numel_in(name)) for name in ("x", "p"))
+    problem: dict[str, Any] = {
+        "x": x,
+        "p": p,
+        "f": functions["f"](x, p),
+        "g": functions["g"](x, p),
+    }
     given = {name: functions[name] for name in ("grad_f", "jac_g")}
     unasked = {"no_nlp_grad": True, "calc_lam_p": False}
     return ca.nlpsol("design", "ipopt", problem, {**options, **given, **unasked})

@@ -17,12 +17,12 @@ import numpy as np
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
+from .evaluation import largest_deflection
 from .failure import SolverFailure
 from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
 from .levels import ROOM, even_bounds, level_range
 from .problem import Problem, prepare
-from .repair import largest_deflection
 from .searches import Progress, Searches
 from .solve import Outcome, Start, better, preference, solve
 from .stiffest import Stiffest, stiffest

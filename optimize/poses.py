@@ -4,17 +4,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, InvalidValue, Joint, JointKind, frame_pose
+from softimpact.symbolic import ImpactModel, InvalidValue, Joint, JointKind
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import POSE, tip_pose_error
 from .repair import posture_at_pose
 from .study import Pose, Study
+from .tip_pose import POSE, tip_pose, tip_pose_error
 
 TURNED = 0.1
 """Angle [rad] about the base from which a pose counts as another one, turned."""
@@ -38,19 +37,6 @@ class Candidate:
     moved: float
     q: Array
     offset: float
-
-
-def tip_pose(model: ImpactModel, q: Array) -> tuple[Array, Array]:
-    """Return the tip's position, length 3 [m], and rotation, 3×3."""
-    position, rotation = _tip_function(model)(q)
-    return np.array(position).ravel(), np.array(rotation)
-
-
-@lru_cache(maxsize=8)
-def _tip_function(model: ImpactModel) -> ca.Function:
-    q = ca.SX.sym("q", model.robot.n)
-    pose = frame_pose(model.robot, model.tip, q)
-    return ca.Function("tip", [q], [pose.position, pose.rotation])
 
 
 def leaves_a_choice(study: Study) -> bool:

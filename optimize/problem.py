@@ -5,16 +5,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import casadi as ca
 import numpy as np
 
+from softimpact.symbolic import Matrix
 from softimpact.symbolic.robot.rigid import Array
 
-from .impact_program import ImpactProgram, impact_numbers, impact_program
-from .nlp import POSE, Program, task_function, task_numbers
-from .poses import Candidate, candidates, leaves_a_choice, tip_pose
-from .solve import Bounds, Instance, Mode, one_posture
+from .evaluation import equipped
+from .impact_program import PARTS, ImpactProgram, Parts, impact_numbers, impact_program
+from .ipopt import Bounds, Instance, one_posture
+from .nlp import Program, hardware_function, task_function, task_numbers
+from .poses import Candidate, candidates, leaves_a_choice
+from .solve import Mode
 from .study import Study
 from .timing import Timing, impact_timing
+from .tip_pose import tip_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +55,9 @@ class Problem:
         task = task_numbers(study, *tip_pose(study.model, study.task_pose.q))
         impacts = study_impacts(study, self.timing.step)
         unit = float(np.median(self.before))
-        shape = one_posture(study.groups, len(impacts))
+        if study.objective.scales_speed:
+            unit = study.limit
+        shape = one_posture(len(impacts), study.objective)
         return Instance(shape, task[None, :], impacts, np.full(len(impacts), unit))
 
 
@@ -62,18 +69,28 @@ def prepare(study: Study) -> Problem:
     """
     poses = tuple(candidates(study))
     timing = impact_timing(study, [pose.q for pose in poses])
-    impact = impact_program(study.model, timing.nodes, timing.substeps, compiled=True)
-    before = tuple(peak_force(study, impact, timing, pose.q, study.nominal) for pose in poses)
-    bounds = Bounds(*study.robot.limits, study.lower, study.upper)
+    parts = sought_parts(study)
+    impact = impact_program(study.model, timing.nodes, timing.substeps, parts=parts, compiled=True)
     program = study_program(study, (impact,))
-    return Problem(study, poses, before, timing, program, bounds)
+    before = tuple(peak_force(study, impact, timing, pose.q, study.nominal) for pose in poses)
+    return Problem(study, poses, before, timing, program, Bounds.of(study))
+
+
+def sought_parts(study: Study) -> Parts:
+    """Return what a study's variables and objective change of what an impact feels."""
+    moved = {part for variable in study.variables for part in variable.moves}
+    if study.objective.scales_speed:
+        moved.add("speed")
+    return tuple(part for part in PARTS if part in moved)
 
 
 def study_program(study: Study, impacts: tuple[ImpactProgram, ...]) -> Program:
     """Return the functions of a study's NLPs."""
-    wrenches = len(study.forces)
-    task = task_function(study.model, wrenches)
-    return Program(impacts, task.serialize(), study.robot.n, POSE + wrenches, task.numel_in(1))
+    (task, each), hardware = task_function(study), hardware_function(study, impacts[0].parts)
+    variables = study.range.lower.size
+    rows, size = task.numel_out(0), task.numel_in(1)
+    serialised = task.serialize(), hardware.serialize()
+    return Program(impacts, *serialised, study.robot.n, variables, each, rows, size)
 
 
 def study_impacts(study: Study, step: float) -> Array:
@@ -86,10 +103,40 @@ def study_impacts(study: Study, step: float) -> Array:
     )
 
 
+def felt_numbers(
+    study: Study, parts: Parts, springs: Array, others: Array | None = None, speed: float = 1.0
+) -> Array:
+    """Return log10 of the parts that impacts feel.
+
+    Args:
+        study: whose variables they are.
+        parts: that are sought.
+        springs: joint stiffness, length n [N·m/rad].
+        others: values of the other variables; default the machine as it is.
+        speed: factor on the speed.
+    """
+    if parts == ("springs",):
+        return np.log10(springs)
+    hardware = equipped(study, ca.DM(springs), others)
+    felt: dict[str, Matrix] = {
+        "springs": springs,
+        "rotors": hardware.reflected_rotors,
+        "masses": hardware.masses,
+        "cover": hardware.cover,
+        "speed": speed,
+    }
+    return np.concatenate([np.log10(np.array(felt[part], dtype=float)).ravel() for part in parts])
+
+
 def peak_force(
-    study: Study, program: ImpactProgram, timing: Timing, q: Array, springs: Array
+    study: Study,
+    program: ImpactProgram,
+    timing: Timing,
+    q: Array,
+    springs: Array,
+    others: Array | None = None,
 ) -> float:
     """Return the largest peak force [N] over what the motors may do, as the NLP sees it."""
-    x = np.concatenate([q, np.log10(springs)])
+    x = np.concatenate([q, felt_numbers(study, program.parts, springs, others)])
     rows = study_impacts(study, timing.step)
     return float(max(np.array(program["peaks"](x, row, 0)).max() for row in rows))

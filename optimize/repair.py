@@ -12,9 +12,10 @@ import numpy as np
 from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import POSE, deflections, tip_pose_error
-from .solve import quiet
+from .evaluation import largest_deflection
+from .solver_options import quiet
 from .study import Study
+from .tip_pose import POSE, tip_pose_error
 
 HELD = 1e-9
 """Pose error [m, rad] up to which a posture holds the tip as it is."""
@@ -81,19 +82,3 @@ def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
             break
         scaled = np.clip(scaled * share, study.lower, study.upper)
     return scaled
-
-
-def largest_deflection(study: Study, q: Array, springs: Array) -> float:
-    """Return the tip's largest displacement under the study's forces [m]."""
-    moved = np.array(
-        _deflection_function(study.model, len(study.forces))(q, springs, study.forces.T)
-    )
-    return float(np.linalg.norm(moved, axis=0).max())
-
-
-@lru_cache(maxsize=8)
-def _deflection_function(model: ImpactModel, wrenches: int) -> ca.Function:
-    q, springs = ca.SX.sym("q", model.robot.n), ca.SX.sym("k_s", model.robot.n)
-    forces = ca.SX.sym("forces", 3, wrenches)
-    moved = deflections(model, q, springs, forces)
-    return ca.Function("deflections", [q, springs, forces], [moved])

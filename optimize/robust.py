@@ -1,34 +1,43 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One set of springs for all scenarios: the least worst force over its limit, by exchange.
+"""One machine for all scenarios, by exchange.
 
 An NLP holds the few scenarios that matter. All others are screened with what it finds, the worst
 of them are added, and so on until none is worse than the NLP says. The last screening is the
-certificate: a bound on every scenario, by evaluation.
+certificate: a bound on every scenario, by evaluation. Objectives in which every scenario counts
+have all of them in the NLP from the start.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import casadi as ca
 import numpy as np
 
+from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
-from .answers import Price, indifferent_ranges, prices_of
-from .failure import Infeasible, SolverFailure
+from .answers import Price, indifferent_ranges, prices_of, worth_of
+from .catalogue import Bought, bought
+from .certificate import KEEPS, Hardening, Progress, Setting, Worst
+from .evaluation import equipped, largest_share
+from .failure import SolverFailure
+from .hardware import Hardware
 from .impact_program import impact_program
+from .ipopt import FEASIBLE, IN_TURN, Bounds, Found, Instance, minimise
 from .nlp import Program, Shape, task_numbers
-from .poses import tip_pose
-from .problem import study_program
-from .repair import accurate_springs, largest_deflection
+from .problem import sought_parts, study_program
+from .reach import require_reachable
+from .repair import accurate_springs
 from .scenarios import Scenarios
-from .screening import PIECE, Screened, largest_forces, screen
-from .solve import FEASIBLE, IN_TURN, Bounds, Found, Instance, Outcome, minimise
-from .stiffest import stiffest
-from .study import Study
+from .screening import PIECE, Screened
+from .solve import Outcome
+from .study import Study, transient_limit
 from .timing import Timing, scenario_timing
+from .tip_pose import tip_pose
+from .variables.cover import Cover
 from .workers import as_completed, workers
 
 ROUNDS = 40
@@ -40,53 +49,40 @@ ADDED = 4
 CLOSED = 1e-4
 """Share by which a scenario may exceed what the NLP says: forces are no better known."""
 
-KEEPS = 1e-6
-"""Share of the deflection bound by which a design may miss it: Ipopt's tolerance."""
-
-
-@dataclass(frozen=True, eq=False)
-class Worst:
-    """The worst scenario under some hardware.
-
-    Attributes:
-        index: of the scenario.
-        force: its largest peak [N].
-        share: of the force over its limit.
-        deflection: largest over all poses [m].
-    """
-
-    index: int
-    force: float
-    share: float
-    deflection: float
+MOST_AT_ONCE = 300
+"""Impacts that an NLP may hold where every scenario counts: it takes minutes then."""
 
 
 @dataclass(frozen=True, eq=False)
 class RobustDesign:
-    """One set of springs for all scenarios, and what the answer means.
+    """One machine for all scenarios, and what the answer means.
 
     Attributes:
         study: what was asked.
         scenarios: all of them.
         springs: joint stiffness, length n [N·m/rad].
+        others: values of the other variables of the hardware.
         postures: of each pose, P×n [rad].
-        worst: scenario under these springs, over all scenarios by evaluation.
-        before: the same with the nominal springs.
+        worst: scenario with this hardware, over all scenarios by evaluation.
+        before: the same of the machine as it is.
         equal: the same with springs in the proportions of the nominal ones, as soft or stiff as
             the deflection allows; with these springs.
         bound: share of the limit that the NLP says is the least, over its own scenarios.
         active: scenarios that the NLP held in the end.
         rounds: exchanges.
-        indifferent: range of each joint's stiffness that costs less than 0.5 % over the active
-            scenarios, the other joints' held, n×2 [N·m/rad].
+        indifferent: range of each value of the hardware that costs less than 0.5 % over the active
+            scenarios, the others held.
         prices: what each binding bound costs.
         timing: of the impacts.
         compiled: whether they ran as machine code.
+        bought: the springs of the catalogue, and what they cost; None without one. ``springs`` are
+            then these, and ``bound`` is that of springs of any stiffness.
     """
 
     study: Study
     scenarios: Scenarios
     springs: Array
+    others: Array
     postures: Array
     worst: Worst
     before: Worst
@@ -98,56 +94,7 @@ class RobustDesign:
     prices: tuple[Price, ...]
     timing: Timing
     compiled: bool
-
-
-Progress = Callable[[str, int, int], None]
-
-
-@dataclass(frozen=True, eq=False)
-class _Setting:
-    """What all exchanges share."""
-
-    study: Study
-    scenarios: Scenarios
-    program: Program
-    timing: Timing
-    bounds: Bounds
-    pool: Executor
-    say: Progress
-
-    @property
-    def given(self) -> Array:
-        """Postures as given, P×n [rad]."""
-        return np.array([pose.q for pose in self.scenarios.poses])
-
-    def worst(self, postures: Array, springs: Array) -> tuple[Worst, list[Screened]]:
-        """Screen all scenarios; return the worst, and the worst of each piece, worst first."""
-        count = len(self.scenarios)
-        step = self.timing.step
-        jobs = [
-            self.pool.submit(
-                screen,
-                self.program,
-                self.scenarios,
-                postures,
-                springs,
-                step,
-                begin,
-                min(begin + PIECE, count),
-            )
-            for begin in range(0, count, PIECE)
-        ]
-        found: list[Screened] = []
-        for i, job in enumerate(as_completed(jobs)):
-            found += job.result()
-            self.say("screening", i + 1, len(jobs))
-        found.sort(key=lambda screened: -screened.share)
-        first, deflection = found[0], float(self.deflections(postures, springs).max())
-        return Worst(first.index, first.force, first.share, deflection), found
-
-    def deflections(self, postures: Array, springs: Array) -> Array:
-        """Return the largest deflection in each pose, P [m]."""
-        return np.array([largest_deflection(self.study, q, springs) for q in postures])
+    bought: Bought | None = None
 
 
 def robust_design(
@@ -158,88 +105,144 @@ def robust_design(
     *,
     free: bool = False,
 ) -> RobustDesign:
-    """Find the springs of least worst force over its limit among all scenarios.
+    """Find the machine that is best for all scenarios: by default the least worst force.
 
     Args:
-        study: the robot, bounds on springs and deflection, and which joints share a spring.
+        study: the robot, its variables, bounds and objective.
         scenarios: to bear.
         executor: where screenings and searches run; default a process for each core.
         on_progress: called with what is being done, how much of it is, and how much there is.
         free: whether each pose may move along its self-motion, one posture for all that hits it.
 
     Raises:
-        InvalidValue: as ``scenario_timing``.
-        Infeasible: no springs keep the bounds in every pose.
+        InvalidValue: as ``scenario_timing``; or more scenarios than the objective can look at.
+        Infeasible: no hardware keeps the bounds in every pose.
         SolverFailure: no search was solved.
     """
-    timing = scenario_timing(study, scenarios)
+    if study.objective.all_scenarios and len(scenarios) > MOST_AT_ONCE:
+        raise InvalidValue(
+            f"{study.source}: objective.kind",
+            f"'{study.objective.kind}' looks at every impact at once, and {len(scenarios)} are "
+            f"more than {MOST_AT_ONCE}; choose 'worst_force' or fewer scenarios",
+        )
+    require_reachable(study, scenarios.poses, free=free)
+    timing, parts = scenario_timing(study, scenarios), sought_parts(study)
     impacts = tuple(
-        impact_program(study.model, timing.nodes, timing.substeps, point, compiled=True)
+        impact_program(study.model, timing.nodes, timing.substeps, point, parts, compiled=True)
         for point in scenarios.points
     )
-    bounds = Bounds(*study.robot.limits, study.lower, study.upper)
     with workers(max(2, len(scenarios) // PIECE), executor) as pool:
-        setting = _Setting(
+        setting = Setting(
             study,
             scenarios,
             study_program(study, impacts),
             timing,
-            bounds,
+            Bounds.of(study),
             pool,
             on_progress or (lambda *_: None),
         )
         return _exchanged(setting, free)
 
 
-def _exchanged(setting: _Setting, free: bool) -> RobustDesign:
-    study, given = setting.study, setting.given
-    softest = _require_reachable(setting, free)
-    before, found = setting.worst(given, study.nominal)
+@dataclass(frozen=True, eq=False)
+class _State:
+    """Where an exchange stands."""
+
+    best: Found
+    instance: Instance
+    at: Hardening
+    worst: Worst
+    active: tuple[int, ...]
+    rounds: int
+    unit: float
+
+    @property
+    def bound(self) -> float:
+        """Share of the limit that the NLP says is the least."""
+        return self.best.worst * self.unit
+
+
+def _exchanged(setting: Setting, free: bool) -> RobustDesign:
+    study, given, limits = setting.study, setting.given, setting.limits
+    nominal = Hardening(limits.vector(study.nominal), given)
+    before, found = setting.worst(nominal)
     equal = _equal_springs(setting, given)
-    equal_worst, more = setting.worst(given, equal)
-    active = _fresh(setting, [*more[:1], *found], set())
-    poses = [int(np.argmax(setting.deflections(given, study.nominal)))]
-    postures, best, rounds = given, None, 0
+    equal_worst, more = setting.worst(Hardening(limits.vector(equal), given))
+    state = _exchange(setting, free, [*more[:1], *found], equal, equal_worst.share)
+    choice = None
+    if study.catalogue:
+        choice, state = _bought(setting, state)
+    springs, others = limits.parted(state.at.v)
+    _require_thick_cover(setting, state.worst, equipped(study, ca.DM(springs), others))
+    worth = worth_of(study, state.worst.force / state.worst.share * state.unit)
+    return RobustDesign(
+        study=study,
+        scenarios=setting.scenarios,
+        springs=springs,
+        others=others,
+        postures=state.at.postures,
+        worst=state.worst,
+        before=before,
+        equal=(equal_worst, equal),
+        bound=state.bound,
+        active=state.active,
+        rounds=state.rounds,
+        indifferent=_indifferent(setting, state),
+        prices=prices_of(study, state.instance, state.best, worth, setting.program),
+        timing=setting.timing,
+        compiled=setting.program.library,
+        bought=choice,
+    )
+
+
+def _exchange(
+    setting: Setting, free: bool, first: Sequence[Screened], equal: Array, unit: float
+) -> _State:
+    study, given, limits = setting.study, setting.given, setting.limits
+    if study.objective.scales_speed:
+        unit = 1.0  # the limits themselves
+    everything = study.objective.all_scenarios
+    active = list(range(len(setting.scenarios))) if everything else _fresh(setting, first, set())
+    bends = setting.shares_of_bounds(Hardening(limits.vector(study.nominal), given))
+    poses, postures = [int(np.argmax(bends))], given
+    best: Found | None = None
     for rounds in range(1, ROUNDS + 1):
         places = [setting.scenarios[i] for i in active]
         poses = list(dict.fromkeys([*poses, *(place.pose for place in places)]))
-        instance = _instance(setting, active, poses, equal_worst.share)
-        springs = [best.springs] if best else [equal, study.upper, study.lower, softest]
-        best = _searched(setting, instance, postures[poses], springs, free)
+        instance = _instance(setting, active, poses, unit)
+        starts: list[tuple[Array, Array | None]]
+        starts = [(each, None) for each in (equal, study.upper, study.lower)]
+        if best:
+            starts = [(best.springs, best.others)]
+        best = _searched(setting, instance, postures[poses], starts, free)
         postures = given.copy()
         postures[poses] = best.postures if free else given[poses]
-        worst, found = setting.worst(postures, best.springs)
+        factors = _factors(setting, best)
+        at = Hardening(limits.vector(best.springs, best.others), postures, factors)
+        worst, found = setting.worst(at)
         setting.say("exchange", rounds, ROUNDS)
-        bends = setting.deflections(postures, best.springs)
-        too_far = int(np.argmax(bends))
-        bound = best.worst * equal_worst.share
-        fresh = _fresh(setting, [s for s in found if s.share > bound * (1 + CLOSED)], set(active))
-        if bends[too_far] > study.max_deflection * (1 + KEEPS) and too_far not in poses:
+        state = _State(best, instance, at, worst, tuple(active), rounds, unit)
+        shares = setting.shares_of_bounds(at)
+        too_far = int(np.argmax(shares))
+        allowed = max(state.bound, 1.0) if factors is not None else state.bound
+        worse = [s for s in found if s.share > allowed * (1 + CLOSED)]
+        fresh = [] if everything else _fresh(setting, worse, set(active))
+        if shares[too_far] > 1 + KEEPS and too_far not in poses:
             poses = [*poses, too_far]
         elif not fresh:
             break
         active = [*active, *fresh]
-    assert best is not None
-    springs_found = best.springs
-    return RobustDesign(
-        study=study,
-        scenarios=setting.scenarios,
-        springs=springs_found,
-        postures=postures,
-        worst=worst,
-        before=before,
-        equal=(equal_worst, equal),
-        bound=bound,
-        active=tuple(active),
-        rounds=rounds,
-        indifferent=_indifferent(setting, active, postures, springs_found),
-        prices=prices_of(setting.study, instance, best, worst.force / best.worst, setting.program),
-        timing=setting.timing,
-        compiled=setting.program.library,
-    )
+    return state
 
 
-def _fresh(setting: _Setting, screened: Sequence[Screened], known: set[int]) -> list[int]:
+def _factors(setting: Setting, best: Found) -> Array | None:
+    """Return the factors on the speed that a search ended with."""
+    if not setting.study.objective.scales_speed:
+        return None
+    return np.asarray(10**best.own)
+
+
+def _fresh(setting: Setting, screened: Sequence[Screened], known: set[int]) -> list[int]:
     """Return the worst few that are not known, each of another pose, point or direction."""
     kinds: set[tuple[int, ...]] = set()
     fresh: list[int] = []
@@ -251,12 +254,17 @@ def _fresh(setting: _Setting, screened: Sequence[Screened], known: set[int]) -> 
     return fresh
 
 
-def _instance(setting: _Setting, active: list[int], poses: list[int], unit: float) -> Instance:
+def _instance(setting: Setting, active: list[int], poses: list[int], unit: float) -> Instance:
     study, scenarios = setting.study, setting.scenarios
     places = [scenarios[i] for i in active]
     tasks = [task_numbers(study, *tip_pose(study.model, scenarios.poses[k].q)) for k in poses]
+    own = [i // len(scenarios.motors) for i in active]
+    numbered = {which: k for k, which in enumerate(dict.fromkeys(own))}
     shape = Shape(
-        study.groups, len(poses), tuple((poses.index(each.pose), each.point) for each in places)
+        len(poses),
+        tuple((poses.index(each.pose), each.point) for each in places),
+        tuple(numbered[which] for which in own),
+        study.objective,
     )
     return Instance(
         shape,
@@ -267,35 +275,38 @@ def _instance(setting: _Setting, active: list[int], poses: list[int], unit: floa
 
 
 def _searched(
-    setting: _Setting, instance: Instance, postures: Array, springs: Sequence[Array], free: bool
+    setting: Setting,
+    instance: Instance,
+    postures: Array,
+    starts: Sequence[tuple[Array, Array | None]],
+    free: bool,
 ) -> Found:
-    """Return the best of the searches from some springs."""
-    jobs = [
-        setting.pool.submit(search, setting.program, instance, setting.bounds, postures, each, free)
-        for each in springs
-    ]
+    """Return the best of the searches from some springs and other values."""
+    shared = setting.program, instance, setting.limits, postures
+    jobs = [setting.pool.submit(search, *shared, *start, free) for start in starts]
     found = [job.result() for job in as_completed(jobs)]
     good = [each for each in found if each.violation <= FEASIBLE]
     if not good:
         nearest = min(found, key=lambda each: each.violation)
         raise SolverFailure([_as_outcome(nearest, setting)])
-    return min(good, key=lambda each: each.worst)
+    return min(good, key=lambda each: each.cost)
 
 
 def search(
     program: Program,
     instance: Instance,
-    bounds: Bounds,
+    limits: Bounds,
     postures: Array,
     springs: Array,
+    others: Array | None,
     free: bool,
 ) -> Found:
     """Run ``minimise`` in a worker process."""
     with IN_TURN:
-        return minimise(program, instance, bounds, postures, springs, free=free)
+        return minimise(program, instance, limits, postures, springs, others, free=free)
 
 
-def _as_outcome(found: Found, setting: _Setting) -> Outcome:
+def _as_outcome(found: Found, setting: Setting) -> Outcome:
     name = setting.scenarios.poses[0].pose.name
     status, force = found.status, float(found.worst)
     q, k = found.postures[0], found.springs
@@ -304,42 +315,52 @@ def _as_outcome(found: Found, setting: _Setting) -> Outcome:
     )
 
 
-def _equal_springs(setting: _Setting, postures: Array) -> Array:
+def _equal_springs(setting: Setting, postures: Array) -> Array:
     """Return springs in the nominal proportions that are just accurate in every pose."""
     study = setting.study
     softest = [accurate_springs(study, q, study.nominal) for q in postures]
     return np.asarray(np.max(softest, axis=0))
 
 
-def _require_reachable(setting: _Setting, free: bool) -> Array:
-    """Return the springs of least deflection in the worst pose; raise Infeasible beyond reach."""
-    study, given = setting.study, setting.given
-    ends = setting.deflections(given, study.upper)
-    k = int(np.argmax(ends))
-    end = stiffest(study, given[k], "free" if free else "table")
-    if end.deflection > study.max_deflection * (1 + KEEPS):
-        raise Infeasible.of(study, end, setting.scenarios.poses[k].pose.name, free=free)
-    return end.springs
+def _require_thick_cover(setting: Setting, worst: Worst, hardware: Hardware) -> None:
+    """Refuse a cover that some impact presses through: its law does not hold then."""
+    thickness = [v.thickness for v in setting.study.other_variables if isinstance(v, Cover)]
+    if not thickness or thickness[0] is None or hardware.cover is None:
+        return
+    # a scenario of a lower share may have the larger force
+    most = worst.share * max(transient_limit(contact) for contact in setting.scenarios.contacts)
+    depth = (most / float(hardware.cover)) ** (2 / 3)
+    if depth > thickness[0]:
+        raise InvalidValue(
+            f"{setting.study.source}: hardware.cover.lower",
+            f"{most:.0f} N press the cover by {1e3 * depth:.3g} mm, more than its "
+            f"{1e3 * thickness[0]:g} mm; raise it to {most / thickness[0] ** 1.5:.3g} N/m^1.5",
+        )
 
 
-def _indifferent(
-    setting: _Setting, active: Sequence[int], postures: Array, springs: Array
-) -> Array:
-    scenarios, study = setting.scenarios, setting.study
-    places = np.array([scenarios[i] for i in active])
-    numbers = np.array([scenarios.numbers(scenarios[i], setting.timing.step) for i in active])
-    limits = np.array([scenarios.limit(scenarios[i]) for i in active])
+def _decisive(setting: Setting, state: _State) -> Setting:
+    """Return the setting with the scenarios alone that decided."""
+    places = np.array([setting.scenarios[i] for i in state.active])
+    rows = np.unique(places[:, :6], axis=0)
+    return replace(setting, scenarios=replace(setting.scenarios, rows=rows))
 
-    def share(springs: Array) -> float:
-        x = np.column_stack([postures[places[:, 0]], np.tile(np.log10(springs), (len(places), 1))])
-        force = np.empty(len(places))
-        for point in np.unique(places[:, 1]):
-            at = np.flatnonzero(places[:, 1] == point)
-            force[at] = largest_forces(setting.program, int(point), x[at], numbers[at])
-        return float((force / limits).max())
 
-    def keeps(springs: Array) -> bool:
-        worst = setting.deflections(postures, springs).max()
-        return bool(worst <= study.max_deflection * (1 + KEEPS))
+def _indifferent(setting: Setting, state: _State) -> Array:
+    study = setting.study
+    decisive = setting if study.objective.all_scenarios else _decisive(setting, state)
 
-    return indifferent_ranges(study, springs, share, keeps)
+    def cost(v: Array) -> float:
+        value = decisive.value(Hardening(v, state.at.postures))[0]
+        return 1 / value if study.objective.more_is_better else value
+
+    def keeps(v: Array) -> bool:
+        parted = setting.limits.parted(v)
+        return all(largest_share(study, q, *parted) <= 1 + KEEPS for q in state.at.postures)
+
+    return indifferent_ranges(setting.limits, state.at.v, cost, keeps)
+
+
+def _bought(setting: Setting, state: _State) -> tuple[Bought, _State]:
+    """Take springs of the catalogue instead; the postures stay."""
+    choice = bought(setting, _decisive(setting, state), state.at, state.worst)
+    return choice, replace(state, at=choice.at, worst=choice.worst)

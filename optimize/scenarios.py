@@ -15,6 +15,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .impact_program import impact_numbers
 from .poses import Candidate
+from .study import transient_limit
 
 Indices = NDArray[np.int64]
 """Rows of places on the axes, in the order of ``Scenario``."""
@@ -103,8 +104,8 @@ class Scenarios:
         )
 
     def limit(self, one: Scenario) -> float:
-        """Return the force limit of what is hit [N]."""
-        return self.contacts[one.contact].region.force_limit
+        """Return the force that reaches a transient limit of what is hit [N]."""
+        return transient_limit(self.contacts[one.contact])
 
     def describe(self, one: Scenario) -> dict[str, object]:
         """Return a scenario in words and numbers."""

@@ -12,6 +12,7 @@ from softimpact.symbolic.robot.rigid import Array
 from .impact_program import NUMBERS
 from .nlp import Program
 from .scenarios import Indices, Scenario, Scenarios
+from .study import transient_limit
 
 CHUNK = 100
 """Impacts simulated in one call."""
@@ -42,7 +43,8 @@ def screen(
     program: Program,
     scenarios: Scenarios,
     postures: Array,
-    springs: Array,
+    y: Array,
+    speeds: Array | None,
     step: float,
     begin: int,
     end: int,
@@ -53,19 +55,15 @@ def screen(
         program: functions of the impacts, one for each contact point.
         scenarios: all of them.
         postures: of each pose, P×n [rad].
-        springs: joint stiffness, length n [N·m/rad].
+        y: log10 of what impacts feel of the hardware.
+        speeds: factor on the speed of all, or of each scenario; None where speeds stay.
         step: time step of the impacts [s].
         begin: number of the first scenario.
         end: number after that of the last.
     """
     places = scenarios.at(begin, end)
-    x = np.column_stack([postures[places[:, 0]], np.tile(np.log10(springs), (len(places), 1))])
-    limits = np.array([contact.region.force_limit for contact in scenarios.contacts])
-    numbers = numbers_of(scenarios, places, step)
-    force = np.empty(len(places))
-    for point in np.unique(places[:, 1]):
-        at = np.flatnonzero(places[:, 1] == point)
-        force[at] = largest_forces(program, int(point), x[at], numbers[at])
+    force = forces_at(program, scenarios, postures, y, speeds, step, begin, end)
+    limits = np.array([transient_limit(contact) for contact in scenarios.contacts])
     share = force / limits[places[:, 3]]
     kept: dict[tuple[int, ...], Screened] = {}
     for i in np.argsort(-share):
@@ -75,6 +73,30 @@ def screen(
         if len(kept) == KEPT:
             break
     return list(kept.values())
+
+
+def forces_at(
+    program: Program,
+    scenarios: Scenarios,
+    postures: Array,
+    y: Array,
+    speeds: Array | None,
+    step: float,
+    begin: int,
+    end: int,
+) -> Array:
+    """Return the largest peak of each of some scenarios [N]; arguments as ``screen``."""
+    places = scenarios.at(begin, end)
+    x = np.column_stack([postures[places[:, 0]], np.tile(y, (len(places), 1))])
+    if speeds is not None:
+        which = np.arange(begin, end) // len(scenarios.motors) if speeds.size > 1 else 0
+        x = np.column_stack([x, np.broadcast_to(np.log10(speeds[which]), len(places))])
+    numbers = numbers_of(scenarios, places, step)
+    force = np.empty(len(places))
+    for point in np.unique(places[:, 1]):
+        at = np.flatnonzero(places[:, 1] == point)
+        force[at] = largest_forces(program, int(point), x[at], numbers[at])
+    return force
 
 
 def numbers_of(scenarios: Scenarios, places: Indices, step: float) -> Array:
@@ -95,7 +117,7 @@ def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Ar
     Args:
         program: its functions.
         point: that hits.
-        x: posture and log10 k_s, m×2n.
+        x: posture, and log10 of what impacts feel of the hardware, a row each.
         numbers: of the impacts, m×``NUMBERS``.
     """
     count = len(x)

@@ -12,8 +12,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue, JointKind
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import tip_pose_error
-from .poses import tip_pose
+from .tip_pose import tip_pose, tip_pose_error
 
 CORRECTIONS = 20
 """Newton steps back to the task at most."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -13,11 +13,13 @@ import numpy as np
 from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import deflections, tip_pose_error
-from .poses import tip_pose
-from .repair import largest_deflection
-from .solve import Mode, quiet
+from .bounds import Deflection
+from .evaluation import largest_deflection
+from .hardware import Hardware, Machine
+from .solve import Mode
+from .solver_options import quiet
 from .study import Study
+from .tip_pose import tip_pose, tip_pose_error
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,14 +54,16 @@ def stiffest(study: Study, q: Array, mode: Mode) -> Stiffest:
     free_pose = np.full(6, np.inf if held else 0.0)
     least = np.concatenate([q if held else lower, np.log10(study.lower), [0.0]])
     most = np.concatenate([q if held else upper, np.log10(study.upper), [np.inf]])
-    solver = _solver(study.model, len(study.forces))
+    deflection = replace(study.deflection, most=1.0)
+    solver = _solver(study.model, deflection, study.margin)
+    loads = len(study.forces)
     found = solver(
         x0=np.concatenate([q, np.log10(study.upper), [1.0]]),
-        p=np.concatenate([position, rotation.ravel(order="F"), (study.forces / unit).ravel()]),
+        p=np.concatenate([position, rotation.ravel(order="F"), [unit]]),
         lbx=least,
         ubx=most,
-        lbg=np.concatenate([-free_pose, np.full(len(study.forces), -np.inf)]),
-        ubg=np.concatenate([free_pose, np.zeros(len(study.forces))]),
+        lbg=np.concatenate([-free_pose, np.full(loads, -np.inf)]),
+        ubg=np.concatenate([free_pose, np.zeros(loads)]),
     )
     x = np.clip(np.array(found["x"]).ravel(), least, most)
     design = Stiffest(x[:n], 10 ** x[n:-1], largest_deflection(study, x[:n], 10 ** x[n:-1]))
@@ -69,16 +73,17 @@ def stiffest(study: Study, q: Array, mode: Mode) -> Stiffest:
 
 
 @lru_cache(maxsize=8)
-def _solver(model: ImpactModel, wrenches: int) -> ca.Function:
-    """Ipopt on min t with |deflection|² ≤ t for each force."""
+def _solver(model: ImpactModel, deflection: Deflection, margin: float) -> ca.Function:
+    """Ipopt on min t with (deflection/unit)² ≤ t under each load."""
     n = model.robot.n
-    q, s, t = ca.SX.sym("q", n), ca.SX.sym("s", n), ca.SX.sym("t")
+    q, s, t, unit = ca.SX.sym("q", n), ca.SX.sym("s", n), ca.SX.sym("t"), ca.SX.sym("unit")
     position, rotation = ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)
-    forces = ca.SX.sym("forces", 3, wrenches)
-    squares = ca.sum1(deflections(model, q, 10**s, forces) ** 2).T
+    hardware = replace(Hardware.of(model), springs=10**s)
+    machine = Machine.of(model, hardware, margin=margin)
+    squares = (deflection.figures(machine, q) / unit) ** 2
     problem: dict[str, Any] = {
         "x": ca.vertcat(q, s, t),
-        "p": ca.vertcat(position, ca.vec(rotation), ca.vec(forces)),
+        "p": ca.vertcat(position, ca.vec(rotation), unit),
         "f": t,
         "g": ca.vertcat(tip_pose_error(model, q, position, rotation), squares - t),
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -25,24 +25,29 @@ from softimpact.symbolic import (
     chain_to,
     drives,
     impact_model,
+    limits_of,
     load_robot,
     unit_direction,
 )
-from softimpact.symbolic.impact.drives import PerJoint, per_joint, require_rotors
+from softimpact.symbolic.impact.drives import PerJoint, require_rotors
 from softimpact.symbolic.robot.rigid import Array
 
-from .hardware import joint_groups
+from .bounds import Bound, Deflection
+from .hardware import Motion
+from .objectives import Objective, WorstForce
 from .study_file import (
     ParetoSection,
     PoseSection,
     RobotSection,
     ScenarioSection,
     ScenariosSection,
-    StiffnessSection,
     StudyFile,
     read_study_file,
 )
 from .study_motors import motors_of
+from .study_numbers import catalogue_of, moments_of, stiffness_of
+from .study_parts import asked_bounds, asked_objective, asked_variables, require_fit
+from .variables import JointStiffness, Range, Variable, joint_groups
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +84,14 @@ class Study:
         forces: on the tip, k×3 [N].
         max_deflection: of the springs under each force [m].
         levels: at which a Pareto front is sought, as the file has it.
+        moments: on the tip beside each force, k×3 [N·m].
+        payload: point mass at the tip whose weight bends the springs, too [kg].
+        sag: whether the links' weight does.
+        margin: share by which a spring may miss its stiffness and all bounds are still kept.
+        other_bounds: beside the deflection.
+        other_variables: of the hardware beside the springs.
+        objective: what is made small.
+        catalogue: stiffnesses that can be bought [N·m/rad]; empty for any.
         task_pose: the pose that fixes where the tip is held.
         exact: whether poses are moved to where they hold the tip exactly there.
         poses: all candidates.
@@ -105,11 +118,91 @@ class Study:
     exact: bool
     poses: tuple[Pose, ...]
     scenarios: ScenariosSection | tuple[ScenarioSection, ...] | None = None
+    moments: Array | None = None
+    payload: float = 0.0
+    sag: bool = False
+    margin: float = 0.0
+    other_bounds: tuple[Bound, ...] = ()
+    other_variables: tuple[Variable, ...] = ()
+    objective: Objective = field(default_factory=WorstForce)
+    catalogue: tuple[float, ...] = ()
 
     @property
     def robot(self) -> Robot:
         """The robot, a chain to its tip."""
         return self.model.robot
+
+    @property
+    def deflection(self) -> Deflection:
+        """The bound on accuracy."""
+        moments = () if self.moments is None else _rows(self.moments)
+        return Deflection(self.max_deflection, _rows(self.forces), moments, self.payload, self.sag)
+
+    @property
+    def bounds(self) -> tuple[Bound, ...]:
+        """All bounds, that on the deflection first."""
+        return (self.deflection, *self.other_bounds)
+
+    @property
+    def variables(self) -> tuple[Variable, ...]:
+        """All variables of the hardware, the springs first."""
+        ends = (tuple(each.tolist()) for each in (self.lower, self.upper, self.nominal))
+        return (JointStiffness(self.groups, *ends), *self.other_variables)
+
+    @property
+    def range(self) -> Range:
+        """Names, limits and start of all variables' values, in their order."""
+        ranges = [(variable.kind, variable.range(self.model)) for variable in self.variables]
+        names = [
+            name if kind in (JointStiffness.kind, name) else f"{kind} of {name}"
+            for kind, each in ranges
+            for name in each.names
+        ]
+        lower, upper, start = (
+            np.concatenate([getattr(each, end) for _, each in ranges])
+            for end in ("lower", "upper", "start")
+        )
+        return Range(tuple(names), lower, upper, start)
+
+    @property
+    def limit(self) -> float:
+        """Largest force that what is hit may bear: its limits of force and energy [N]."""
+        return transient_limit(self.contact)
+
+    @property
+    def motions(self) -> tuple[Motion, ...]:
+        """The motions that the study's impacts ask of the robot, each at its greatest speed."""
+        fastest: dict[tuple[str, tuple[float, ...]], float] = {}
+        for point, direction, speed in self._impacts():
+            key = point, tuple(unit_direction(direction).tolist())
+            fastest[key] = max(speed, fastest.get(key, 0.0))
+        return tuple(
+            Motion(self.robot.frame(point).name, (speed * x, speed * y, speed * z))
+            for (point, (x, y, z)), speed in fastest.items()
+        )
+
+    def _impacts(self) -> Iterator[tuple[str, Any, float]]:
+        """Yield point, direction and speed of all that the file asks for."""
+        asked, own = self.scenarios, self.direction.tolist()
+        if isinstance(asked, tuple):
+            for one in asked:
+                yield one.point or self.model.tip, one.direction or own, one.speed or self.speed
+        elif asked is not None:
+            speed = max(asked.speeds or [self.speed])
+            for point in asked.points or [self.model.tip]:
+                for direction in asked.directions or [own]:
+                    yield point, direction, speed
+        else:
+            yield self.model.tip, own, self.speed
+
+
+def _rows(matrix: Array) -> tuple[tuple[float, float, float], ...]:
+    return tuple((float(x), float(y), float(z)) for x, y, z in matrix)
+
+
+def transient_limit(contact: Contact) -> float:
+    """Return the force that reaches a body's transient limits, of force and energy [N]."""
+    return limits_of(contact.region, contact.clamped).transient.force
 
 
 def load_study(path: str | Path, overrides: dict[str, dict[str, Any]] | None = None) -> Study:
@@ -142,7 +235,7 @@ def build_study(file: StudyFile, source: Path) -> Study:
     """Return the study that a file describes; raises InvalidValue, which names file and field."""
     robot = robot_of_study(file.robot, source)
     with _naming(source, "stiffness", "lower"):
-        lower, upper, nominal = _stiffness(robot, file.stiffness)
+        lower, upper, nominal = stiffness_of(robot, file.stiffness)
     with _naming(source, "robot", "rotor_inertia"):
         model = _model(robot, file, nominal)
         if file.motors.kind != "driven":
@@ -157,6 +250,17 @@ def build_study(file: StudyFile, source: Path) -> Study:
         region = body_region(file.impact.region)
     with _naming(source, "poses", "q"):
         poses = tuple(_pose(robot, pose) for pose in file.poses)
+    with _naming(source, "accuracy", "moments"):
+        moments = moments_of(file.accuracy)
+    with _naming(source, "hardware", "variables"):
+        variables = asked_variables(file.hardware, model)
+    with _naming(source, "hardware", "catalogue"):
+        catalogue = catalogue_of(file.hardware.catalogue, robot, groups, lower, upper)
+    with _naming(source, "bounds", "bounds"):
+        bounds = asked_bounds(file.bounds)
+    with _naming(source, "objective", "kind"):
+        objective = asked_objective(file.objective)
+        require_fit(objective, bounds)
     for pose in poses:
         with _naming(source, "impact", f"direction at pose '{pose.name}'"):
             approach_velocity(model, pose.q, direction)
@@ -180,6 +284,14 @@ def build_study(file: StudyFile, source: Path) -> Study:
         exact=file.task.exact,
         poses=poses,
         scenarios=tuple(file.scenarios) if isinstance(file.scenarios, list) else file.scenarios,
+        moments=moments,
+        payload=file.accuracy.payload,
+        sag=file.accuracy.sag,
+        margin=file.accuracy.margin,
+        other_bounds=bounds,
+        other_variables=variables,
+        objective=objective,
+        catalogue=catalogue,
     )
 
 
@@ -240,23 +352,6 @@ def _model(robot: Robot, file: StudyFile, nominal: Array) -> ImpactModel:
         damping_gain=motors.damping_gain,
     )
     return impact_model(robot, drives_=built)
-
-
-def _stiffness(robot: Robot, section: StiffnessSection) -> tuple[Array, Array, Array]:
-    """Return lower and upper bounds and the nominal stiffness, length n each."""
-    lower = per_joint(robot, "lower", section.lower)
-    upper = per_joint(robot, "upper", section.upper)
-    nominal = per_joint(robot, "nominal", section.nominal)
-    for joint, low, high, value in zip(robot.joint_names, lower, upper, nominal, strict=True):
-        if low > high:
-            raise InvalidValue(
-                "lower", f"lower bound {low:g} is above the upper {high:g} at joint '{joint}'"
-            )
-        if not low <= value <= high:
-            raise InvalidValue(
-                "nominal", f"{value:g} at joint '{joint}' is outside its bounds [{low:g}, {high:g}]"
-            )
-    return lower, upper, nominal
 
 
 def _pose(robot: Robot, section: PoseSection) -> Pose:

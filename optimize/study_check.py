@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Sequence
 from copy import deepcopy
@@ -14,6 +13,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.errors import did_you_mean
 
 from .study import build_study, robot_of_study
 from .study_file import RobotSection, StudyFile, read_toml
@@ -121,8 +121,7 @@ def _of_form(fault: dict[str, Any]) -> Fault:
         field, _, words = reason.partition(": ")
         return tuple(field.split(".")), words
     if fault["type"] == "extra_forbidden":
-        near = difflib.get_close_matches(str(place[-1]), _fields_of(place[:-1]), 1)
-        reason = "unknown" + (f"; did you mean '{near[0]}'?" if near else "")
+        reason = f"unknown{did_you_mean(str(place[-1]), _fields_of(place[:-1]))}"
     elif fault["type"] == "missing":
         reason = "is missing"
     return place, reason

@@ -55,9 +55,15 @@ class MotorsSection(_Section):
 
 
 class HardwareSection(_Section):
-    """Which variables of the hardware are sought: joint stiffness, each, equal or in groups."""
+    """Which variables of the hardware are sought: joint stiffness, each, equal or in groups.
+
+    Other fields are tables of the variables in ``optimize/variables``.
+    """
+
+    model_config = ConfigDict(extra="allow", frozen=True, strict=True)
 
     joint_stiffness: Literal["each", "equal"] | list[list[str]] = "each"
+    catalogue: Annotated[list[Positive], Field(min_length=1)] | None = None
 
 
 class ScenariosSection(_Section):
@@ -92,10 +98,14 @@ class StiffnessSection(_Section):
 
 
 class AccuracySection(_Section):
-    """Forces on the tip [N] and how far [m] the springs may give way under each."""
+    """Loads on the tip [N, N·m, kg] and how far [m] the springs may give way under each."""
 
     forces: Annotated[list[Vector3], Field(min_length=1)]
     max_deflection: Positive
+    moments: Annotated[list[Vector3], Field(min_length=1)] | None = None
+    payload: NotNegative = 0.0
+    sag: bool = False
+    margin: Annotated[float, Field(ge=0, lt=1)] = 0.0
 
 
 class ParetoSection(_Section):
@@ -140,6 +150,8 @@ class StudyFile(_Section):
     )
     stiffness: StiffnessSection
     accuracy: AccuracySection
+    bounds: dict[str, Any] = {}
+    objective: dict[str, Any] = {}
     pareto: ParetoSection = ParetoSection()
     task: TaskSection
     poses: Annotated[list[PoseSection], Field(min_length=1)]

@@ -10,8 +10,9 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+from .ipopt import Bounds, Instance
 from .nlp import Program
-from .solve import Bounds, Instance, Outcome, Start, better, preference, solve
+from .solve import Outcome, Start, better, preference, solve
 from .stiffest import Stiffest
 
 

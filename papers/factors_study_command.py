@@ -43,7 +43,7 @@ def factors_study(study: o.StudyFile, out: o.Out, tip: Tips = None, json: o.Json
 
 
 def _print(found: FactorStudy, folder: Path) -> None:
-    from softimpact.studio.output import print_table
+    from softimpact.studio.output import print_table, say
 
     rows = []
     for (tip, name), factors in found.factors.items():
@@ -66,4 +66,4 @@ def _print(found: FactorStudy, folder: Path) -> None:
         ("tip", "rotors", "least", "most", "most on the self-motion", "joint that matters most"),
         rows,
     )
-    typer.echo(f"\nResults and figures: {folder}")
+    say(f"\nResults and figures: {folder}")

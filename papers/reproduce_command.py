@@ -140,9 +140,7 @@ def _record(results: Results, comparisons: Any) -> dict[str, Any]:
 
 
 def _print(record: dict[str, Any], out: Path) -> None:
-    from rich.console import Console
-
-    from softimpact.studio.output import print_table
+    from softimpact.studio.output import print_table, say
 
     if "comparisons" in record:
         _print_verdicts("Printed numbers of MSM", record["verdicts"])
@@ -160,7 +158,7 @@ def _print(record: dict[str, Any], out: Path) -> None:
             ("source", "statement", "tip", "rotors", "ours", "verdict"),
             [(x.source, x.claim, x.tip, x.rotors, x.ours, x.verdict) for x in others],
         )
-    Console(soft_wrap=True).print(f"\nReports, figures and numbers: {out}")
+    say(f"\nReports, figures and numbers: {out}")
 
 
 def _print_verdicts(title: str, verdicts: dict[str, int]) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import logging
 from typing import get_args
 
 import numpy as np
@@ -20,6 +21,8 @@ from .full import full_scene
 from .history import HORIZON, PRESSED_UNTIL, Fidelity, ImpactHistory
 from .linear_stages import linear_scene, one_mass_scene, two_mass_scene
 from .scene import Scene
+
+LOGGER = logging.getLogger(__name__)
 
 
 def simulate_impact(
@@ -69,6 +72,8 @@ def simulate_impact(
     contact.check()
     arrival = arrival_of(model, approach)
     what = Motors("servo" if model.drives.has_gains else "free") if motors is None else motors
+    kind = what.kind if isinstance(what, Motors) else "of the papers' controller"
+    LOGGER.info("simulate at %g m/s, model %s, motors %s", arrival.speed, fidelity, kind)
     scene = _scene(model, arrival, contact, fidelity, what, order, end, tolerance)
     follows = contact.clamped and horizon is not None and pressing
     course = course_of(scene, max(horizon, PRESSED_UNTIL) if follows and horizon else horizon)

@@ -13,7 +13,7 @@ def check(study: o.StudyFile, json: o.Json = False) -> None:
     from softimpact.optimize.study import load_study
     from softimpact.optimize.study_check import study_problems
 
-    from .output import print_json, print_warnings
+    from .output import print_json, print_warnings, say
 
     problems = study_problems(study)
     if json:
@@ -27,4 +27,4 @@ def check(study: o.StudyFile, json: o.Json = False) -> None:
     found = load_study(study)
     print_warnings(found.robot.warnings)
     if not json:
-        typer.echo(f"{study}: nothing is wrong; {found.robot.name}, {len(found.poses)} poses")
+        say(f"{study}: nothing is wrong; {found.robot.name}, {len(found.poses)} poses")

@@ -77,10 +77,10 @@ def _robust(study: Study, folder: Path, json: bool) -> None:
     from softimpact.optimize.study_scenarios import scenarios_of
 
     from .design_report import GENERATOR
-    from .output import failures_as_json, print_json, write_json
+    from .output import failures_as_json, print_json, say, write_json
     from .progress import optimiser_bar
     from .results_folder import RESULTS, replaced_folder
-    from .robust_report import robust_in_words, robust_record
+    from .robust_report import designed_model, robust_in_words, robust_record
 
     asked, scenarios = study.scenarios, scenarios_of(study)
     free = isinstance(asked, ScenariosSection) and asked.posture == "free"
@@ -94,14 +94,14 @@ def _robust(study: Study, folder: Path, json: bool) -> None:
     record = robust_record(found)
     with replaced_folder(folder, GENERATOR) as fresh:
         write_json(fresh / RESULTS, record)
-        model = study.model.with_springs(found.springs)
+        model = designed_model(found)
         generate_package(model.robot, fresh / "c", drives_=model.drives)
     if json:
         print_json({"out": folder, **record})
         return
     for line in robust_in_words(found):
-        typer.echo(line)
-    typer.echo(f"Results and the C package: {folder}")
+        say(line)
+    say(f"Results and the C package: {folder}")
 
 
 def _modes(name: str, study: Study) -> tuple[Mode, ...]:
@@ -148,11 +148,8 @@ def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:
 
 
 def _print(report: DesignReport, folder: Path) -> None:
-    from rich.console import Console
-
     from .design_tables import print_design
+    from .output import say
 
     print_design(report)
-    Console(soft_wrap=True, highlight=False).print(
-        f"\nResults, figures and the C package: {folder}"
-    )
+    say(f"\nResults, figures and the C package: {folder}")

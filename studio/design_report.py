@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from softimpact.optimize import Design, Gains, Outcome, PoseResult, Study
+from softimpact.optimize.answers import by_name
 from softimpact.optimize.solve import preference
 from softimpact.simulate import ImpactHistory
 from softimpact.simulate.band import Band
@@ -83,8 +84,8 @@ class DesignReport:
 
     @property
     def limit(self) -> float:
-        """Force limit of the body region [N]."""
-        return self.study.contact.region.force_limit
+        """Force that reaches a limit of the body region, of force or energy [N]."""
+        return self.study.limit
 
 
 def best_outcome(result: PoseResult) -> Outcome:
@@ -154,9 +155,7 @@ def as_record(report: DesignReport) -> dict[str, Any]:
             "speed": study.speed,
             "motors": design.answers.worst_motors.kind,
         },
-        "indifferent": dict(
-            zip(study.robot.joint_names, design.answers.indifferent.tolist(), strict=True)
-        ),
+        "indifferent": by_name(study, design.answers.indifferent),
         "prices": design.answers.prices,
         "conflicts": [],
         "reference": design.answers.reference,

@@ -10,6 +10,7 @@ from softimpact.optimize import Outcome
 from softimpact.optimize.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
 
+from .answers_in_words import answers_in_words
 from .design_report import (
     DesignReport,
     RankedPose,
@@ -19,7 +20,7 @@ from .design_report import (
     peak_in_words,
     reactions_in_words,
 )
-from .output import Cell, print_table
+from .output import Cell, print_table, say
 
 COLUMNS = (
     "rank",
@@ -44,7 +45,7 @@ def print_design(report: DesignReport) -> None:
     study = report.study
     contact = study.contact
     held = "clamped" if contact.clamped else "free to give way"
-    console = Console(soft_wrap=True, highlight=False)
+    console = Console()
     fits = not console.is_terminal or console.width >= WIDE
     columns = COLUMNS if fits else COLUMNS[:-1]
     print_table(
@@ -54,9 +55,9 @@ def print_design(report: DesignReport) -> None:
         [_row(pose)[: len(columns)] for pose in report.poses],
     )
     if not fits:
-        console.print(f"joint stiffness: in results.json, or here from {WIDE} columns on")
+        say(f"joint stiffness: in results.json, or here from {WIDE} columns on")
     for line in [*_notes(report), *_winner(report)]:
-        console.print(line)
+        say(line)
 
 
 def _row(pose: RankedPose) -> list[Cell]:
@@ -145,13 +146,10 @@ def _meaning(report: DesignReport) -> list[str]:
     """What binds, which numbers matter, and whether the nominal springs are a fair reference."""
     study, answers = report.study, report.design.answers
     bound, reference = study.max_deflection, answers.reference
-    ranges = zip(study.robot.joint_names, answers.indifferent, strict=True)
-    named = ", ".join(f"{name} {low:.0f}–{high:.0f}" for name, (low, high) in ranges)
     lines = [
         f"deflection {1e3 * answers.deflection:.4g} mm of {1e3 * bound:.4g} mm; motors "
         f"{answers.worst_motors.kind} are the worst",
-        f"costs less than 0.5 %, one at a time: {named} N·m/rad",
-        *(f"{price.bound}: {price.room} buys {price.newtons:.2g} N" for price in answers.prices),
+        *answers_in_words(study, answers.indifferent, answers.prices),
     ]
     if not np.array_equal(reference.springs, study.nominal):
         saved = 100 * (1 - report.design.winner.force / reference.force)

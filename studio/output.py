@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import math
+import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -22,6 +25,24 @@ Cell = float | str | None
 
 ENDLESS = 1000
 """Columns of a line that nobody folds."""
+
+AS_CSV = ContextVar("AS_CSV", default=False)
+"""Whether tables are for machines."""
+
+
+@contextmanager
+def tables_as_csv(wanted: bool) -> Iterator[None]:
+    """Print tables as CSV to stdout, and what else is said to stderr, if that is wanted."""
+    token = AS_CSV.set(wanted)
+    try:
+        yield
+    finally:
+        AS_CSV.reset(token)
+
+
+def say(line: str) -> None:
+    """Print a line for people to stdout; to stderr where stdout is for a machine."""
+    typer.echo(line, err=AS_CSV.get())
 
 
 def plain(value: Any) -> Any:
@@ -82,7 +103,14 @@ def write_json(path: Path, result: Any) -> None:
 
 
 def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    """Print a table to stdout; numbers to four digits, what does not apply as a dash."""
+    """Print a table to stdout; numbers to four digits, what does not apply as a dash.
+
+    As CSV, numbers are in full, what does not apply is empty, and each table has its title as a
+    comment (``#``) above it and an empty line after it.
+    """
+    if AS_CSV.get():
+        _print_csv(title, columns, rows)
+        return
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for column in columns:
         table.add_column(Text(column), overflow="fold")
@@ -94,6 +122,20 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell
         console.width = max(console.width, console.measure(table, options=unbounded).maximum)
     console.print(Text(title, style="table.title"), soft_wrap=True)
     console.print(table)
+
+
+def _print_csv(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    print(f"# {' '.join(title.split())}")
+    writer.writerow(" ".join(column.split()) for column in columns)
+    writer.writerows([_csv_cell(cell) for cell in row] for row in rows)
+    print()
+
+
+def _csv_cell(cell: Cell) -> Any:
+    if cell is None:
+        return ""
+    return " ".join(cell.split()) if isinstance(cell, str) else plain(cell)
 
 
 def shown(cell: Cell) -> str:

@@ -87,13 +87,10 @@ def _write(report: ParetoReport, record: dict[str, Any], folder: Path) -> None:
 
 
 def _print(report: ParetoReport, folder: Path) -> None:
-    from rich.console import Console
-
-    from .output import print_table
+    from .output import print_table, say
     from .pareto_words import COLUMNS, heading, in_words, rows
 
     print_table(heading(report), COLUMNS, rows(report))
-    console = Console(soft_wrap=True, highlight=False)
     for line in in_words(report):
-        console.print(line)
-    console.print(f"\nResults, table, report and figures: {folder}")
+        say(line)
+    say(f"\nResults, table, report and figures: {folder}")

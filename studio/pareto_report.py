@@ -51,7 +51,7 @@ class ParetoReport:
     @property
     def limit(self) -> float:
         """Force limit of the body region [N]."""
-        return self.study.contact.region.force_limit
+        return self.study.limit
 
     def at(self, front: str, level: float) -> CheckedPoint | None:
         """Return the point that was sought with a bound [m], None if another beats it."""

@@ -14,7 +14,7 @@ from softimpact.simulate.program import Danger, SafeProgram, worst_moments
 from softimpact.simulate.trajectory import Trajectory
 from softimpact.symbolic import ImpactModel, Motors
 
-from .output import print_table
+from .output import print_table, say
 
 GENERATOR = "softimpact program"
 
@@ -136,4 +136,4 @@ def print_program(found: ProgramResult, out: Path | None) -> None:
         ],
     )
     if out is not None:
-        print(f"wrote {out}")
+        say(f"wrote {out}")

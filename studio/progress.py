@@ -3,13 +3,48 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from time import monotonic
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    SpinnerColumn,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+)
 
-from softimpact.toolchain import c_compiler
+PATIENCE = 2.0
+"""Time after which a terminal shows that a command is at work [s]."""
+
+
+@contextmanager
+def working(what: str | None) -> Iterator[None]:
+    """Show a clock on stderr after ``PATIENCE``, if that is a terminal and there is something."""
+    console = Console(stderr=True)
+    if what is None or not console.is_terminal:
+        yield
+        return
+    clock = Progress(
+        SpinnerColumn(), TextColumn(what), TimeElapsedColumn(), console=console, transient=True
+    )
+    clock.add_task(what, total=None)
+    timer = threading.Timer(PATIENCE, clock.start)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+        timer.join()
+        clock.stop()
+
 
 BETWEEN_LINES = 10.0
 """Seconds between two lines of progress in a file or a pipe."""
@@ -52,6 +87,8 @@ def progress_bar() -> Progress:
 
 def optimiser_bar() -> Progress:
     """Return the bar of an optimiser, and say first if it has no C compiler."""
+    from softimpact.toolchain import c_compiler
+
     bar = progress_bar()
     if c_compiler() is None:
         bar.console.print(

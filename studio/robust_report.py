@@ -3,19 +3,56 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
-from softimpact.optimize.robust import RobustDesign, Worst
+from softimpact.optimize.answers import by_name
+from softimpact.optimize.catalogue import Bought
+from softimpact.optimize.certificate import Worst
+from softimpact.optimize.evaluation import Kept, equipped
+from softimpact.optimize.impact_program import in_series
+from softimpact.optimize.robust import RobustDesign
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.symbolic import impact_model, with_load
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic import Contact, ImpactModel, Robot, impact_model, with_load
+from softimpact.symbolic.robot.rigid import Array, Inertia
 
+from .answers_in_words import answers_in_words
 from .design_report import GENERATOR, inputs, versions
 
-KEEPS = 1 + 1e-5
-"""Deflection over its bound up to which the bound counts as kept."""
+
+def designed_model(design: RobustDesign) -> ImpactModel:
+    """Return the robot with the hardware that was found."""
+    study = design.study
+    hardware = equipped(study, ca.DM(design.springs), design.others)
+    drives = replace(
+        study.model.drives, springs=hardware.springs, rotors=ca.DM(hardware.reflected_rotors)
+    )
+    robot = study.robot
+    if hardware.masses is not None:
+        robot = _scaled(robot, np.array(ca.DM(hardware.masses)).ravel())
+    return impact_model(robot, study.model.tip, drives_=drives)
+
+
+def _scaled(robot: Robot, masses: Array) -> Robot:
+    """Return the robot with each body's inertia times a factor."""
+    joints = []
+    for joint, factor in zip(robot.joints, masses, strict=True):
+        own = joint.inertia
+        scaled = Inertia(factor * own.mass, factor * own.first_moment, factor * own.about_origin)
+        joints.append(replace(joint, inertia=scaled))
+    return replace(robot, joints=tuple(joints))
+
+
+def _covered(design: RobustDesign, contact: Contact) -> Contact:
+    """Return what is hit as the design's cover makes it."""
+    cover = equipped(design.study, ca.DM(design.springs), design.others).cover
+    if cover is None:
+        return contact
+    own = contact.series_stiffness
+    return replace(contact, cover=None, hertz_stiffness=float(in_series(own, ca.DM(cover))))
 
 
 def simulated_worst(design: RobustDesign) -> float:
@@ -23,42 +60,60 @@ def simulated_worst(design: RobustDesign) -> float:
     study, scenarios = design.study, design.scenarios
     one = scenarios[design.worst.index]
     load = scenarios.payloads[one.payload]
-    robot, point = study.robot, scenarios.points[one.point]
+    model = designed_model(design)
+    robot, point = model.robot, scenarios.points[one.point]
     if load:
         robot = with_load(robot, study.model.tip, load)
-    model = impact_model(robot, point, drives_=study.model.with_springs(design.springs).drives)
-    approach = Approach(
-        design.postures[one.pose], scenarios.directions[one.direction], scenarios.speeds[one.speed]
-    )
-    motors, contact = scenarios.motors[one.motors], scenarios.contacts[one.contact]
-    return simulate_impact(model, approach, contact, motors=motors, horizon=study.horizon).peak
+    hit = impact_model(robot, point, drives_=model.drives)
+    speed = scenarios.speeds[one.speed] * _factor(design, design.worst)
+    approach = Approach(design.postures[one.pose], scenarios.directions[one.direction], speed)
+    motors = scenarios.motors[one.motors]
+    contact = _covered(design, scenarios.contacts[one.contact])
+    return simulate_impact(hit, approach, contact, motors=motors, horizon=study.horizon).peak
+
+
+def _factor(design: RobustDesign, worst: Worst) -> float:
+    """Return the factor on the speed of the worst scenario."""
+    if worst.factors is None:
+        return 1.0
+    own = worst.index // len(design.scenarios.motors) if worst.factors.size > 1 else 0
+    return float(worst.factors[own])
 
 
 def robust_record(design: RobustDesign) -> dict[str, Any]:
     """Return a robust design as plain data, for ``results.json``."""
     study, scenarios, worst = design.study, design.scenarios, design.worst
     equal, equal_springs = design.equal
-    names = study.robot.joint_names
+    names = study.range.names[max(study.groups) + 1 :]
     return {
         "generator": GENERATOR,
         "versions": versions(),
         "study": inputs(study),
         "peak_definition": "peak",
+        "objective": {
+            "kind": study.objective.kind,
+            "unit": study.objective.unit,
+            "value": worst.value,
+        },
         "winner": {
             "springs": design.springs,
+            "others": dict(zip(names, design.others.tolist(), strict=True)),
             "postures": {
                 pose.pose.name: q for pose, q in zip(scenarios.poses, design.postures, strict=True)
             },
             "deflection": worst.deflection,
+            "speed_factors": worst.factors,
             "meets_limit": worst.share <= 1,
         },
         "worst_force": worst.force,
         "worst_share": worst.share,
         "worst_scenario": _scenario(design, worst),
         "check": {"nlp": worst.force, "linearised": simulated_worst(design)},
+        "bounds": worst.bounds,
         "before": _other(design, design.before, study.nominal),
         "equal": _other(design, equal, equal_springs),
-        "indifferent": _by_joint(names, design.indifferent),
+        "catalogue": _catalogue(design.bought),
+        "indifferent": by_name(study, design.indifferent),
         "prices": design.prices,
         "conflicts": [],
         "certificate": {
@@ -76,13 +131,17 @@ def robust_record(design: RobustDesign) -> dict[str, Any]:
     }
 
 
-def _by_joint(names: tuple[str, ...], ranges: Array) -> dict[str, list[float]]:
-    return {name: ends.tolist() for name, ends in zip(names, ranges, strict=True)}
+def _catalogue(bought: Bought | None) -> dict[str, Any] | None:
+    if bought is None:
+        return None
+    return {"ideal_springs": bought.ideal, "loss": bought.loss, "tried": bought.tried}
 
 
 def _scenario(design: RobustDesign, worst: Worst) -> dict[str, object]:
     one = design.scenarios[worst.index]
-    return {**design.scenarios.describe(one), "limit": design.scenarios.limit(one)}
+    words = design.scenarios.describe(one)
+    speed = design.scenarios.speeds[one.speed] * _factor(design, worst)
+    return {**words, "speed": speed, "limit": design.scenarios.limit(one)}
 
 
 def _other(design: RobustDesign, worst: Worst, springs: Array) -> dict[str, Any]:
@@ -91,36 +150,34 @@ def _other(design: RobustDesign, worst: Worst, springs: Array) -> dict[str, Any]
         "worst_force": worst.force,
         "worst_share": worst.share,
         "worst_scenario": _scenario(design, worst),
+        "value": worst.value,
         "deflection": worst.deflection,
-        "keeps_bounds": _keeps(design, worst),
+        "keeps_bounds": worst.keeps,
     }
-
-
-def _keeps(design: RobustDesign, worst: Worst) -> bool:
-    return worst.deflection <= design.study.max_deflection * KEEPS
 
 
 def robust_in_words(design: RobustDesign) -> list[str]:
     """Return what was found, a sentence each."""
-    study, worst = design.study, design.worst
+    study, worst, objective = design.study, design.worst, design.study.objective
     equal, springs = design.equal
-    saved = 100 * (1 - worst.share / equal.share)
+    saved = 100 * (1 - worst.value / equal.value) * (-1 if objective.more_is_better else 1)
+    gain = "gains" if objective.more_is_better else "saves"
+    others = zip(study.range.names[max(study.groups) + 1 :], design.others, strict=True)
+    named = ", ".join(f"{name} {value:.4g}" for name, value in others)
     lines = [
         f"{study.title}: {len(design.scenarios)} scenarios",
         f"k_s = [{', '.join(f'{k:.0f}' for k in design.springs)}] N·m/rad",
+        *([named] if named else []),
+        *_bought_in_words(design.bought),
+        f"{objective.kind.replace('_', ' ').capitalize()}: {worst.value:.4g} {objective.unit}",
         f"Worst: {worst.force:.1f} N, {worst.share:.2f} times its limit: {_place(design, worst)}",
-        f"Deflection: {1e3 * worst.deflection:.4g} mm at most, of "
-        f"{1e3 * study.max_deflection:.4g} mm allowed",
+        *(_kept(each) for each in worst.bounds),
         f"Equal proportions, just accurate (k_s = {_range(springs)}): {equal.force:.1f} N, "
-        f"{equal.share:.2f} times; the design saves {saved:.1f} %",
-        f"Before: {design.before.force:.1f} N, {design.before.share:.2f} times, "
-        f"{1e3 * design.before.deflection:.4g} mm"
-        + ("" if _keeps(design, design.before) else ", which breaks the bound on the deflection"),
+        f"{equal.value:.4g} {objective.unit}; the design {gain} {saved:.1f} %",
+        f"Before: {design.before.force:.1f} N, {design.before.value:.4g} {objective.unit}, "
+        f"{1e3 * design.before.deflection:.4g} mm" + _broken(design.before),
     ]
-    ranges = zip(study.robot.joint_names, design.indifferent, strict=True)
-    named = ", ".join(f"{name} {low:.0f}–{high:.0f}" for name, (low, high) in ranges)
-    lines.append(f"Costs less than 0.5 %, one at a time: {named} N·m/rad")
-    lines += [f"{p.bound}: {p.room} buys {p.newtons:.2g} N" for p in design.prices]
+    lines += answers_in_words(study, design.indifferent, design.prices)
     lines.append(
         f"Certificate: all {len(design.scenarios)} scenarios evaluated, none above "
         f"{worst.share:.4f} times its limit; the {len(design.active)} that decide allow no less "
@@ -129,12 +186,37 @@ def robust_in_words(design: RobustDesign) -> list[str]:
     return lines
 
 
+def _bought_in_words(bought: Bought | None) -> list[str]:
+    if bought is None:
+        return []
+    ideal = ", ".join(f"{k:.0f}" for k in bought.ideal)
+    return [
+        f"of the catalogue, the best of {bought.tried} combinations; it costs "
+        f"{100 * bought.loss:.2g} % against springs of any stiffness, k_s = [{ideal}]"
+    ]
+
+
+def _kept(bound: Kept) -> str:
+    scale, unit = (1e3, "mm") if bound.unit == "m" else (1.0, bound.unit)
+    words = "at most" if bound.sense == "most" else "at least"
+    allowed = "allowed" if bound.sense == "most" else "asked"
+    return (
+        f"{bound.name}: {scale * bound.figure:.4g} {unit} {words}, of "
+        f"{scale * bound.limit:.4g} {unit} {allowed}"
+    )
+
+
+def _broken(worst: Worst) -> str:
+    broken = [each.name for each in worst.bounds if each.share > 1 + 1e-5]
+    return f", which breaks {' and '.join(broken)}" if broken else ""
+
+
 def _place(design: RobustDesign, worst: Worst) -> str:
-    words = design.scenarios.describe(design.scenarios[worst.index])
+    words = _scenario(design, worst)
     direction = np.round(np.array(words["direction"], dtype=float), 3).tolist()
     return (
         f"pose {words['pose']}, {words['point']} along {direction} against {words['region']}, "
-        f"{words['payload']:g} kg, {words['speed']:g} m/s, motors {words['motors']}"
+        f"{words['payload']:g} kg, {words['speed']:.4g} m/s, motors {words['motors']}"
     )
 
 

@@ -98,7 +98,7 @@ def report(
         "motors": study.motors,
         "horizon": study.horizon,
         "by": criterion,
-        "limit": study.contact.region.force_limit,
+        "limit": study.limit,
         "winner": ranked[0].name,
         "poses": [{"rank": i + 1, **vars(pose)} for i, pose in enumerate(ranked)],
     }
@@ -106,7 +106,7 @@ def report(
 
 def print_ranking(study: Study, criterion: Criterion, ranked: Sequence[PoseFigures]) -> None:
     """Print a ranking as a table."""
-    limit = study.contact.region.force_limit
+    limit = study.limit
     print_table(
         f"{study.title}: by {criterion}; {study.contact.region.name}, {study.speed:g} m/s, "
         f"limit {limit:g} N",

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
 
 
 class SoftImpactError(Exception):
@@ -30,12 +31,21 @@ class UnsupportedModel(ModelFileError):
     """The description holds something that this version cannot model."""
 
 
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return the end of a message that names what was probably meant; empty where nothing was."""
+    plain = {other.casefold().replace("-", "_"): other for other in known}
+    near = get_close_matches(name.casefold().replace("-", "_"), plain, n=1)
+    return f"; did you mean '{plain[near[0]]}'?" if near else ""
+
+
 class UnknownName(SoftImpactError):
-    """A name that does not exist, with those that do."""
+    """A name that does not exist, with those that do, the nearest one last."""
 
     def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
         self.name, self.known = name, tuple(known)
-        super().__init__(f"unknown {what} '{name}'; known: {', '.join(self.known) or '(none)'}")
+        others = ", ".join(self.known) or "(none)"
+        meant = did_you_mean(name, self.known)
+        super().__init__(f"unknown {what} '{name}'; known: {others}{meant}")
 
 
 class FrameNotFound(UnknownName):

@@ -119,27 +119,29 @@ robot_real robot_two_body_speed(const robot_region *region, robot_real mobility,
 }
 
 /* Modes of a phase. */
-static int modes_of(int motors, const robot_params *p, robot_impact *impact, robot_phase *phase)
+static int modes_of(robot_impact *impact, int which)
 {
+    robot_phase *const phase = &impact->phase[which];
     phase->drift = ROBOT_R(0.0);
     phase->modes.noise = ROBOT_R(0.0);
     phase->damped = false;
     for (int i = 0; i < ROBOT_N; ++i) {
         phase->damping[i] = ROBOT_R(0.0);
     }
-    if (motors == ROBOT_MOTORS_FREE) {
-        return robot_free_modes(&impact->arrival, p, &phase->modes, impact->carried);
+    if (which == ROBOT_LOOSE) {
+        return robot_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     }
-    if (motors == ROBOT_MOTORS_DRIVEN) {
-        return robot_driven_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    if (impact->motors == ROBOT_MOTORS_DRIVEN) {
+        return robot_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < ROBOT_N; ++i) {
-        phase->damping[i] = ROBOT_DAMPING_GAIN(p, i);
+        phase->damping[i] = ROBOT_DAMPING_GAIN(impact->p, i);
         phase->damped = phase->damped || phase->damping[i] > ROBOT_R(0.0);
     }
-    return robot_servo_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    return robot_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
 
+#if !ROBOT_STRUCTURED
 static robot_real mobility_of(const robot_modes *modes)
 {
     robot_real sum = ROBOT_R(0.0);
@@ -148,58 +150,102 @@ static robot_real mobility_of(const robot_modes *modes)
     }
     return sum;
 }
+#endif
+
+/* Times at which a phase begins and ends. */
+static robot_real time_of(const robot_impact *impact, int which)
+{
+    const robot_real horizon = ROBOT_HORIZON(impact->p);
+    const robot_real until = which < impact->last ? ROBOT_REACTION_TIME(impact->p) : horizon;
+    return which > impact->first ? horizon - ROBOT_REACTION_TIME(impact->p) : until;
+}
+
+static void steps_of(robot_impact *impact, int which)
+{
+    robot_phase *const phase = &impact->phase[which];
+    const robot_real time = time_of(impact, which);
+    phase->blurred = phase->modes.noise*time*time > BLURS;
+    robot_phase_steps(impact, time, phase);
+    const robot_real numbers[2] = {phase->level[0].h, phase->level[ROBOT_LEVELS - 1].h};
+    if (robot_check_positive(numbers, 2) != ROBOT_OK) {
+        impact->status = ROBOT_SINGULAR;
+    }
+}
+
+void robot_impact_let_go(robot_impact *impact)
+{
+    if (!impact->phase[ROBOT_LOOSE].ready) {
+        impact->status = modes_of(impact, ROBOT_LOOSE);
+        if (impact->status == ROBOT_OK) {
+            steps_of(impact, ROBOT_LOOSE);
+        }
+    }
+}
+
+/* Mobilities of the contact, and modes where those need them. */
+static void weigh(robot_impact *impact)
+{
+    const robot_real body = impact->gives_way ? ROBOT_R(1.0)/impact->region->effective_mass : ROBOT_R(0.0);
+    robot_real mobility = ROBOT_R(0.0);
+#if ROBOT_STRUCTURED
+    robot_real found[3];
+    impact->status = robot_mobilities(&impact->arrival, impact->p, found);
+    mobility = found[0];
+    impact->together = found[1] + body;
+    impact->rotors = found[2];
+#else
+    for (int k = impact->first; k <= impact->last && impact->status == ROBOT_OK; ++k) {
+        impact->status = modes_of(impact, k);
+        mobility = ROBOT_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    }
+    impact->together = ROBOT_R(0.0);
+    impact->rotors = ROBOT_R(0.0);
+    const bool held = !ROBOT_ELASTIC && impact->last == ROBOT_LED && impact->motors == ROBOT_MOTORS_DRIVEN;
+    if (!(mobility > ROBOT_LEAST_MOBILITY) && !held) {
+        impact->status = ROBOT_SINGULAR;
+    }
+#endif
+    impact->mobility = ROBOT_FMAX(mobility, ROBOT_LEAST_MOBILITY) + body;
+}
 
 int robot_impact_prepare(const robot_region *region, const robot_params *p, int motors,
     robot_real force, robot_impact *impact)
 {
-    const robot_real horizon = ROBOT_HORIZON(p);
     const robot_real reaction = ROBOT_REACTION_TIME(p);
-    const bool released = motors != ROBOT_MOTORS_FREE && reaction < horizon;
-    const bool at_once = released && !(reaction > ROBOT_R(0.0));
-    impact->phases = released && !at_once ? 2 : 1;
-    int status = modes_of(at_once ? ROBOT_MOTORS_FREE : motors, p, impact, &impact->phase[0]);
-    if (status == ROBOT_OK && impact->phases == 2) {
-        status = modes_of(ROBOT_MOTORS_FREE, p, impact, &impact->phase[1]);
-    }
-    if (status != ROBOT_OK) {
-        return status;
-    }
-    const robot_real served = ROBOT_FMIN(reaction, horizon);
-    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
-    impact->stiffness = region->stiffness;
-    impact->damping = region->damping;
-    impact->skin = region->hertz_stiffness;
+    const bool loose = motors == ROBOT_MOTORS_FREE || !(reaction > ROBOT_R(0.0));
+    impact->region = region;
+    impact->p = p;
+    impact->motors = motors;
     impact->gives_way = region->clamped == 0;
-    const robot_real body = impact->gives_way ? ROBOT_R(1.0)/region->effective_mass : ROBOT_R(0.0);
-    robot_real mobility = ROBOT_R(0.0);
-    for (int k = 0; k < impact->phases; ++k) {
-        mobility = ROBOT_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    impact->first = loose ? ROBOT_LOOSE : ROBOT_LED;
+    impact->last = loose || reaction < ROBOT_HORIZON(p) ? ROBOT_LOOSE : ROBOT_LED;
+    impact->status = ROBOT_OK;
+    impact->phase[ROBOT_LED].ready = false;
+    impact->phase[ROBOT_LOOSE].ready = false;
+    weigh(impact);
+    if (impact->status != ROBOT_OK) {
+        return impact->status;
     }
-    const bool moves = mobility > ROBOT_LEAST_MOBILITY;
-    if (!moves && (ROBOT_ELASTIC || motors == ROBOT_MOTORS_FREE || impact->phases == 2)) {
-        return ROBOT_SINGULAR;
-    }
-    impact->mobility = ROBOT_FMAX(mobility, ROBOT_LEAST_MOBILITY) + body;
     const robot_real size =
         force > ROBOT_R(0.0) ? force : robot_two_body_force(region, impact->mobility, -force);
     impact->scale = ROBOT_R(0.4)*size;
+    impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
     impact->smooth = ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped);
-    const robot_real skin_rate = skin_stiffness(region, size)*impact->mobility;
-    for (int k = 0; k < impact->phases; ++k) {
-        const robot_real from = k > 0 ? reaction : ROBOT_R(0.0);
-        const robot_real until = k == 0 && impact->phases == 2 ? reaction : horizon;
-        robot_phase_steps(region, impact->mobility, skin_rate, until - from, k > 0, &impact->phase[k]);
+    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    const robot_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
+    if (!robot_all_finite(numbers, 3) || robot_check_positive(numbers, 3) != ROBOT_OK) {
+        return ROBOT_SINGULAR;
     }
-#if ROBOT_ELASTIC
-    for (int i = 0; i < ROBOT_N; ++i) {
-        impact->springs[i] = ROBOT_SPRING(p, i);
-        impact->rotors[i] = ROBOT_ROTOR(p, i);
+#if ROBOT_STRUCTURED
+    impact->status = modes_of(impact, impact->first);
+    if (impact->status == ROBOT_OK) {
+        steps_of(impact, impact->first);
+    }
+#else
+    for (int k = impact->first; k <= impact->last; ++k) {
+        steps_of(impact, k);
     }
 #endif
-    impact->bound = robot_bound(p, motors, impact);
-    const robot_real numbers[4] = {impact->mobility, impact->scale, impact->phase[0].level[0].h,
-        impact->phase[impact->phases - 1].level[0].h};
-    return robot_all_finite(numbers, 4) && robot_check_positive(numbers, 4) == ROBOT_OK
-        ? ROBOT_OK : ROBOT_SINGULAR;
+    return impact->status;
 }

@@ -6,7 +6,9 @@
  * speed at which contact point and body approach. Kinetic energy is at least u^2/(2 mobility), so that with an
  * energy E in robot and body, f^2 <= 2 E (k + c^2 mobility).
  *
- * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v.
+ * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v; where nothing
+ * but joints' springs pulls only the motion of links, rotors and body that is the contact point's has
+ * to do with it: E = v^2/2 over the mobility of that.
  *
  * Motors that drive or servo: in axes that go on with the motion before, the only one who does work is
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
@@ -23,9 +25,14 @@ static robot_real while_driven(robot_real time, robot_real hold, robot_real damp
     return y*y;
 }
 
-/* r'(M + B) r */
-static robot_real twice_energy(const robot_params *p, const robot_arrival *arrival)
+/* r'(M + B) r, or what of it an impact can take. */
+static robot_real twice_energy(const robot_impact *impact)
 {
+    const robot_params *const p = impact->p;
+    const robot_arrival *const arrival = &impact->arrival;
+    if (impact->together > ROBOT_R(0.0)) {
+        return ROBOT_R(1.0)/impact->together;
+    }
     robot_real sum = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_N; ++i) {
         for (int j = 0; j < ROBOT_N; ++j) {
@@ -54,7 +61,7 @@ static bool is_held_by_nothing(const robot_impact *impact)
             return false;
         }
     }
-    const robot_modes *const modes = &impact->phase[impact->phases - 1].modes;
+    const robot_modes *const modes = &impact->phase[impact->last].modes;
     robot_real largest = ROBOT_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         largest = ROBOT_FMAX(largest, modes->squared[i]);
@@ -70,20 +77,20 @@ static bool is_held_by_nothing(const robot_impact *impact)
     return true;
 }
 
-robot_real robot_bound(const robot_params *p, int motors, const robot_impact *impact)
+robot_real robot_bound(const robot_impact *impact)
 {
     if (!is_held_by_nothing(impact)) {
         return ROBOT_R(0.0);
     }
-    const robot_real hold = impact->stiffness + impact->damping*impact->damping*impact->mobility;
-    const robot_real twice = twice_energy(p, &impact->arrival);
-    if (motors == ROBOT_MOTORS_FREE) {
+    const robot_real hold = impact->hold;
+    const robot_real twice = twice_energy(impact);
+    if (impact->first == ROBOT_LOOSE) {
         return ROBOT_SQRT(twice*hold);
     }
-    const robot_real horizon = ROBOT_HORIZON(p);
-    const robot_real reaction = ROBOT_FMIN(ROBOT_REACTION_TIME(p), horizon);
-    const robot_real always = while_driven(horizon, hold, impact->damping);
-    const robot_real until = while_driven(reaction, hold, impact->damping);
+    const robot_real horizon = ROBOT_HORIZON(impact->p);
+    const robot_real reaction = ROBOT_FMIN(ROBOT_REACTION_TIME(impact->p), horizon);
+    const robot_real always = while_driven(horizon, hold, impact->region->damping);
+    const robot_real until = while_driven(reaction, hold, impact->region->damping);
     const robot_real root = ROBOT_SQRT(ROBOT_R(2.0)*until*reaction) + ROBOT_SQRT(twice);
     return ROBOT_FMIN(always, ROBOT_FMAX(until, root*ROBOT_SQRT(hold)));
 }

@@ -27,14 +27,24 @@ typedef struct {
     robot_real rates[ROBOT_N]; /* joint velocities for an approach of 1 m/s */
 } robot_arrival;
 
-/* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
+/* Matrices over the links alone, and of up to ROBOT_SYSTEM rows. */
+typedef robot_real robot_square[ROBOT_N][ROBOT_N];
+typedef robot_real robot_matrix[ROBOT_SYSTEM][ROBOT_SYSTEM];
+
+/*
+ * Motions of unit mass that do not act on each other: displacement = shape amplitude. Displacements are of
+ * links and motors; of deflections times the root of their springs' stiffness, u, where the motors have
+ * none of their own (driven) or are eliminated (free motors without gravity).
+ */
 typedef struct {
     int count;
+    int rigid; /* the first ones have no frequency */
     robot_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
+    robot_real fastest; /* largest squared frequency that is known, 1/s^2 */
     robot_real squared[ROBOT_MODES]; /* frequency, 1/s^2 */
     robot_real row[ROBOT_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     robot_real start[ROBOT_MODES]; /* rates at first touch of an approach of 1 m/s */
-    robot_real shape[ROBOT_SYSTEM][ROBOT_MODES];
+    robot_real shape[ROBOT_MODES][ROBOT_SYSTEM];
 } robot_modes;
 
 /* One step of a mode: what amplitude, rate and the forces at both ends do. */
@@ -56,9 +66,13 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
+    bool ready;
+    bool blurred; /* too few digits to integrate it */
+    bool settles; /* no energy enters but by the motors' drift: see robot_settled.c */
     robot_modes modes; /* the first `active` ones move, the others stand, bent by the force */
     int active;
     robot_real compliance; /* of those that stand, m/N */
+    robot_real reach; /* of all that vibrate, m/N */
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
     robot_real damping[ROBOT_N];
@@ -69,26 +83,31 @@ typedef struct {
 /* Everything that does not depend on the speed. */
 typedef struct {
     robot_arrival arrival;
-    robot_real stiffness, damping, skin; /* k_h, c_h, k_f */
+    const robot_region *region;
+    const robot_params *p;
+    int motors;
     bool gives_way;
     robot_real mobility; /* of the contact, 1/kg */
+    robot_real together; /* of links and rotors as one, and of the body, 1/kg */
+    robot_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
+    robot_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
+    robot_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
     robot_real scale; /* of forces, N: what bends are measured by */
-    bool blurred; /* too few digits to integrate it */
     robot_real smooth; /* 1, or less where the damper makes forces jump */
-    int phases; /* one, or two where motors are released */
-    robot_phase phase[2];
-#if ROBOT_ELASTIC
-    robot_real springs[ROBOT_N]; /* k_s */
-    robot_real rotors[ROBOT_N]; /* B */
-#endif
-    robot_real carried[ROBOT_N]; /* what deflections move of the contact point, rotors being free */
-    robot_real bound; /* no force is larger than this times the speed, N s/m; 0: no bound */
+    int first, last; /* phases of an impact */
+    int status; /* of what was prepared */
+    robot_phase phase[2]; /* ROBOT_LED and ROBOT_LOOSE */
+    robot_real carried[ROBOT_N]; /* what u moves of the contact point, rotors being free */
 } robot_impact;
+
+/* Phases: motors drive or servo, motors are free. */
+#define ROBOT_LED 0
+#define ROBOT_LOOSE 1
 
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
-    bool rough; /* steps twice as long do */
+    bool rough; /* longer steps do */
     robot_real stop_above; /* force after whose passing the rest does not matter, N */
 } robot_budget;
 
@@ -113,8 +132,11 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival);
 int robot_impact_prepare(const robot_region *region, const robot_params *p, int motors,
     robot_real force, robot_impact *impact);
 
+/* Prepares what comes after the motors' release, once it is asked for. */
+void robot_impact_let_go(robot_impact *impact);
+
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
-robot_real robot_bound(const robot_params *p, int motors, const robot_impact *impact);
+robot_real robot_bound(const robot_impact *impact);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void robot_kinds_of_motors(const robot_params *p, int *first, int *last);
@@ -131,10 +153,10 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
     robot_real cap, robot_impact *impact, robot_safe_speed_t *found);
 
 /* Largest force over all contacts of an impact at a speed. */
-void robot_impact_run(const robot_impact *impact, robot_real speed, robot_budget *budget,
+void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budget,
     robot_peak *peak);
 
-/* Modes of links whose motors follow `motors`, and of released ones; 0 or a status. */
+/* Modes of links whose motors drive or servo, and of loose ones; 0 or a status. */
 int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real *drift);
 int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
@@ -143,14 +165,13 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     robot_real carried[ROBOT_N]);
 
 /*
- * Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`; one in which
- * motors have just been `released` starts with modes that swing.
+ * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
+ * 1/kg; 0 or a status.
  */
-void robot_phase_steps(const robot_region *region, robot_real mobility, robot_real skin_rate,
-    robot_real time, bool released, robot_phase *phase);
+int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_real found[3]);
 
-/* Linear algebra on matrices of up to ROBOT_SYSTEM rows. */
-typedef robot_real robot_matrix[ROBOT_SYSTEM][ROBOT_SYSTEM];
+/* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
+void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase *phase);
 
 /* L of A = L L' in place, below and on the diagonal; false unless A is positive definite. */
 bool robot_cholesky(int size, robot_matrix A);
@@ -162,5 +183,7 @@ void robot_backward(int size, robot_matrix L, robot_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool robot_diagonalise(int size, robot_matrix A, robot_matrix X, robot_real noise);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
+bool robot_spectrum(robot_square A, robot_real values[ROBOT_N], robot_square vectors);
 
 #endif

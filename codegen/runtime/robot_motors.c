@@ -30,27 +30,6 @@ static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
     return true;
 }
 
-#if ROBOT_STRUCTURED
-/* A = X' diag(k) X. */
-static void stretch(const robot_real *k, robot_matrix X, robot_matrix A)
-{
-    for (int i = 0; i < ROBOT_N; ++i) {
-        robot_real pulled[ROBOT_N];
-        for (int l = 0; l < ROBOT_N; ++l) {
-            pulled[l] = k[l]*X[l][i];
-        }
-        for (int j = 0; j <= i; ++j) {
-            robot_real sum = ROBOT_R(0.0);
-            for (int l = 0; l < ROBOT_N; ++l) {
-                sum += pulled[l]*X[l][j];
-            }
-            A[i][j] = sum;
-            A[j][i] = sum;
-        }
-    }
-}
-#endif
-
 /* A = X'KX; returns the noise in its entries. */
 static robot_real congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
 {
@@ -76,26 +55,26 @@ static robot_real congruent(int size, robot_matrix K, robot_matrix X, robot_matr
     return NOISE*largest;
 }
 
-/* Appends the eigenvectors X, over the coordinates `places`, to modes. */
-static void append(int size, const int *places, robot_matrix A, robot_matrix X, const robot_real *row,
+/* Takes over the eigenvectors X, over the coordinates `places`. */
+static void take_over(int size, const int *places, robot_matrix A, robot_matrix X, const robot_real *row,
     robot_modes *modes)
 {
-    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = first + i;
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
-            modes->shape[j][at] = ROBOT_R(0.0);
+            modes->shape[i][j] = ROBOT_R(0.0);
         }
         robot_real sum = ROBOT_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[places[j]][at] = X[j][i];
+            modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
-        modes->squared[at] = A[i][i];
-        modes->row[at] = sum;
-        modes->start[at] = ROBOT_R(0.0);
+        modes->squared[i] = A[i][i];
+        modes->row[i] = sum;
+        modes->start[i] = ROBOT_R(0.0);
     }
-    modes->count = first + size;
+    modes->count = size;
+    modes->rigid = 0;
+    modes->fastest = ROBOT_REAL_MAX;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -121,7 +100,7 @@ static int lead(const robot_real pull[ROBOT_SYSTEM], robot_modes *modes, robot_r
     for (int i = 0; i < modes->count; ++i) {
         robot_real along = ROBOT_R(0.0);
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
-            along += modes->shape[j][i]*pull[j];
+            along += modes->shape[i][j]*pull[j];
         }
         if (ROBOT_FABS(along) > ROBOT_R(0.0)) {
             if (!(ROBOT_FABS(modes->squared[i]) > ROBOT_R(0.0))) {
@@ -164,6 +143,7 @@ static void whole(const robot_arrival *arrival, const robot_params *p, robot_mat
 #endif
 }
 
+#if !ROBOT_STRUCTURED
 int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real *drift)
 {
@@ -186,9 +166,7 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
-#if !ROBOT_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
-#endif
         }
     }
     *drift = ROBOT_R(1.0);
@@ -196,23 +174,16 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     if (!unit_motions(size, mass, X)) {
         return ROBOT_SINGULAR;
     }
-#if ROBOT_STRUCTURED
-    robot_real k[ROBOT_N];
-    for (int i = 0; i < ROBOT_N; ++i) {
-        k[i] = ROBOT_SPRING(p, i);
-    }
-    stretch(k, X, A);
-    const robot_real noise = ROBOT_R(0.0);
-#else
     const robot_real noise = congruent(size, K, X, A);
-#endif
     if (!robot_diagonalise(size, A, X, noise)) {
         return ROBOT_SINGULAR;
     }
-    append(size, places, A, X, row, modes);
+    take_over(size, places, A, X, row, modes);
+    modes->noise = ROBOT_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
+#endif
 
 int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real *drift)
@@ -240,7 +211,7 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
     if (!robot_diagonalise(ROBOT_SYSTEM, A, X, noise)) {
         return ROBOT_SINGULAR;
     }
-    append(ROBOT_SYSTEM, places, A, X, row, modes);
+    take_over(ROBOT_SYSTEM, places, A, X, row, modes);
     modes->noise = noise;
     *drift = ROBOT_R(1.0);
     robot_real pull[ROBOT_SYSTEM];
@@ -248,74 +219,7 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
     return lead(pull, modes, drift);
 }
 
-#if ROBOT_STRUCTURED
-/*
- * Deflections d of the springs, by d'' + (1/M + 1/B) k d = -(1/M) J'n f, and the motion r of links
- * and rotors together: x = J r + g'd with g = B (M + B)^-1 J'n.
- */
-int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
-    robot_real carried[ROBOT_N])
-{
-    robot_matrix mass;
-    robot_matrix X;
-    robot_matrix A;
-    robot_matrix mobility;
-    int places[ROBOT_SYSTEM];
-    robot_real k[ROBOT_N];
-    (void)p;
-    robot_real moved[ROBOT_N]; /* (M + B)^-1 J'n */
-    for (int i = 0; i < ROBOT_N; ++i) {
-        places[i] = i;
-        k[i] = ROBOT_SPRING(p, i);
-        moved[i] = arrival->row[i];
-        for (int j = 0; j < ROBOT_N; ++j) {
-            mass[i][j] = arrival->links.M[i][j];
-            A[i][j] = mass[i][j];
-        }
-        A[i][i] += ROBOT_ROTOR(p, i);
-    }
-    if (!unit_motions(ROBOT_N, mass, X) || !robot_cholesky(ROBOT_N, A)) {
-        return ROBOT_SINGULAR;
-    }
-    robot_forward(ROBOT_N, A, moved);
-    robot_backward(ROBOT_N, A, moved);
-    robot_real together = ROBOT_R(0.0);
-    for (int i = 0; i < ROBOT_N; ++i) {
-        together += arrival->row[i]*moved[i];
-        carried[i] = ROBOT_ROTOR(p, i)*moved[i];
-        for (int j = 0; j <= i; ++j) {
-            robot_real sum = ROBOT_R(0.0);
-            for (int l = i; l < ROBOT_N; ++l) {
-                sum += X[i][l]*X[j][l];
-            }
-            mobility[i][j] = sum;
-            mobility[j][i] = sum;
-        }
-        mobility[i][i] += ROBOT_R(1.0)/ROBOT_ROTOR(p, i);
-    }
-    if (!(together > ROBOT_R(0.0)) || !robot_cholesky(ROBOT_N, mobility)) {
-        return ROBOT_SINGULAR;
-    }
-    for (int i = 0; i < ROBOT_N; ++i) {
-        for (int j = 0; j < ROBOT_N; ++j) {
-            X[i][j] = j <= i ? mobility[i][j] : ROBOT_R(0.0);
-        }
-    }
-    stretch(k, X, A);
-    if (!robot_diagonalise(ROBOT_N, A, X, ROBOT_R(0.0))) {
-        return ROBOT_SINGULAR;
-    }
-    modes->count = 1; /* the first: r */
-    modes->squared[0] = ROBOT_R(0.0);
-    modes->row[0] = ROBOT_SQRT(together);
-    modes->start[0] = ROBOT_R(1.0)/modes->row[0];
-    for (int j = 0; j < ROBOT_SYSTEM; ++j) {
-        modes->shape[j][0] = ROBOT_R(0.0);
-    }
-    append(ROBOT_N, places, A, X, carried, modes);
-    return ROBOT_OK;
-}
-#else
+#if !ROBOT_STRUCTURED
 int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real carried[ROBOT_N])
 {
@@ -346,10 +250,11 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     if (!robot_diagonalise(ROBOT_SYSTEM, A, X, noise)) {
         return ROBOT_SINGULAR;
     }
-    append(ROBOT_SYSTEM, places, A, X, row, modes);
+    take_over(ROBOT_SYSTEM, places, A, X, row, modes);
+    modes->noise = ROBOT_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
-            modes->start[i] += modes->shape[j][i]*momentum[j];
+            modes->start[i] += modes->shape[i][j]*momentum[j];
         }
     }
     return ROBOT_OK;

@@ -35,12 +35,16 @@ int robot_peak_force(const robot_real q[ROBOT_JOINTS], const robot_real n[3], ro
         }
         robot_peak peak;
         robot_impact_run(&impact, speed, &budget, &peak);
+        if (impact.status != ROBOT_OK) {
+            return impact.status;
+        }
         if (!peak.ended) {
-            if (!(impact.bound > ROBOT_R(0.0))) {
+            const robot_real bound = robot_bound(&impact);
+            if (!(bound > ROBOT_R(0.0))) {
                 return ROBOT_UNRESOLVED;
             }
             bounded = true;
-            peak.force = impact.bound*speed;
+            peak.force = bound*speed;
         }
         if (peak.force > found.force) {
             found.force = peak.force;

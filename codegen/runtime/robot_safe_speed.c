@@ -12,8 +12,6 @@
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 24
 #define APART ROBOT_R(4e-3)
-/* Usual exponent of the force over speed: between a spring's and Hertz's law. */
-#define EXPONENT ROBOT_R(1.025)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP ROBOT_R(8.0)
 
@@ -23,17 +21,18 @@ typedef struct {
     robot_real high; /* the least known not to be; 0 while unknown */
 } search;
 
-/* Next speed to try: by the usual power law, unless that is known to be wrong. */
-static robot_real next_speed(const search *s, robot_real v, robot_real force)
+/* Next speed to try: as for two bodies that meet, unless that is known to be wrong. */
+static robot_real next_speed(const robot_impact *impact, const search *s, robot_real v, robot_real force)
 {
-    const robot_real ratio = ROBOT_POW(AIM*s->limit/force, ROBOT_R(1.0)/EXPONENT);
+    const robot_real ratio = robot_two_body_speed(impact->region, impact->mobility, AIM*s->limit)
+        /robot_two_body_speed(impact->region, impact->mobility, force);
     const robot_real next = v*ROBOT_FMIN(LEAP, ROBOT_FMAX(ROBOT_R(1.0)/LEAP, ratio));
     const bool fits = next > s->low && (next < s->high || !(s->high > ROBOT_R(0.0)));
     return fits ? next : ROBOT_R(0.5)*(s->low + s->high);
 }
 
 /* Tries a speed; false once the steps are used up. */
-static bool try_speed(const robot_impact *impact, robot_real v, bool rough, search *s,
+static bool try_speed(robot_impact *impact, robot_real v, bool rough, search *s,
     robot_budget *budget, robot_real *force)
 {
     robot_peak peak;
@@ -61,7 +60,7 @@ static bool is_found(const search *s, robot_real cap)
 }
 
 /* Searches; false if the steps do not do. */
-static bool find(const robot_impact *impact, robot_real guess, robot_real cap, search *s,
+static bool find(robot_impact *impact, robot_real guess, robot_real cap, search *s,
     robot_budget *budget)
 {
     robot_real v = guess;
@@ -72,7 +71,7 @@ static bool find(const robot_impact *impact, robot_real guess, robot_real cap, s
         if (!try_speed(impact, v, true, s, budget, &force)) {
             return false;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > ROBOT_R(0.0) ? ROBOT_FMIN(v, cap) : v;
     }
     for (int k = 1; k < TRIALS; ++k) {
@@ -85,10 +84,34 @@ static bool find(const robot_impact *impact, robot_real guess, robot_real cap, s
         if (is_found(s, cap)) {
             return true;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > ROBOT_R(0.0) ? ROBOT_FMIN(v, cap) : v;
     }
     return false;
+}
+
+/* Whether loose motors bring too little energy for a force: robot_settled.c, w = 0 at first touch. */
+static bool are_weak(const robot_impact *impact, robot_real speed, robot_real force)
+{
+    const robot_real depth =
+        ROBOT_POW(force/impact->region->hertz_stiffness, ROBOT_R(2.0)/ROBOT_R(3.0));
+    const robot_real needed = force*force/impact->hold + ROBOT_R(0.8)*force*depth;
+    return impact->together > ROBOT_R(0.0) && speed*speed <= needed*impact->together;
+}
+
+/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
+static int prepare_end(const robot_region *region, const robot_params *p, int motors, robot_real limit,
+    bool again, robot_impact *impact)
+{
+    if (again && ROBOT_STRUCTURED && impact->phase[ROBOT_LOOSE].ready) {
+        robot_phase *const loose = &impact->phase[ROBOT_LOOSE];
+        const robot_real steps = ROBOT_HORIZON(p)/loose->level[0].h;
+        loose->steps = steps < (robot_real)p->steps ? (int)steps + 1 : p->steps;
+        impact->motors = motors;
+        impact->first = ROBOT_LOOSE;
+        return ROBOT_OK;
+    }
+    return robot_impact_prepare(region, p, motors, limit, impact);
 }
 
 int robot_find_speed(const robot_region *region, const robot_params *p, robot_real limit,
@@ -102,17 +125,24 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
     found->speed = cap;
     found->force = ROBOT_R(0.0);
     for (int motors = last; motors >= first; --motors) {
-        int status = robot_impact_prepare(region, p, motors, limit, impact);
+        if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
+            continue;
+        }
+        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
         if (status != ROBOT_OK) {
             return status;
         }
         const robot_real guess = robot_two_body_speed(region, impact->mobility, AIM*limit);
         search s = {limit, ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
         if (!find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget)) {
+            if (impact->status != ROBOT_OK) {
+                return impact->status;
+            }
             bounded = true;
-            if (impact->bound > ROBOT_R(0.0) && s.low < limit/impact->bound) {
-                s.low = ROBOT_FMIN(limit/impact->bound, found->speed > ROBOT_R(0.0) ? found->speed : ROBOT_REAL_MAX);
-                s.low_force = s.low*impact->bound;
+            const robot_real bound = robot_bound(impact);
+            if (bound > ROBOT_R(0.0) && s.low < limit/bound) {
+                s.low = ROBOT_FMIN(limit/bound, found->speed > ROBOT_R(0.0) ? found->speed : ROBOT_REAL_MAX);
+                s.low_force = s.low*bound;
             }
             if (!(s.low > ROBOT_R(0.0))) {
                 return ROBOT_UNRESOLVED;

@@ -3,8 +3,8 @@
 #include "robot_impact.h"
 
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
-#define CONTACT_STEP ROBOT_R(0.5)
-#define MODE_STEP ROBOT_R(2.8)
+#define CONTACT_STEP ROBOT_R(1.0)
+#define MODE_STEP ROBOT_R(5.6)
 /* Most damping of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP ROBOT_R(0.1)
 /*
@@ -33,21 +33,21 @@ static void exchange(robot_modes *modes, int i, int j)
     modes->squared[j] = squared;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < ROBOT_SYSTEM; ++k) {
-        const robot_real shape = modes->shape[k][i];
-        modes->shape[k][i] = modes->shape[k][j];
-        modes->shape[k][j] = shape;
+    for (int k = 0; k < ROBOT_SYSTEM && i != j; ++k) {
+        const robot_real shape = modes->shape[i][k];
+        modes->shape[i][k] = modes->shape[j][k];
+        modes->shape[j][k] = shape;
     }
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
-static void let_stand(robot_real contact, const robot_region *region, robot_real mobility,
-    bool released, robot_phase *phase)
+static void let_stand(const robot_impact *impact, robot_real contact, bool released, robot_phase *phase)
 {
     robot_modes *const modes = &phase->modes;
-    const robot_real heavy = contact*contact/(STANDS*mobility);
+    const robot_region *const region = impact->region;
+    const robot_real heavy = contact*contact/(STANDS*impact->mobility);
     const robot_real twice = region->damping*region->damping/FELT;
-    const robot_real jump = twice*twice*mobility/region->stiffness;
+    const robot_real jump = twice*twice*impact->mobility/region->stiffness;
     robot_real swing = ROBOT_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         const robot_real along = modes->row[i]*modes->start[i];
@@ -56,16 +56,24 @@ static void let_stand(robot_real contact, const robot_region *region, robot_real
     swing *= STANDS*STANDS;
     phase->active = 0;
     phase->compliance = ROBOT_R(0.0);
+    phase->reach = ROBOT_R(0.0);
+    phase->settles = !phase->damped;
     for (int i = 0; i < modes->count; ++i) {
+        const bool body = impact->gives_way && i == modes->count - 1;
         const robot_real weight = modes->row[i]*modes->row[i];
         const robot_real along = modes->row[i]*modes->start[i];
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
             && (!released || weight*region->stiffness < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
+        if (i >= modes->rigid && !body) {
+            phase->settles = phase->settles && modes->squared[i] > ROBOT_R(0.0);
+            phase->reach += weight/modes->squared[i];
+        }
         if (stands) {
             phase->compliance += weight/modes->squared[i];
         } else {
+            phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
             exchange(modes, phase->active, i);
             ++phase->active;
         }
@@ -107,39 +115,50 @@ static void mode_steps(robot_phase *phase, int i)
     }
 }
 
-void robot_phase_steps(const robot_region *region, robot_real mobility, robot_real skin_rate,
-    robot_real time, bool released, robot_phase *phase)
+/* Most that a servo's gains damp a mode, 1/s. */
+static robot_real damping_rate(const robot_phase *phase)
 {
+    robot_real rate = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_N && phase->damped; ++i) {
+        robot_real of_motor = ROBOT_R(0.0);
+        for (int k = 0; k < phase->modes.count; ++k) {
+            const robot_real shape = phase->modes.shape[k][ROBOT_SYSTEM - ROBOT_N + i];
+            of_motor += shape*shape;
+        }
+        rate = ROBOT_FMAX(rate, phase->damping[i]*of_motor);
+    }
+    return rate;
+}
+
+void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase *phase)
+{
+    const robot_region *const region = impact->region;
     robot_modes *const modes = &phase->modes;
-    const robot_real spring = region->stiffness*mobility;
-    const robot_real damper = ROBOT_R(0.5)*region->damping*mobility;
-    const robot_real contact = ROBOT_FMIN(spring + damper*damper, skin_rate);
-    if (region->clamped == 0) {
+    const robot_real spring = region->stiffness*impact->mobility;
+    const robot_real damper = ROBOT_R(0.5)*region->damping*impact->mobility;
+    const robot_real contact = ROBOT_FMIN(spring + damper*damper, impact->skin_rate);
+    const bool released = phase == &impact->phase[ROBOT_LOOSE] && impact->first == ROBOT_LED;
+    if (impact->gives_way) {
         const int body = modes->count;
         modes->squared[body] = ROBOT_R(0.0);
         modes->row[body] = ROBOT_R(1.0)/ROBOT_SQRT(region->effective_mass);
         modes->start[body] = ROBOT_R(0.0);
         for (int k = 0; k < ROBOT_SYSTEM; ++k) {
-            modes->shape[k][body] = ROBOT_R(0.0);
+            modes->shape[body][k] = ROBOT_R(0.0);
         }
         ++modes->count;
     }
-    let_stand(contact, region, mobility, released, phase);
-    robot_real rate2 = contact/(CONTACT_STEP*CONTACT_STEP);
+    let_stand(impact, contact, released, phase);
+    robot_real moving = ROBOT_R(0.0);
+    robot_real rate2 = ROBOT_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
+        moving += modes->row[i]*modes->row[i];
         rate2 = ROBOT_FMAX(rate2, ROBOT_FABS(modes->squared[i])/(MODE_STEP*MODE_STEP));
     }
-    robot_real rate = ROBOT_SQRT(rate2);
-    if (phase->damped) {
-        for (int i = 0; i < ROBOT_N; ++i) {
-            robot_real of_motor = ROBOT_R(0.0);
-            const robot_real *const shape = modes->shape[ROBOT_SYSTEM - ROBOT_N + i];
-            for (int k = 0; k < modes->count; ++k) {
-                of_motor += shape[k]*shape[k];
-            }
-            rate = ROBOT_FMAX(rate, phase->damping[i]*of_motor/SERVO_STEP);
-        }
-    }
+    const robot_real share = ROBOT_FMIN(moving/impact->mobility, ROBOT_R(1.0));
+    rate2 = ROBOT_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
+    const robot_real slowest = ROBOT_R(1.0)/time;
+    const robot_real rate = ROBOT_FMAX(slowest, ROBOT_FMAX(ROBOT_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const robot_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     robot_real h = wanted < MOST ? time/(robot_real)phase->steps : ROBOT_R(1.0)/rate;
@@ -157,4 +176,5 @@ void robot_phase_steps(const robot_region *region, robot_real mobility, robot_re
     for (int i = 0; i < phase->active; ++i) {
         mode_steps(phase, i);
     }
+    phase->ready = true;
 }

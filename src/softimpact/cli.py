@@ -20,6 +20,7 @@ from .papers.factors_study_command import factors_study
 from .papers.reproduce_command import reproduce
 from .studio.analyze_command import analyze
 from .studio.check_command import check
+from .studio.common_options import common
 from .studio.design_command import design
 from .studio.factors_command import factors
 from .studio.generate_command import generate
@@ -37,21 +38,21 @@ USER_ERROR = 2
 
 app = typer.Typer(pretty_exceptions_enable=False)
 
-app.command()(robots)
-app.command()(inspect)
-app.command()(init)
-app.command()(check)
-app.command()(analyze)
-app.command()(factors)
-app.command()(factors_study)
-app.command()(simulate)
-app.command(cls=SeveralValues)(program)
-app.command()(select)
-app.command()(design)
-app.command()(pareto)
-app.command()(generate)
-app.command()(studio)
-app.command()(reproduce)
+app.command()(common(robots))
+app.command()(common(inspect, "looking into the file"))
+app.command()(common(init))
+app.command()(common(check, "checking"))
+app.command()(common(analyze, "deriving"))
+app.command()(common(factors, "deriving"))
+app.command()(common(factors_study, "computing"))
+app.command()(common(simulate, "simulating"))
+app.command(cls=SeveralValues)(common(program))
+app.command()(common(select, "ranking"))
+app.command()(common(design))
+app.command()(common(pareto))
+app.command()(common(generate))
+app.command()(common(studio))
+app.command()(common(reproduce))
 
 
 @app.callback(invoke_without_command=True)

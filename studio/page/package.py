@@ -39,6 +39,7 @@ from softimpact.symbolic import (
 )
 from softimpact.symbolic.dynamics.kinematics import motions, placed_point_jacobian, poses
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
+from softimpact.symbolic.robot.robot import BASE
 
 PREFIX = "page"
 """Of the package's C names."""
@@ -56,11 +57,12 @@ class PlacedContact(ImpactModel):
     contact: Matrix = (0.0, 0.0, 0.0)
     moved_by: Matrix = ()
 
-    def _point_jacobian(self, q: Matrix, axes_of: int = -1) -> Matrix:
+    def jacobian(self, q: Matrix, axes_of: int = BASE) -> Matrix:
+        """Return J of the point in the base's axes, whatever axes are asked for."""
         return placed_point_jacobian(self.robot, q, self.contact, self.moved_by)
 
     def _direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
-        return ca.mtimes(ca.reshape(direction, 1, 3), self._point_jacobian(q))
+        return ca.mtimes(ca.reshape(direction, 1, 3), self.jacobian(q))
 
 
 def page_package(robot: Robot, drives_: Drives) -> Package:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import importlib.util
+import logging
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,6 +32,8 @@ from .xml_file import parsed, root_tag, text_of
 
 SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".sdf")
 """What names of robot files end with; what is in them decides."""
+
+LOGGER = logging.getLogger(__name__)
 
 JOINTS_TRIED = 200
 """Joints of a robot among which one is looked for whose chain has sound masses."""
@@ -80,8 +83,10 @@ def load_robot(
     if floating and hold_base:
         raise InvalidValue("hold_base", "excludes floating; give one of them")
     base: Base = "free" if floating else "held" if hold_base else "fixed"
+    path = model_path(model)
+    LOGGER.info("read %s", path)
     with np.errstate(all="ignore"):  # what is not finite is refused by its name
-        description = describe(model_path(model))
+        description = describe(path)
     require_finite(description)
     chosen = tip or description.tip
     robot = assemble(description, toward or chosen, base)

@@ -198,6 +198,7 @@ def test_samples_are_closed_and_exact_in_float(name: str, tmp_path: Path) -> Non
         assert (q.astype(np.float32) == q).all()
 
 
+@pytest.mark.slow
 def test_gravity_decides_where_rmin_rests(
     package: Callable[[str], Generated], tmp_path: Path
 ) -> None:

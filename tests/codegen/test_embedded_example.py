@@ -27,7 +27,7 @@ def check(said: str) -> None:
     assert min(shares) < 0.9 < max(shares) == 1
 
 
-@pytest.mark.parametrize("real", ["float", "double"])
+@pytest.mark.parametrize("real", ["float", pytest.param("double", marks=pytest.mark.slow)])
 def test_control_loop_stays_below_the_limit(tmp_path: Path, real: str) -> None:
     include = [f"-I{PACKAGE / 'include'}", f"-DPANDA_USE_{real.upper()}=1"]
     sources = [EXAMPLE / "main.c", *PACKAGE.glob("src/*.c")]

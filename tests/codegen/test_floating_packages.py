@@ -52,6 +52,7 @@ def leg(tmp_path_factory: pytest.TempPathFactory) -> Generated:
     return Generated(robot, "foot", folder / "c", manifest)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("real", ["double", "float"])
 def test_c_agrees_with_the_floating_model(leg: Generated, real: str, tmp_path: Path) -> None:
     samples = draw_samples(leg.robot, leg.parameters, 20, seed=97)
@@ -59,6 +60,7 @@ def test_c_agrees_with_the_floating_model(leg: Generated, real: str, tmp_path: P
     assert leg.run_own_test("gcc", real, tmp_path / "test").endswith("all passed\n")
 
 
+@pytest.mark.slow
 def test_factors_are_shares(leg: Generated) -> None:
     (function,) = [f for f in leg.functions if f.name == "impact_mitigation"]
     library = leg.load("double")

@@ -59,7 +59,7 @@ def errors(robot: Robot, count: int, seed: int) -> np.ndarray[Any, np.dtype[np.f
     return np.array(off)
 
 
-@pytest.mark.parametrize("name", ["panda", "ur5"])
+@pytest.mark.parametrize("name", ["panda", pytest.param("ur5", marks=pytest.mark.slow)])
 def test_peak_forces_are_right_whatever_motors_do(
     package: Callable[[str], Generated], name: str, tmp_path: Path
 ) -> None:
@@ -190,6 +190,7 @@ def test_more_steps_than_its_budget_no_call_takes(package: Callable[[str], Gener
     assert compiled.peak_force(long, 100)[0] == BOUNDED
 
 
+@pytest.mark.slow
 def test_float_is_as_right_as_double_where_rotors_are_heavy_and_springs_stiff(
     package: Callable[[str], Generated], tmp_path: Path
 ) -> None:

@@ -189,7 +189,7 @@ def test_joints_that_hardly_move_are_sampled_where_they_are(panda: Robot) -> Non
         assert sample.q[2] == pytest.approx(0.30005, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", mostly_slow(COMMITTED))
+@pytest.mark.parametrize("name", mostly_slow(COMMITTED, ["rr"]))
 def test_float_builds_hold_no_double_operation(
     package: Callable[[str], Generated], name: str, tmp_path: Path
 ) -> None:

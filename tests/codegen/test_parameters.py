@@ -57,10 +57,10 @@ CASES = [
             ("panda", None, ("joint_stiffness", "position_gain")),
             ("rr", None, ("rotor_inertia",)),
             ("rr", None, ("all",)),
+            ("rr", LOAD, ("all",)),
         ]
     ),
     ("rr", LOAD, ("payload_mass", "position_gain")),
-    ("rr", LOAD, ("all",)),
 ]
 
 

@@ -15,13 +15,13 @@ import pytest
 from studies import PANDA_24, InProcess, study_of
 
 from softimpact.optimize import Design, Outcome, SolverFailure, Study, design, load_study
-from softimpact.optimize import solve as solving
+from softimpact.optimize import ipopt as solving
 from softimpact.optimize.co_design import MODES
+from softimpact.optimize.evaluation import largest_deflection
 from softimpact.optimize.impact_program import impact_program
-from softimpact.optimize.nlp import tip_pose_error
-from softimpact.optimize.poses import tip_pose
 from softimpact.optimize.problem import peak_force
-from softimpact.optimize.repair import accurate_springs, largest_deflection
+from softimpact.optimize.repair import accurate_springs
+from softimpact.optimize.tip_pose import tip_pose, tip_pose_error
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic.robot.rigid import Array
 
@@ -121,7 +121,14 @@ def one_or_two_free(folder: Path, region: str, joints: tuple[int, ...], poses: A
     return study_of(folder, {"impact": {"region": region}, "stiffness": bounds}, poses)
 
 
-@pytest.mark.parametrize("joints", [(1, 3), (0, 5), (3, 4)])
+@pytest.mark.parametrize(
+    "joints",
+    [
+        (1, 3),
+        pytest.param((0, 5), marks=pytest.mark.slow),
+        pytest.param((3, 4), marks=pytest.mark.slow),
+    ],
+)
 @pytest.mark.parametrize("region", ["chest", pytest.param("head", marks=pytest.mark.slow)])
 def test_two_springs_are_no_worse_than_a_grid(
     tmp_path: Path, region: str, joints: tuple[int, int]
@@ -223,7 +230,9 @@ def test_nothing_solved(tmp_path: Path) -> None:
     assert f"{failure.best.force:.1f} N at q = [{failure.best.q[0]:.4f}" in str(failure)
 
 
-@pytest.mark.parametrize(("failing", "attempts"), [(1, 2), (2, 3)])
+@pytest.mark.parametrize(
+    ("failing", "attempts"), [pytest.param(1, 2, marks=pytest.mark.slow), (2, 3)]
+)
 def test_the_fallback_is_taken_when_all_points_fail(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failing: int, attempts: int
 ) -> None:
@@ -246,6 +255,7 @@ def test_the_fallback_is_taken_when_all_points_fail(
     assert result.gains is None
 
 
+@pytest.mark.slow
 def test_processes_given_by_the_caller(tmp_path: Path) -> None:
     study = study_of(tmp_path, {"impact": {"region": "head"}}, ("q3", "q9"))
     with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:

@@ -22,15 +22,15 @@ from softimpact.optimize import (
     load_study,
     pareto_fronts,
 )
-from softimpact.optimize import solve as solving
+from softimpact.optimize import ipopt as solving
+from softimpact.optimize.evaluation import largest_deflection
 from softimpact.optimize.front import WORTH, ParetoPoint, undominated
 from softimpact.optimize.impact_program import impact_program
 from softimpact.optimize.levels import even_bounds
-from softimpact.optimize.poses import tip_pose
 from softimpact.optimize.problem import peak_force
-from softimpact.optimize.repair import largest_deflection
 from softimpact.optimize.self_motion import self_motion
 from softimpact.optimize.stiffest import stiffest
+from softimpact.optimize.tip_pose import tip_pose
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array

@@ -36,7 +36,7 @@ RUNGS = ("two_mass", "one_mass", "chain_controlled")
 POINTS = 2.5
 """Percentage points to the print."""
 
-QUICK = {("head", "a"), ("chest", "c"), ("head", "e")}
+QUICK = {("head", "a")}
 
 
 def mean_errors(region: str, name: str) -> list[float]:

@@ -114,7 +114,9 @@ def test_the_reaction_is_an_event() -> None:
 
 
 @pytest.mark.parametrize("reference", ["moving", "held"])
-@pytest.mark.parametrize("arm", ["rr", "panda", "rmin"])
+@pytest.mark.parametrize(
+    "arm", ["rr", *(pytest.param(arm, marks=pytest.mark.slow) for arm in ("panda", "rmin"))]
+)
 def test_slow_controlled_impacts_are_linear(panda: Robot, arm: str, reference: Reference) -> None:
     cases: dict[str, Callable[[], tuple[ImpactModel, Approach]]] = {
         "rr": turned_by_both_motors,

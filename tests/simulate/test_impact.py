@@ -123,7 +123,9 @@ def test_a_second_rise_cut_short_counts_as_far_as_it_went() -> None:
     assert cut.first_peak < cut.first_contact < whole.first_contact
 
 
-@pytest.mark.parametrize("fidelity", ["one_mass", "linearised", "full"])
+@pytest.mark.parametrize(
+    "fidelity", ["one_mass", "linearised", pytest.param("full", marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("limit", [20.0, 280.0])
 def test_the_safe_speed_meets_the_limit(arm: ImpactModel, fidelity: Fidelity, limit: float) -> None:
     speed = largest_safe_speed(arm, AHEAD, HEAD, limit, fidelity)
@@ -144,7 +146,9 @@ def test_the_safe_speed_does_not_depend_on_the_guess(
     np.testing.assert_allclose(speeds, speeds[0], rtol=1e-6)
 
 
-@pytest.mark.parametrize("guess", [0.3, 0.8, 1.0, 3.0])
+@pytest.mark.parametrize(
+    "guess", [0.8, *(pytest.param(guess, marks=pytest.mark.slow) for guess in (0.3, 1.0, 3.0))]
+)
 def test_a_safe_first_peak_is_safe_at_all_lower_speeds(guess: float) -> None:
     """These peaks are one up to 0.9 m/s and part above, so that 390 N are met twice."""
     robot = load_robot("rr")

@@ -76,7 +76,11 @@ def agrees(
     return float(abs(ours.force[seen][::4] - theirs).max() / theirs.max())
 
 
-@pytest.mark.parametrize("contact", [HEAD, FREE_HEAD, CHEST], ids=["head", "free head", "chest"])
+@pytest.mark.parametrize(
+    "contact",
+    [HEAD, *(pytest.param(other, marks=pytest.mark.slow) for other in (FREE_HEAD, CHEST))],
+    ids=["head", "free head", "chest"],
+)
 @pytest.mark.parametrize("motors", KINDS, ids=str)
 def test_linearised(panda: Robot, motors: Motors, contact: Contact) -> None:
     for robot, springs in ((panda, SPRINGS), (damped(panda), SOME_RIGID)):

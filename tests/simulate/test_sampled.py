@@ -45,7 +45,9 @@ def samples(model: ImpactModel, count: int, seed: int) -> tuple[Samples, np.ndar
     return Samples(q, n, velocity), random.uniform(0.1, 1.0, count)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name", ["servo", *(pytest.param(n, marks=pytest.mark.slow) for n in CASES if n != "servo")]
+)
 @pytest.mark.parametrize(
     ("stiffness", "body", "clamped"), [(1e4, "chest", True), (None, "device_75_sh70", False)]
 )

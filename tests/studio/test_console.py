@@ -22,7 +22,7 @@ COMMANDS = {
     "analyze": ("analyze", *Q, "--joint-stiffness", "1e4"),
     "factors": ("factors", *Q),
     "help": ("simulate", "--help"),
-    "refusal": ("analyze", "pandå→θ̇", *Q[1:]),
+    "refusal": ("analyze", "mårvin→θ̇", *Q[1:]),
 }
 
 
@@ -48,7 +48,7 @@ def test_any_console_prints_every_result(
 
 
 def test_what_a_console_lacks_is_spelled(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert "panda->theta" in printed("ascii", COMMANDS["refusal"], monkeypatch)
+    assert "marvin->theta" in printed("ascii", COMMANDS["refusal"], monkeypatch)
     analysis = printed("cp1252", COMMANDS["analyze"], monkeypatch)
     assert "Lambda_F" in analysis
     assert "Λ" not in analysis

@@ -15,7 +15,7 @@ from matplotlib.image import imread
 from matplotlib.text import Annotation, Text
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from softimpact.optimize.poses import tip_pose
+from softimpact.optimize.tip_pose import tip_pose
 from softimpact.studio.design_report import DesignReport
 from softimpact.studio.figures import (
     draw_figures,
@@ -104,7 +104,7 @@ def test_the_same_report_gives_the_same_bytes(ur5: DesignReport, tmp_path: Path)
         assert path.read_bytes() == (folders[1] / path.name).read_bytes()
 
 
-@pytest.mark.parametrize("name", ["panda", "ur5"])
+@pytest.mark.parametrize("name", ["ur5", pytest.param("panda", marks=pytest.mark.slow)])
 def test_text_is_legible_and_inside_the_figure(name: str, request: pytest.FixtureRequest) -> None:
     for figure in _figures(request.getfixturevalue(name)):
         figure.draw_without_rendering()
@@ -116,7 +116,7 @@ def test_text_is_legible_and_inside_the_figure(name: str, request: pytest.Fixtur
         assert 0 <= box.y0 < box.y1 <= height
 
 
-@pytest.mark.parametrize("name", ["panda", "ur5"])
+@pytest.mark.parametrize("name", ["ur5", pytest.param("panda", marks=pytest.mark.slow)])
 def test_forces_are_those_of_the_impact(name: str, request: pytest.FixtureRequest) -> None:
     report: DesignReport = request.getfixturevalue(name)
     figure = figure_of_forces(report)
@@ -225,7 +225,7 @@ def _sticks(figure: Any, axes: int) -> list[Sequence[Any]]:
     return [coordinates for coordinates in data if len(coordinates[0]) > 1]
 
 
-@pytest.mark.parametrize("name", ["panda", "ur5"])
+@pytest.mark.parametrize("name", ["ur5", pytest.param("panda", marks=pytest.mark.slow)])
 def test_postures_run_from_the_base_to_the_tip(name: str, request: pytest.FixtureRequest) -> None:
     report: DesignReport = request.getfixturevalue(name)
     figure = figure_of_postures(report)
@@ -275,7 +275,7 @@ def test_the_arrow_points_along_the_impact_from_the_winners_tip(ur5: DesignRepor
         np.testing.assert_allclose((end - start) / np.linalg.norm(end - start), expected)
 
 
-@pytest.mark.parametrize("name", ["panda", "ur5"])
+@pytest.mark.parametrize("name", ["ur5", pytest.param("panda", marks=pytest.mark.slow)])
 def test_springs_stand_over_their_joints(name: str, request: pytest.FixtureRequest) -> None:
     report: DesignReport = request.getfixturevalue(name)
     study = report.study

@@ -51,6 +51,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> ParetoReport:
     return pareto_report(pareto_fronts(study, InProcess()), lambda *_: None)
 
 
+@pytest.mark.slow
 def test_results_are_complete(results: tuple[Path, dict[str, Any]]) -> None:
     out, printed = results
     record = json.loads((out / "results.json").read_text(encoding="utf-8"))
@@ -68,6 +69,7 @@ def test_results_are_complete(results: tuple[Path, dict[str, Any]]) -> None:
     assert {path.name for path in out.iterdir()} == names | figures
 
 
+@pytest.mark.slow
 def test_every_point_is_checked(results: tuple[Path, dict[str, Any]]) -> None:
     _, record = results
     for name in FRONTS:
@@ -114,6 +116,7 @@ def test_the_table_of_numbers_is_that_of_the_record(
         assert [float(v) for k, v in row.items() if k.startswith("q_")] == point["q"]
 
 
+@pytest.mark.slow
 def test_the_page_links_its_figures(results: tuple[Path, dict[str, Any]]) -> None:
     out, _ = results
     page = (out / "report.md").read_text(encoding="utf-8")

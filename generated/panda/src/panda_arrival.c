@@ -119,27 +119,29 @@ panda_real panda_two_body_speed(const panda_region *region, panda_real mobility,
 }
 
 /* Modes of a phase. */
-static int modes_of(int motors, const panda_params *p, panda_impact *impact, panda_phase *phase)
+static int modes_of(panda_impact *impact, int which)
 {
+    panda_phase *const phase = &impact->phase[which];
     phase->drift = PANDA_R(0.0);
     phase->modes.noise = PANDA_R(0.0);
     phase->damped = false;
     for (int i = 0; i < PANDA_N; ++i) {
         phase->damping[i] = PANDA_R(0.0);
     }
-    if (motors == PANDA_MOTORS_FREE) {
-        return panda_free_modes(&impact->arrival, p, &phase->modes, impact->carried);
+    if (which == PANDA_LOOSE) {
+        return panda_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     }
-    if (motors == PANDA_MOTORS_DRIVEN) {
-        return panda_driven_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    if (impact->motors == PANDA_MOTORS_DRIVEN) {
+        return panda_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < PANDA_N; ++i) {
-        phase->damping[i] = PANDA_DAMPING_GAIN(p, i);
+        phase->damping[i] = PANDA_DAMPING_GAIN(impact->p, i);
         phase->damped = phase->damped || phase->damping[i] > PANDA_R(0.0);
     }
-    return panda_servo_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    return panda_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
 
+#if !PANDA_STRUCTURED
 static panda_real mobility_of(const panda_modes *modes)
 {
     panda_real sum = PANDA_R(0.0);
@@ -148,58 +150,102 @@ static panda_real mobility_of(const panda_modes *modes)
     }
     return sum;
 }
+#endif
+
+/* Times at which a phase begins and ends. */
+static panda_real time_of(const panda_impact *impact, int which)
+{
+    const panda_real horizon = PANDA_HORIZON(impact->p);
+    const panda_real until = which < impact->last ? PANDA_REACTION_TIME(impact->p) : horizon;
+    return which > impact->first ? horizon - PANDA_REACTION_TIME(impact->p) : until;
+}
+
+static void steps_of(panda_impact *impact, int which)
+{
+    panda_phase *const phase = &impact->phase[which];
+    const panda_real time = time_of(impact, which);
+    phase->blurred = phase->modes.noise*time*time > BLURS;
+    panda_phase_steps(impact, time, phase);
+    const panda_real numbers[2] = {phase->level[0].h, phase->level[PANDA_LEVELS - 1].h};
+    if (panda_check_positive(numbers, 2) != PANDA_OK) {
+        impact->status = PANDA_SINGULAR;
+    }
+}
+
+void panda_impact_let_go(panda_impact *impact)
+{
+    if (!impact->phase[PANDA_LOOSE].ready) {
+        impact->status = modes_of(impact, PANDA_LOOSE);
+        if (impact->status == PANDA_OK) {
+            steps_of(impact, PANDA_LOOSE);
+        }
+    }
+}
+
+/* Mobilities of the contact, and modes where those need them. */
+static void weigh(panda_impact *impact)
+{
+    const panda_real body = impact->gives_way ? PANDA_R(1.0)/impact->region->effective_mass : PANDA_R(0.0);
+    panda_real mobility = PANDA_R(0.0);
+#if PANDA_STRUCTURED
+    panda_real found[3];
+    impact->status = panda_mobilities(&impact->arrival, impact->p, found);
+    mobility = found[0];
+    impact->together = found[1] + body;
+    impact->rotors = found[2];
+#else
+    for (int k = impact->first; k <= impact->last && impact->status == PANDA_OK; ++k) {
+        impact->status = modes_of(impact, k);
+        mobility = PANDA_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    }
+    impact->together = PANDA_R(0.0);
+    impact->rotors = PANDA_R(0.0);
+    const bool held = !PANDA_ELASTIC && impact->last == PANDA_LED && impact->motors == PANDA_MOTORS_DRIVEN;
+    if (!(mobility > PANDA_LEAST_MOBILITY) && !held) {
+        impact->status = PANDA_SINGULAR;
+    }
+#endif
+    impact->mobility = PANDA_FMAX(mobility, PANDA_LEAST_MOBILITY) + body;
+}
 
 int panda_impact_prepare(const panda_region *region, const panda_params *p, int motors,
     panda_real force, panda_impact *impact)
 {
-    const panda_real horizon = PANDA_HORIZON(p);
     const panda_real reaction = PANDA_REACTION_TIME(p);
-    const bool released = motors != PANDA_MOTORS_FREE && reaction < horizon;
-    const bool at_once = released && !(reaction > PANDA_R(0.0));
-    impact->phases = released && !at_once ? 2 : 1;
-    int status = modes_of(at_once ? PANDA_MOTORS_FREE : motors, p, impact, &impact->phase[0]);
-    if (status == PANDA_OK && impact->phases == 2) {
-        status = modes_of(PANDA_MOTORS_FREE, p, impact, &impact->phase[1]);
-    }
-    if (status != PANDA_OK) {
-        return status;
-    }
-    const panda_real served = PANDA_FMIN(reaction, horizon);
-    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
-    impact->stiffness = region->stiffness;
-    impact->damping = region->damping;
-    impact->skin = region->hertz_stiffness;
+    const bool loose = motors == PANDA_MOTORS_FREE || !(reaction > PANDA_R(0.0));
+    impact->region = region;
+    impact->p = p;
+    impact->motors = motors;
     impact->gives_way = region->clamped == 0;
-    const panda_real body = impact->gives_way ? PANDA_R(1.0)/region->effective_mass : PANDA_R(0.0);
-    panda_real mobility = PANDA_R(0.0);
-    for (int k = 0; k < impact->phases; ++k) {
-        mobility = PANDA_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    impact->first = loose ? PANDA_LOOSE : PANDA_LED;
+    impact->last = loose || reaction < PANDA_HORIZON(p) ? PANDA_LOOSE : PANDA_LED;
+    impact->status = PANDA_OK;
+    impact->phase[PANDA_LED].ready = false;
+    impact->phase[PANDA_LOOSE].ready = false;
+    weigh(impact);
+    if (impact->status != PANDA_OK) {
+        return impact->status;
     }
-    const bool moves = mobility > PANDA_LEAST_MOBILITY;
-    if (!moves && (PANDA_ELASTIC || motors == PANDA_MOTORS_FREE || impact->phases == 2)) {
-        return PANDA_SINGULAR;
-    }
-    impact->mobility = PANDA_FMAX(mobility, PANDA_LEAST_MOBILITY) + body;
     const panda_real size =
         force > PANDA_R(0.0) ? force : panda_two_body_force(region, impact->mobility, -force);
     impact->scale = PANDA_R(0.4)*size;
+    impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const panda_real damped = region->damping*PANDA_SQRT(impact->mobility/region->stiffness);
     impact->smooth = PANDA_R(1.0)/(PANDA_R(1.0) + PANDA_R(4.0)*damped);
-    const panda_real skin_rate = skin_stiffness(region, size)*impact->mobility;
-    for (int k = 0; k < impact->phases; ++k) {
-        const panda_real from = k > 0 ? reaction : PANDA_R(0.0);
-        const panda_real until = k == 0 && impact->phases == 2 ? reaction : horizon;
-        panda_phase_steps(region, impact->mobility, skin_rate, until - from, k > 0, &impact->phase[k]);
+    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    const panda_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
+    if (!panda_all_finite(numbers, 3) || panda_check_positive(numbers, 3) != PANDA_OK) {
+        return PANDA_SINGULAR;
     }
-#if PANDA_ELASTIC
-    for (int i = 0; i < PANDA_N; ++i) {
-        impact->springs[i] = PANDA_SPRING(p, i);
-        impact->rotors[i] = PANDA_ROTOR(p, i);
+#if PANDA_STRUCTURED
+    impact->status = modes_of(impact, impact->first);
+    if (impact->status == PANDA_OK) {
+        steps_of(impact, impact->first);
+    }
+#else
+    for (int k = impact->first; k <= impact->last; ++k) {
+        steps_of(impact, k);
     }
 #endif
-    impact->bound = panda_bound(p, motors, impact);
-    const panda_real numbers[4] = {impact->mobility, impact->scale, impact->phase[0].level[0].h,
-        impact->phase[impact->phases - 1].level[0].h};
-    return panda_all_finite(numbers, 4) && panda_check_positive(numbers, 4) == PANDA_OK
-        ? PANDA_OK : PANDA_SINGULAR;
+    return impact->status;
 }

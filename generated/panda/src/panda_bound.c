@@ -6,7 +6,9 @@
  * speed at which contact point and body approach. Kinetic energy is at least u^2/(2 mobility), so that with an
  * energy E in robot and body, f^2 <= 2 E (k + c^2 mobility).
  *
- * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v.
+ * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v; where nothing
+ * but joints' springs pulls only the motion of links, rotors and body that is the contact point's has
+ * to do with it: E = v^2/2 over the mobility of that.
  *
  * Motors that drive or servo: in axes that go on with the motion before, the only one who does work is
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
@@ -23,9 +25,14 @@ static panda_real while_driven(panda_real time, panda_real hold, panda_real damp
     return y*y;
 }
 
-/* r'(M + B) r */
-static panda_real twice_energy(const panda_params *p, const panda_arrival *arrival)
+/* r'(M + B) r, or what of it an impact can take. */
+static panda_real twice_energy(const panda_impact *impact)
 {
+    const panda_params *const p = impact->p;
+    const panda_arrival *const arrival = &impact->arrival;
+    if (impact->together > PANDA_R(0.0)) {
+        return PANDA_R(1.0)/impact->together;
+    }
     panda_real sum = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
         for (int j = 0; j < PANDA_N; ++j) {
@@ -54,7 +61,7 @@ static bool is_held_by_nothing(const panda_impact *impact)
             return false;
         }
     }
-    const panda_modes *const modes = &impact->phase[impact->phases - 1].modes;
+    const panda_modes *const modes = &impact->phase[impact->last].modes;
     panda_real largest = PANDA_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         largest = PANDA_FMAX(largest, modes->squared[i]);
@@ -70,20 +77,20 @@ static bool is_held_by_nothing(const panda_impact *impact)
     return true;
 }
 
-panda_real panda_bound(const panda_params *p, int motors, const panda_impact *impact)
+panda_real panda_bound(const panda_impact *impact)
 {
     if (!is_held_by_nothing(impact)) {
         return PANDA_R(0.0);
     }
-    const panda_real hold = impact->stiffness + impact->damping*impact->damping*impact->mobility;
-    const panda_real twice = twice_energy(p, &impact->arrival);
-    if (motors == PANDA_MOTORS_FREE) {
+    const panda_real hold = impact->hold;
+    const panda_real twice = twice_energy(impact);
+    if (impact->first == PANDA_LOOSE) {
         return PANDA_SQRT(twice*hold);
     }
-    const panda_real horizon = PANDA_HORIZON(p);
-    const panda_real reaction = PANDA_FMIN(PANDA_REACTION_TIME(p), horizon);
-    const panda_real always = while_driven(horizon, hold, impact->damping);
-    const panda_real until = while_driven(reaction, hold, impact->damping);
+    const panda_real horizon = PANDA_HORIZON(impact->p);
+    const panda_real reaction = PANDA_FMIN(PANDA_REACTION_TIME(impact->p), horizon);
+    const panda_real always = while_driven(horizon, hold, impact->region->damping);
+    const panda_real until = while_driven(reaction, hold, impact->region->damping);
     const panda_real root = PANDA_SQRT(PANDA_R(2.0)*until*reaction) + PANDA_SQRT(twice);
     return PANDA_FMIN(always, PANDA_FMAX(until, root*PANDA_SQRT(hold)));
 }

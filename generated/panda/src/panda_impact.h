@@ -27,14 +27,24 @@ typedef struct {
     panda_real rates[PANDA_N]; /* joint velocities for an approach of 1 m/s */
 } panda_arrival;
 
-/* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
+/* Matrices over the links alone, and of up to PANDA_SYSTEM rows. */
+typedef panda_real panda_square[PANDA_N][PANDA_N];
+typedef panda_real panda_matrix[PANDA_SYSTEM][PANDA_SYSTEM];
+
+/*
+ * Motions of unit mass that do not act on each other: displacement = shape amplitude. Displacements are of
+ * links and motors; of deflections times the root of their springs' stiffness, u, where the motors have
+ * none of their own (driven) or are eliminated (free motors without gravity).
+ */
 typedef struct {
     int count;
+    int rigid; /* the first ones have no frequency */
     panda_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
+    panda_real fastest; /* largest squared frequency that is known, 1/s^2 */
     panda_real squared[PANDA_MODES]; /* frequency, 1/s^2 */
     panda_real row[PANDA_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     panda_real start[PANDA_MODES]; /* rates at first touch of an approach of 1 m/s */
-    panda_real shape[PANDA_SYSTEM][PANDA_MODES];
+    panda_real shape[PANDA_MODES][PANDA_SYSTEM];
 } panda_modes;
 
 /* One step of a mode: what amplitude, rate and the forces at both ends do. */
@@ -56,9 +66,13 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
+    bool ready;
+    bool blurred; /* too few digits to integrate it */
+    bool settles; /* no energy enters but by the motors' drift: see panda_settled.c */
     panda_modes modes; /* the first `active` ones move, the others stand, bent by the force */
     int active;
     panda_real compliance; /* of those that stand, m/N */
+    panda_real reach; /* of all that vibrate, m/N */
     panda_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
     panda_real damping[PANDA_N];
@@ -69,26 +83,31 @@ typedef struct {
 /* Everything that does not depend on the speed. */
 typedef struct {
     panda_arrival arrival;
-    panda_real stiffness, damping, skin; /* k_h, c_h, k_f */
+    const panda_region *region;
+    const panda_params *p;
+    int motors;
     bool gives_way;
     panda_real mobility; /* of the contact, 1/kg */
+    panda_real together; /* of links and rotors as one, and of the body, 1/kg */
+    panda_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
+    panda_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
+    panda_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
     panda_real scale; /* of forces, N: what bends are measured by */
-    bool blurred; /* too few digits to integrate it */
     panda_real smooth; /* 1, or less where the damper makes forces jump */
-    int phases; /* one, or two where motors are released */
-    panda_phase phase[2];
-#if PANDA_ELASTIC
-    panda_real springs[PANDA_N]; /* k_s */
-    panda_real rotors[PANDA_N]; /* B */
-#endif
-    panda_real carried[PANDA_N]; /* what deflections move of the contact point, rotors being free */
-    panda_real bound; /* no force is larger than this times the speed, N s/m; 0: no bound */
+    int first, last; /* phases of an impact */
+    int status; /* of what was prepared */
+    panda_phase phase[2]; /* PANDA_LED and PANDA_LOOSE */
+    panda_real carried[PANDA_N]; /* what u moves of the contact point, rotors being free */
 } panda_impact;
+
+/* Phases: motors drive or servo, motors are free. */
+#define PANDA_LED 0
+#define PANDA_LOOSE 1
 
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
-    bool rough; /* steps twice as long do */
+    bool rough; /* longer steps do */
     panda_real stop_above; /* force after whose passing the rest does not matter, N */
 } panda_budget;
 
@@ -113,8 +132,11 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival);
 int panda_impact_prepare(const panda_region *region, const panda_params *p, int motors,
     panda_real force, panda_impact *impact);
 
+/* Prepares what comes after the motors' release, once it is asked for. */
+void panda_impact_let_go(panda_impact *impact);
+
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
-panda_real panda_bound(const panda_params *p, int motors, const panda_impact *impact);
+panda_real panda_bound(const panda_impact *impact);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void panda_kinds_of_motors(const panda_params *p, int *first, int *last);
@@ -131,10 +153,10 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
     panda_real cap, panda_impact *impact, panda_safe_speed_t *found);
 
 /* Largest force over all contacts of an impact at a speed. */
-void panda_impact_run(const panda_impact *impact, panda_real speed, panda_budget *budget,
+void panda_impact_run(panda_impact *impact, panda_real speed, panda_budget *budget,
     panda_peak *peak);
 
-/* Modes of links whose motors follow `motors`, and of released ones; 0 or a status. */
+/* Modes of links whose motors drive or servo, and of loose ones; 0 or a status. */
 int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift);
 int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
@@ -143,14 +165,13 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     panda_real carried[PANDA_N]);
 
 /*
- * Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`; one in which
- * motors have just been `released` starts with modes that swing.
+ * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
+ * 1/kg; 0 or a status.
  */
-void panda_phase_steps(const panda_region *region, panda_real mobility, panda_real skin_rate,
-    panda_real time, bool released, panda_phase *phase);
+int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_real found[3]);
 
-/* Linear algebra on matrices of up to PANDA_SYSTEM rows. */
-typedef panda_real panda_matrix[PANDA_SYSTEM][PANDA_SYSTEM];
+/* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
+void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase *phase);
 
 /* L of A = L L' in place, below and on the diagonal; false unless A is positive definite. */
 bool panda_cholesky(int size, panda_matrix A);
@@ -162,5 +183,7 @@ void panda_backward(int size, panda_matrix L, panda_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool panda_diagonalise(int size, panda_matrix A, panda_matrix X, panda_real noise);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
+bool panda_spectrum(panda_square A, panda_real values[PANDA_N], panda_square vectors);
 
 #endif

@@ -30,27 +30,6 @@ static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
     return true;
 }
 
-#if PANDA_STRUCTURED
-/* A = X' diag(k) X. */
-static void stretch(const panda_real *k, panda_matrix X, panda_matrix A)
-{
-    for (int i = 0; i < PANDA_N; ++i) {
-        panda_real pulled[PANDA_N];
-        for (int l = 0; l < PANDA_N; ++l) {
-            pulled[l] = k[l]*X[l][i];
-        }
-        for (int j = 0; j <= i; ++j) {
-            panda_real sum = PANDA_R(0.0);
-            for (int l = 0; l < PANDA_N; ++l) {
-                sum += pulled[l]*X[l][j];
-            }
-            A[i][j] = sum;
-            A[j][i] = sum;
-        }
-    }
-}
-#endif
-
 /* A = X'KX; returns the noise in its entries. */
 static panda_real congruent(int size, panda_matrix K, panda_matrix X, panda_matrix A)
 {
@@ -76,26 +55,26 @@ static panda_real congruent(int size, panda_matrix K, panda_matrix X, panda_matr
     return NOISE*largest;
 }
 
-/* Appends the eigenvectors X, over the coordinates `places`, to modes. */
-static void append(int size, const int *places, panda_matrix A, panda_matrix X, const panda_real *row,
+/* Takes over the eigenvectors X, over the coordinates `places`. */
+static void take_over(int size, const int *places, panda_matrix A, panda_matrix X, const panda_real *row,
     panda_modes *modes)
 {
-    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = first + i;
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
-            modes->shape[j][at] = PANDA_R(0.0);
+            modes->shape[i][j] = PANDA_R(0.0);
         }
         panda_real sum = PANDA_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[places[j]][at] = X[j][i];
+            modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
-        modes->squared[at] = A[i][i];
-        modes->row[at] = sum;
-        modes->start[at] = PANDA_R(0.0);
+        modes->squared[i] = A[i][i];
+        modes->row[i] = sum;
+        modes->start[i] = PANDA_R(0.0);
     }
-    modes->count = first + size;
+    modes->count = size;
+    modes->rigid = 0;
+    modes->fastest = PANDA_REAL_MAX;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -121,7 +100,7 @@ static int lead(const panda_real pull[PANDA_SYSTEM], panda_modes *modes, panda_r
     for (int i = 0; i < modes->count; ++i) {
         panda_real along = PANDA_R(0.0);
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
-            along += modes->shape[j][i]*pull[j];
+            along += modes->shape[i][j]*pull[j];
         }
         if (PANDA_FABS(along) > PANDA_R(0.0)) {
             if (!(PANDA_FABS(modes->squared[i]) > PANDA_R(0.0))) {
@@ -164,6 +143,7 @@ static void whole(const panda_arrival *arrival, const panda_params *p, panda_mat
 #endif
 }
 
+#if !PANDA_STRUCTURED
 int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift)
 {
@@ -186,9 +166,7 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
-#if !PANDA_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
-#endif
         }
     }
     *drift = PANDA_R(1.0);
@@ -196,23 +174,16 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     if (!unit_motions(size, mass, X)) {
         return PANDA_SINGULAR;
     }
-#if PANDA_STRUCTURED
-    panda_real k[PANDA_N];
-    for (int i = 0; i < PANDA_N; ++i) {
-        k[i] = PANDA_SPRING(p, i);
-    }
-    stretch(k, X, A);
-    const panda_real noise = PANDA_R(0.0);
-#else
     const panda_real noise = congruent(size, K, X, A);
-#endif
     if (!panda_diagonalise(size, A, X, noise)) {
         return PANDA_SINGULAR;
     }
-    append(size, places, A, X, row, modes);
+    take_over(size, places, A, X, row, modes);
+    modes->noise = PANDA_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
+#endif
 
 int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift)
@@ -240,7 +211,7 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
     if (!panda_diagonalise(PANDA_SYSTEM, A, X, noise)) {
         return PANDA_SINGULAR;
     }
-    append(PANDA_SYSTEM, places, A, X, row, modes);
+    take_over(PANDA_SYSTEM, places, A, X, row, modes);
     modes->noise = noise;
     *drift = PANDA_R(1.0);
     panda_real pull[PANDA_SYSTEM];
@@ -248,74 +219,7 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
     return lead(pull, modes, drift);
 }
 
-#if PANDA_STRUCTURED
-/*
- * Deflections d of the springs, by d'' + (1/M + 1/B) k d = -(1/M) J'n f, and the motion r of links
- * and rotors together: x = J r + g'd with g = B (M + B)^-1 J'n.
- */
-int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
-    panda_real carried[PANDA_N])
-{
-    panda_matrix mass;
-    panda_matrix X;
-    panda_matrix A;
-    panda_matrix mobility;
-    int places[PANDA_SYSTEM];
-    panda_real k[PANDA_N];
-    (void)p;
-    panda_real moved[PANDA_N]; /* (M + B)^-1 J'n */
-    for (int i = 0; i < PANDA_N; ++i) {
-        places[i] = i;
-        k[i] = PANDA_SPRING(p, i);
-        moved[i] = arrival->row[i];
-        for (int j = 0; j < PANDA_N; ++j) {
-            mass[i][j] = arrival->links.M[i][j];
-            A[i][j] = mass[i][j];
-        }
-        A[i][i] += PANDA_ROTOR(p, i);
-    }
-    if (!unit_motions(PANDA_N, mass, X) || !panda_cholesky(PANDA_N, A)) {
-        return PANDA_SINGULAR;
-    }
-    panda_forward(PANDA_N, A, moved);
-    panda_backward(PANDA_N, A, moved);
-    panda_real together = PANDA_R(0.0);
-    for (int i = 0; i < PANDA_N; ++i) {
-        together += arrival->row[i]*moved[i];
-        carried[i] = PANDA_ROTOR(p, i)*moved[i];
-        for (int j = 0; j <= i; ++j) {
-            panda_real sum = PANDA_R(0.0);
-            for (int l = i; l < PANDA_N; ++l) {
-                sum += X[i][l]*X[j][l];
-            }
-            mobility[i][j] = sum;
-            mobility[j][i] = sum;
-        }
-        mobility[i][i] += PANDA_R(1.0)/PANDA_ROTOR(p, i);
-    }
-    if (!(together > PANDA_R(0.0)) || !panda_cholesky(PANDA_N, mobility)) {
-        return PANDA_SINGULAR;
-    }
-    for (int i = 0; i < PANDA_N; ++i) {
-        for (int j = 0; j < PANDA_N; ++j) {
-            X[i][j] = j <= i ? mobility[i][j] : PANDA_R(0.0);
-        }
-    }
-    stretch(k, X, A);
-    if (!panda_diagonalise(PANDA_N, A, X, PANDA_R(0.0))) {
-        return PANDA_SINGULAR;
-    }
-    modes->count = 1; /* the first: r */
-    modes->squared[0] = PANDA_R(0.0);
-    modes->row[0] = PANDA_SQRT(together);
-    modes->start[0] = PANDA_R(1.0)/modes->row[0];
-    for (int j = 0; j < PANDA_SYSTEM; ++j) {
-        modes->shape[j][0] = PANDA_R(0.0);
-    }
-    append(PANDA_N, places, A, X, carried, modes);
-    return PANDA_OK;
-}
-#else
+#if !PANDA_STRUCTURED
 int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real carried[PANDA_N])
 {
@@ -346,10 +250,11 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     if (!panda_diagonalise(PANDA_SYSTEM, A, X, noise)) {
         return PANDA_SINGULAR;
     }
-    append(PANDA_SYSTEM, places, A, X, row, modes);
+    take_over(PANDA_SYSTEM, places, A, X, row, modes);
+    modes->noise = PANDA_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
-            modes->start[i] += modes->shape[j][i]*momentum[j];
+            modes->start[i] += modes->shape[i][j]*momentum[j];
         }
     }
     return PANDA_OK;

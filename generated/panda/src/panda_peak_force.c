@@ -35,12 +35,16 @@ int panda_peak_force(const panda_real q[PANDA_JOINTS], const panda_real n[3], pa
         }
         panda_peak peak;
         panda_impact_run(&impact, speed, &budget, &peak);
+        if (impact.status != PANDA_OK) {
+            return impact.status;
+        }
         if (!peak.ended) {
-            if (!(impact.bound > PANDA_R(0.0))) {
+            const panda_real bound = panda_bound(&impact);
+            if (!(bound > PANDA_R(0.0))) {
                 return PANDA_UNRESOLVED;
             }
             bounded = true;
-            peak.force = impact.bound*speed;
+            peak.force = bound*speed;
         }
         if (peak.force > found.force) {
             found.force = peak.force;

@@ -12,8 +12,6 @@
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 24
 #define APART PANDA_R(4e-3)
-/* Usual exponent of the force over speed: between a spring's and Hertz's law. */
-#define EXPONENT PANDA_R(1.025)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP PANDA_R(8.0)
 
@@ -23,17 +21,18 @@ typedef struct {
     panda_real high; /* the least known not to be; 0 while unknown */
 } search;
 
-/* Next speed to try: by the usual power law, unless that is known to be wrong. */
-static panda_real next_speed(const search *s, panda_real v, panda_real force)
+/* Next speed to try: as for two bodies that meet, unless that is known to be wrong. */
+static panda_real next_speed(const panda_impact *impact, const search *s, panda_real v, panda_real force)
 {
-    const panda_real ratio = PANDA_POW(AIM*s->limit/force, PANDA_R(1.0)/EXPONENT);
+    const panda_real ratio = panda_two_body_speed(impact->region, impact->mobility, AIM*s->limit)
+        /panda_two_body_speed(impact->region, impact->mobility, force);
     const panda_real next = v*PANDA_FMIN(LEAP, PANDA_FMAX(PANDA_R(1.0)/LEAP, ratio));
     const bool fits = next > s->low && (next < s->high || !(s->high > PANDA_R(0.0)));
     return fits ? next : PANDA_R(0.5)*(s->low + s->high);
 }
 
 /* Tries a speed; false once the steps are used up. */
-static bool try_speed(const panda_impact *impact, panda_real v, bool rough, search *s,
+static bool try_speed(panda_impact *impact, panda_real v, bool rough, search *s,
     panda_budget *budget, panda_real *force)
 {
     panda_peak peak;
@@ -61,7 +60,7 @@ static bool is_found(const search *s, panda_real cap)
 }
 
 /* Searches; false if the steps do not do. */
-static bool find(const panda_impact *impact, panda_real guess, panda_real cap, search *s,
+static bool find(panda_impact *impact, panda_real guess, panda_real cap, search *s,
     panda_budget *budget)
 {
     panda_real v = guess;
@@ -72,7 +71,7 @@ static bool find(const panda_impact *impact, panda_real guess, panda_real cap, s
         if (!try_speed(impact, v, true, s, budget, &force)) {
             return false;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > PANDA_R(0.0) ? PANDA_FMIN(v, cap) : v;
     }
     for (int k = 1; k < TRIALS; ++k) {
@@ -85,10 +84,34 @@ static bool find(const panda_impact *impact, panda_real guess, panda_real cap, s
         if (is_found(s, cap)) {
             return true;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > PANDA_R(0.0) ? PANDA_FMIN(v, cap) : v;
     }
     return false;
+}
+
+/* Whether loose motors bring too little energy for a force: panda_settled.c, w = 0 at first touch. */
+static bool are_weak(const panda_impact *impact, panda_real speed, panda_real force)
+{
+    const panda_real depth =
+        PANDA_POW(force/impact->region->hertz_stiffness, PANDA_R(2.0)/PANDA_R(3.0));
+    const panda_real needed = force*force/impact->hold + PANDA_R(0.8)*force*depth;
+    return impact->together > PANDA_R(0.0) && speed*speed <= needed*impact->together;
+}
+
+/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
+static int prepare_end(const panda_region *region, const panda_params *p, int motors, panda_real limit,
+    bool again, panda_impact *impact)
+{
+    if (again && PANDA_STRUCTURED && impact->phase[PANDA_LOOSE].ready) {
+        panda_phase *const loose = &impact->phase[PANDA_LOOSE];
+        const panda_real steps = PANDA_HORIZON(p)/loose->level[0].h;
+        loose->steps = steps < (panda_real)p->steps ? (int)steps + 1 : p->steps;
+        impact->motors = motors;
+        impact->first = PANDA_LOOSE;
+        return PANDA_OK;
+    }
+    return panda_impact_prepare(region, p, motors, limit, impact);
 }
 
 int panda_find_speed(const panda_region *region, const panda_params *p, panda_real limit,
@@ -102,17 +125,24 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
     found->speed = cap;
     found->force = PANDA_R(0.0);
     for (int motors = last; motors >= first; --motors) {
-        int status = panda_impact_prepare(region, p, motors, limit, impact);
+        if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
+            continue;
+        }
+        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
         if (status != PANDA_OK) {
             return status;
         }
         const panda_real guess = panda_two_body_speed(region, impact->mobility, AIM*limit);
         search s = {limit, PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)};
         if (!find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget)) {
+            if (impact->status != PANDA_OK) {
+                return impact->status;
+            }
             bounded = true;
-            if (impact->bound > PANDA_R(0.0) && s.low < limit/impact->bound) {
-                s.low = PANDA_FMIN(limit/impact->bound, found->speed > PANDA_R(0.0) ? found->speed : PANDA_REAL_MAX);
-                s.low_force = s.low*impact->bound;
+            const panda_real bound = panda_bound(impact);
+            if (bound > PANDA_R(0.0) && s.low < limit/bound) {
+                s.low = PANDA_FMIN(limit/bound, found->speed > PANDA_R(0.0) ? found->speed : PANDA_REAL_MAX);
+                s.low_force = s.low*bound;
             }
             if (!(s.low > PANDA_R(0.0))) {
                 return PANDA_UNRESOLVED;

@@ -3,8 +3,8 @@
 #include "panda_impact.h"
 
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
-#define CONTACT_STEP PANDA_R(0.5)
-#define MODE_STEP PANDA_R(2.8)
+#define CONTACT_STEP PANDA_R(1.0)
+#define MODE_STEP PANDA_R(5.6)
 /* Most damping of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP PANDA_R(0.1)
 /*
@@ -33,21 +33,21 @@ static void exchange(panda_modes *modes, int i, int j)
     modes->squared[j] = squared;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < PANDA_SYSTEM; ++k) {
-        const panda_real shape = modes->shape[k][i];
-        modes->shape[k][i] = modes->shape[k][j];
-        modes->shape[k][j] = shape;
+    for (int k = 0; k < PANDA_SYSTEM && i != j; ++k) {
+        const panda_real shape = modes->shape[i][k];
+        modes->shape[i][k] = modes->shape[j][k];
+        modes->shape[j][k] = shape;
     }
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
-static void let_stand(panda_real contact, const panda_region *region, panda_real mobility,
-    bool released, panda_phase *phase)
+static void let_stand(const panda_impact *impact, panda_real contact, bool released, panda_phase *phase)
 {
     panda_modes *const modes = &phase->modes;
-    const panda_real heavy = contact*contact/(STANDS*mobility);
+    const panda_region *const region = impact->region;
+    const panda_real heavy = contact*contact/(STANDS*impact->mobility);
     const panda_real twice = region->damping*region->damping/FELT;
-    const panda_real jump = twice*twice*mobility/region->stiffness;
+    const panda_real jump = twice*twice*impact->mobility/region->stiffness;
     panda_real swing = PANDA_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         const panda_real along = modes->row[i]*modes->start[i];
@@ -56,16 +56,24 @@ static void let_stand(panda_real contact, const panda_region *region, panda_real
     swing *= STANDS*STANDS;
     phase->active = 0;
     phase->compliance = PANDA_R(0.0);
+    phase->reach = PANDA_R(0.0);
+    phase->settles = !phase->damped;
     for (int i = 0; i < modes->count; ++i) {
+        const bool body = impact->gives_way && i == modes->count - 1;
         const panda_real weight = modes->row[i]*modes->row[i];
         const panda_real along = modes->row[i]*modes->start[i];
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
             && (!released || weight*region->stiffness < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
+        if (i >= modes->rigid && !body) {
+            phase->settles = phase->settles && modes->squared[i] > PANDA_R(0.0);
+            phase->reach += weight/modes->squared[i];
+        }
         if (stands) {
             phase->compliance += weight/modes->squared[i];
         } else {
+            phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
             exchange(modes, phase->active, i);
             ++phase->active;
         }
@@ -107,39 +115,50 @@ static void mode_steps(panda_phase *phase, int i)
     }
 }
 
-void panda_phase_steps(const panda_region *region, panda_real mobility, panda_real skin_rate,
-    panda_real time, bool released, panda_phase *phase)
+/* Most that a servo's gains damp a mode, 1/s. */
+static panda_real damping_rate(const panda_phase *phase)
 {
+    panda_real rate = PANDA_R(0.0);
+    for (int i = 0; i < PANDA_N && phase->damped; ++i) {
+        panda_real of_motor = PANDA_R(0.0);
+        for (int k = 0; k < phase->modes.count; ++k) {
+            const panda_real shape = phase->modes.shape[k][PANDA_SYSTEM - PANDA_N + i];
+            of_motor += shape*shape;
+        }
+        rate = PANDA_FMAX(rate, phase->damping[i]*of_motor);
+    }
+    return rate;
+}
+
+void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase *phase)
+{
+    const panda_region *const region = impact->region;
     panda_modes *const modes = &phase->modes;
-    const panda_real spring = region->stiffness*mobility;
-    const panda_real damper = PANDA_R(0.5)*region->damping*mobility;
-    const panda_real contact = PANDA_FMIN(spring + damper*damper, skin_rate);
-    if (region->clamped == 0) {
+    const panda_real spring = region->stiffness*impact->mobility;
+    const panda_real damper = PANDA_R(0.5)*region->damping*impact->mobility;
+    const panda_real contact = PANDA_FMIN(spring + damper*damper, impact->skin_rate);
+    const bool released = phase == &impact->phase[PANDA_LOOSE] && impact->first == PANDA_LED;
+    if (impact->gives_way) {
         const int body = modes->count;
         modes->squared[body] = PANDA_R(0.0);
         modes->row[body] = PANDA_R(1.0)/PANDA_SQRT(region->effective_mass);
         modes->start[body] = PANDA_R(0.0);
         for (int k = 0; k < PANDA_SYSTEM; ++k) {
-            modes->shape[k][body] = PANDA_R(0.0);
+            modes->shape[body][k] = PANDA_R(0.0);
         }
         ++modes->count;
     }
-    let_stand(contact, region, mobility, released, phase);
-    panda_real rate2 = contact/(CONTACT_STEP*CONTACT_STEP);
+    let_stand(impact, contact, released, phase);
+    panda_real moving = PANDA_R(0.0);
+    panda_real rate2 = PANDA_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
+        moving += modes->row[i]*modes->row[i];
         rate2 = PANDA_FMAX(rate2, PANDA_FABS(modes->squared[i])/(MODE_STEP*MODE_STEP));
     }
-    panda_real rate = PANDA_SQRT(rate2);
-    if (phase->damped) {
-        for (int i = 0; i < PANDA_N; ++i) {
-            panda_real of_motor = PANDA_R(0.0);
-            const panda_real *const shape = modes->shape[PANDA_SYSTEM - PANDA_N + i];
-            for (int k = 0; k < modes->count; ++k) {
-                of_motor += shape[k]*shape[k];
-            }
-            rate = PANDA_FMAX(rate, phase->damping[i]*of_motor/SERVO_STEP);
-        }
-    }
+    const panda_real share = PANDA_FMIN(moving/impact->mobility, PANDA_R(1.0));
+    rate2 = PANDA_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
+    const panda_real slowest = PANDA_R(1.0)/time;
+    const panda_real rate = PANDA_FMAX(slowest, PANDA_FMAX(PANDA_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const panda_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     panda_real h = wanted < MOST ? time/(panda_real)phase->steps : PANDA_R(1.0)/rate;
@@ -157,4 +176,5 @@ void panda_phase_steps(const panda_region *region, panda_real mobility, panda_re
     for (int i = 0; i < phase->active; ++i) {
         mode_steps(phase, i);
     }
+    phase->ready = true;
 }

@@ -119,27 +119,29 @@ rmin_real rmin_two_body_speed(const rmin_region *region, rmin_real mobility, rmi
 }
 
 /* Modes of a phase. */
-static int modes_of(int motors, const rmin_params *p, rmin_impact *impact, rmin_phase *phase)
+static int modes_of(rmin_impact *impact, int which)
 {
+    rmin_phase *const phase = &impact->phase[which];
     phase->drift = RMIN_R(0.0);
     phase->modes.noise = RMIN_R(0.0);
     phase->damped = false;
     for (int i = 0; i < RMIN_N; ++i) {
         phase->damping[i] = RMIN_R(0.0);
     }
-    if (motors == RMIN_MOTORS_FREE) {
-        return rmin_free_modes(&impact->arrival, p, &phase->modes, impact->carried);
+    if (which == RMIN_LOOSE) {
+        return rmin_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     }
-    if (motors == RMIN_MOTORS_DRIVEN) {
-        return rmin_driven_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    if (impact->motors == RMIN_MOTORS_DRIVEN) {
+        return rmin_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < RMIN_N; ++i) {
-        phase->damping[i] = RMIN_DAMPING_GAIN(p, i);
+        phase->damping[i] = RMIN_DAMPING_GAIN(impact->p, i);
         phase->damped = phase->damped || phase->damping[i] > RMIN_R(0.0);
     }
-    return rmin_servo_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    return rmin_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
 
+#if !RMIN_STRUCTURED
 static rmin_real mobility_of(const rmin_modes *modes)
 {
     rmin_real sum = RMIN_R(0.0);
@@ -148,58 +150,102 @@ static rmin_real mobility_of(const rmin_modes *modes)
     }
     return sum;
 }
+#endif
+
+/* Times at which a phase begins and ends. */
+static rmin_real time_of(const rmin_impact *impact, int which)
+{
+    const rmin_real horizon = RMIN_HORIZON(impact->p);
+    const rmin_real until = which < impact->last ? RMIN_REACTION_TIME(impact->p) : horizon;
+    return which > impact->first ? horizon - RMIN_REACTION_TIME(impact->p) : until;
+}
+
+static void steps_of(rmin_impact *impact, int which)
+{
+    rmin_phase *const phase = &impact->phase[which];
+    const rmin_real time = time_of(impact, which);
+    phase->blurred = phase->modes.noise*time*time > BLURS;
+    rmin_phase_steps(impact, time, phase);
+    const rmin_real numbers[2] = {phase->level[0].h, phase->level[RMIN_LEVELS - 1].h};
+    if (rmin_check_positive(numbers, 2) != RMIN_OK) {
+        impact->status = RMIN_SINGULAR;
+    }
+}
+
+void rmin_impact_let_go(rmin_impact *impact)
+{
+    if (!impact->phase[RMIN_LOOSE].ready) {
+        impact->status = modes_of(impact, RMIN_LOOSE);
+        if (impact->status == RMIN_OK) {
+            steps_of(impact, RMIN_LOOSE);
+        }
+    }
+}
+
+/* Mobilities of the contact, and modes where those need them. */
+static void weigh(rmin_impact *impact)
+{
+    const rmin_real body = impact->gives_way ? RMIN_R(1.0)/impact->region->effective_mass : RMIN_R(0.0);
+    rmin_real mobility = RMIN_R(0.0);
+#if RMIN_STRUCTURED
+    rmin_real found[3];
+    impact->status = rmin_mobilities(&impact->arrival, impact->p, found);
+    mobility = found[0];
+    impact->together = found[1] + body;
+    impact->rotors = found[2];
+#else
+    for (int k = impact->first; k <= impact->last && impact->status == RMIN_OK; ++k) {
+        impact->status = modes_of(impact, k);
+        mobility = RMIN_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    }
+    impact->together = RMIN_R(0.0);
+    impact->rotors = RMIN_R(0.0);
+    const bool held = !RMIN_ELASTIC && impact->last == RMIN_LED && impact->motors == RMIN_MOTORS_DRIVEN;
+    if (!(mobility > RMIN_LEAST_MOBILITY) && !held) {
+        impact->status = RMIN_SINGULAR;
+    }
+#endif
+    impact->mobility = RMIN_FMAX(mobility, RMIN_LEAST_MOBILITY) + body;
+}
 
 int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int motors,
     rmin_real force, rmin_impact *impact)
 {
-    const rmin_real horizon = RMIN_HORIZON(p);
     const rmin_real reaction = RMIN_REACTION_TIME(p);
-    const bool released = motors != RMIN_MOTORS_FREE && reaction < horizon;
-    const bool at_once = released && !(reaction > RMIN_R(0.0));
-    impact->phases = released && !at_once ? 2 : 1;
-    int status = modes_of(at_once ? RMIN_MOTORS_FREE : motors, p, impact, &impact->phase[0]);
-    if (status == RMIN_OK && impact->phases == 2) {
-        status = modes_of(RMIN_MOTORS_FREE, p, impact, &impact->phase[1]);
-    }
-    if (status != RMIN_OK) {
-        return status;
-    }
-    const rmin_real served = RMIN_FMIN(reaction, horizon);
-    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
-    impact->stiffness = region->stiffness;
-    impact->damping = region->damping;
-    impact->skin = region->hertz_stiffness;
+    const bool loose = motors == RMIN_MOTORS_FREE || !(reaction > RMIN_R(0.0));
+    impact->region = region;
+    impact->p = p;
+    impact->motors = motors;
     impact->gives_way = region->clamped == 0;
-    const rmin_real body = impact->gives_way ? RMIN_R(1.0)/region->effective_mass : RMIN_R(0.0);
-    rmin_real mobility = RMIN_R(0.0);
-    for (int k = 0; k < impact->phases; ++k) {
-        mobility = RMIN_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    impact->first = loose ? RMIN_LOOSE : RMIN_LED;
+    impact->last = loose || reaction < RMIN_HORIZON(p) ? RMIN_LOOSE : RMIN_LED;
+    impact->status = RMIN_OK;
+    impact->phase[RMIN_LED].ready = false;
+    impact->phase[RMIN_LOOSE].ready = false;
+    weigh(impact);
+    if (impact->status != RMIN_OK) {
+        return impact->status;
     }
-    const bool moves = mobility > RMIN_LEAST_MOBILITY;
-    if (!moves && (RMIN_ELASTIC || motors == RMIN_MOTORS_FREE || impact->phases == 2)) {
-        return RMIN_SINGULAR;
-    }
-    impact->mobility = RMIN_FMAX(mobility, RMIN_LEAST_MOBILITY) + body;
     const rmin_real size =
         force > RMIN_R(0.0) ? force : rmin_two_body_force(region, impact->mobility, -force);
     impact->scale = RMIN_R(0.4)*size;
+    impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rmin_real damped = region->damping*RMIN_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RMIN_R(1.0)/(RMIN_R(1.0) + RMIN_R(4.0)*damped);
-    const rmin_real skin_rate = skin_stiffness(region, size)*impact->mobility;
-    for (int k = 0; k < impact->phases; ++k) {
-        const rmin_real from = k > 0 ? reaction : RMIN_R(0.0);
-        const rmin_real until = k == 0 && impact->phases == 2 ? reaction : horizon;
-        rmin_phase_steps(region, impact->mobility, skin_rate, until - from, k > 0, &impact->phase[k]);
+    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    const rmin_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
+    if (!rmin_all_finite(numbers, 3) || rmin_check_positive(numbers, 3) != RMIN_OK) {
+        return RMIN_SINGULAR;
     }
-#if RMIN_ELASTIC
-    for (int i = 0; i < RMIN_N; ++i) {
-        impact->springs[i] = RMIN_SPRING(p, i);
-        impact->rotors[i] = RMIN_ROTOR(p, i);
+#if RMIN_STRUCTURED
+    impact->status = modes_of(impact, impact->first);
+    if (impact->status == RMIN_OK) {
+        steps_of(impact, impact->first);
+    }
+#else
+    for (int k = impact->first; k <= impact->last; ++k) {
+        steps_of(impact, k);
     }
 #endif
-    impact->bound = rmin_bound(p, motors, impact);
-    const rmin_real numbers[4] = {impact->mobility, impact->scale, impact->phase[0].level[0].h,
-        impact->phase[impact->phases - 1].level[0].h};
-    return rmin_all_finite(numbers, 4) && rmin_check_positive(numbers, 4) == RMIN_OK
-        ? RMIN_OK : RMIN_SINGULAR;
+    return impact->status;
 }

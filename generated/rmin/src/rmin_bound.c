@@ -6,7 +6,9 @@
  * speed at which contact point and body approach. Kinetic energy is at least u^2/(2 mobility), so that with an
  * energy E in robot and body, f^2 <= 2 E (k + c^2 mobility).
  *
- * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v.
+ * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v; where nothing
+ * but joints' springs pulls only the motion of links, rotors and body that is the contact point's has
+ * to do with it: E = v^2/2 over the mobility of that.
  *
  * Motors that drive or servo: in axes that go on with the motion before, the only one who does work is
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
@@ -23,9 +25,14 @@ static rmin_real while_driven(rmin_real time, rmin_real hold, rmin_real damping)
     return y*y;
 }
 
-/* r'(M + B) r */
-static rmin_real twice_energy(const rmin_params *p, const rmin_arrival *arrival)
+/* r'(M + B) r, or what of it an impact can take. */
+static rmin_real twice_energy(const rmin_impact *impact)
 {
+    const rmin_params *const p = impact->p;
+    const rmin_arrival *const arrival = &impact->arrival;
+    if (impact->together > RMIN_R(0.0)) {
+        return RMIN_R(1.0)/impact->together;
+    }
     rmin_real sum = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
         for (int j = 0; j < RMIN_N; ++j) {
@@ -54,7 +61,7 @@ static bool is_held_by_nothing(const rmin_impact *impact)
             return false;
         }
     }
-    const rmin_modes *const modes = &impact->phase[impact->phases - 1].modes;
+    const rmin_modes *const modes = &impact->phase[impact->last].modes;
     rmin_real largest = RMIN_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         largest = RMIN_FMAX(largest, modes->squared[i]);
@@ -70,20 +77,20 @@ static bool is_held_by_nothing(const rmin_impact *impact)
     return true;
 }
 
-rmin_real rmin_bound(const rmin_params *p, int motors, const rmin_impact *impact)
+rmin_real rmin_bound(const rmin_impact *impact)
 {
     if (!is_held_by_nothing(impact)) {
         return RMIN_R(0.0);
     }
-    const rmin_real hold = impact->stiffness + impact->damping*impact->damping*impact->mobility;
-    const rmin_real twice = twice_energy(p, &impact->arrival);
-    if (motors == RMIN_MOTORS_FREE) {
+    const rmin_real hold = impact->hold;
+    const rmin_real twice = twice_energy(impact);
+    if (impact->first == RMIN_LOOSE) {
         return RMIN_SQRT(twice*hold);
     }
-    const rmin_real horizon = RMIN_HORIZON(p);
-    const rmin_real reaction = RMIN_FMIN(RMIN_REACTION_TIME(p), horizon);
-    const rmin_real always = while_driven(horizon, hold, impact->damping);
-    const rmin_real until = while_driven(reaction, hold, impact->damping);
+    const rmin_real horizon = RMIN_HORIZON(impact->p);
+    const rmin_real reaction = RMIN_FMIN(RMIN_REACTION_TIME(impact->p), horizon);
+    const rmin_real always = while_driven(horizon, hold, impact->region->damping);
+    const rmin_real until = while_driven(reaction, hold, impact->region->damping);
     const rmin_real root = RMIN_SQRT(RMIN_R(2.0)*until*reaction) + RMIN_SQRT(twice);
     return RMIN_FMIN(always, RMIN_FMAX(until, root*RMIN_SQRT(hold)));
 }

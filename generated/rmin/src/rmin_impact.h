@@ -27,14 +27,24 @@ typedef struct {
     rmin_real rates[RMIN_N]; /* joint velocities for an approach of 1 m/s */
 } rmin_arrival;
 
-/* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
+/* Matrices over the links alone, and of up to RMIN_SYSTEM rows. */
+typedef rmin_real rmin_square[RMIN_N][RMIN_N];
+typedef rmin_real rmin_matrix[RMIN_SYSTEM][RMIN_SYSTEM];
+
+/*
+ * Motions of unit mass that do not act on each other: displacement = shape amplitude. Displacements are of
+ * links and motors; of deflections times the root of their springs' stiffness, u, where the motors have
+ * none of their own (driven) or are eliminated (free motors without gravity).
+ */
 typedef struct {
     int count;
+    int rigid; /* the first ones have no frequency */
     rmin_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
+    rmin_real fastest; /* largest squared frequency that is known, 1/s^2 */
     rmin_real squared[RMIN_MODES]; /* frequency, 1/s^2 */
     rmin_real row[RMIN_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     rmin_real start[RMIN_MODES]; /* rates at first touch of an approach of 1 m/s */
-    rmin_real shape[RMIN_SYSTEM][RMIN_MODES];
+    rmin_real shape[RMIN_MODES][RMIN_SYSTEM];
 } rmin_modes;
 
 /* One step of a mode: what amplitude, rate and the forces at both ends do. */
@@ -56,9 +66,13 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
+    bool ready;
+    bool blurred; /* too few digits to integrate it */
+    bool settles; /* no energy enters but by the motors' drift: see rmin_settled.c */
     rmin_modes modes; /* the first `active` ones move, the others stand, bent by the force */
     int active;
     rmin_real compliance; /* of those that stand, m/N */
+    rmin_real reach; /* of all that vibrate, m/N */
     rmin_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
     rmin_real damping[RMIN_N];
@@ -69,26 +83,31 @@ typedef struct {
 /* Everything that does not depend on the speed. */
 typedef struct {
     rmin_arrival arrival;
-    rmin_real stiffness, damping, skin; /* k_h, c_h, k_f */
+    const rmin_region *region;
+    const rmin_params *p;
+    int motors;
     bool gives_way;
     rmin_real mobility; /* of the contact, 1/kg */
+    rmin_real together; /* of links and rotors as one, and of the body, 1/kg */
+    rmin_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
+    rmin_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
+    rmin_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
     rmin_real scale; /* of forces, N: what bends are measured by */
-    bool blurred; /* too few digits to integrate it */
     rmin_real smooth; /* 1, or less where the damper makes forces jump */
-    int phases; /* one, or two where motors are released */
-    rmin_phase phase[2];
-#if RMIN_ELASTIC
-    rmin_real springs[RMIN_N]; /* k_s */
-    rmin_real rotors[RMIN_N]; /* B */
-#endif
-    rmin_real carried[RMIN_N]; /* what deflections move of the contact point, rotors being free */
-    rmin_real bound; /* no force is larger than this times the speed, N s/m; 0: no bound */
+    int first, last; /* phases of an impact */
+    int status; /* of what was prepared */
+    rmin_phase phase[2]; /* RMIN_LED and RMIN_LOOSE */
+    rmin_real carried[RMIN_N]; /* what u moves of the contact point, rotors being free */
 } rmin_impact;
+
+/* Phases: motors drive or servo, motors are free. */
+#define RMIN_LED 0
+#define RMIN_LOOSE 1
 
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
-    bool rough; /* steps twice as long do */
+    bool rough; /* longer steps do */
     rmin_real stop_above; /* force after whose passing the rest does not matter, N */
 } rmin_budget;
 
@@ -113,8 +132,11 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival);
 int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int motors,
     rmin_real force, rmin_impact *impact);
 
+/* Prepares what comes after the motors' release, once it is asked for. */
+void rmin_impact_let_go(rmin_impact *impact);
+
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
-rmin_real rmin_bound(const rmin_params *p, int motors, const rmin_impact *impact);
+rmin_real rmin_bound(const rmin_impact *impact);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void rmin_kinds_of_motors(const rmin_params *p, int *first, int *last);
@@ -131,10 +153,10 @@ int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real l
     rmin_real cap, rmin_impact *impact, rmin_safe_speed_t *found);
 
 /* Largest force over all contacts of an impact at a speed. */
-void rmin_impact_run(const rmin_impact *impact, rmin_real speed, rmin_budget *budget,
+void rmin_impact_run(rmin_impact *impact, rmin_real speed, rmin_budget *budget,
     rmin_peak *peak);
 
-/* Modes of links whose motors follow `motors`, and of released ones; 0 or a status. */
+/* Modes of links whose motors drive or servo, and of loose ones; 0 or a status. */
 int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift);
 int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
@@ -143,14 +165,13 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     rmin_real carried[RMIN_N]);
 
 /*
- * Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`; one in which
- * motors have just been `released` starts with modes that swing.
+ * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
+ * 1/kg; 0 or a status.
  */
-void rmin_phase_steps(const rmin_region *region, rmin_real mobility, rmin_real skin_rate,
-    rmin_real time, bool released, rmin_phase *phase);
+int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real found[3]);
 
-/* Linear algebra on matrices of up to RMIN_SYSTEM rows. */
-typedef rmin_real rmin_matrix[RMIN_SYSTEM][RMIN_SYSTEM];
+/* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
+void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *phase);
 
 /* L of A = L L' in place, below and on the diagonal; false unless A is positive definite. */
 bool rmin_cholesky(int size, rmin_matrix A);
@@ -162,5 +183,7 @@ void rmin_backward(int size, rmin_matrix L, rmin_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X, rmin_real noise);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
+bool rmin_spectrum(rmin_square A, rmin_real values[RMIN_N], rmin_square vectors);
 
 #endif

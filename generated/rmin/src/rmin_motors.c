@@ -30,27 +30,6 @@ static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
     return true;
 }
 
-#if RMIN_STRUCTURED
-/* A = X' diag(k) X. */
-static void stretch(const rmin_real *k, rmin_matrix X, rmin_matrix A)
-{
-    for (int i = 0; i < RMIN_N; ++i) {
-        rmin_real pulled[RMIN_N];
-        for (int l = 0; l < RMIN_N; ++l) {
-            pulled[l] = k[l]*X[l][i];
-        }
-        for (int j = 0; j <= i; ++j) {
-            rmin_real sum = RMIN_R(0.0);
-            for (int l = 0; l < RMIN_N; ++l) {
-                sum += pulled[l]*X[l][j];
-            }
-            A[i][j] = sum;
-            A[j][i] = sum;
-        }
-    }
-}
-#endif
-
 /* A = X'KX; returns the noise in its entries. */
 static rmin_real congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A)
 {
@@ -76,26 +55,26 @@ static rmin_real congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A
     return NOISE*largest;
 }
 
-/* Appends the eigenvectors X, over the coordinates `places`, to modes. */
-static void append(int size, const int *places, rmin_matrix A, rmin_matrix X, const rmin_real *row,
+/* Takes over the eigenvectors X, over the coordinates `places`. */
+static void take_over(int size, const int *places, rmin_matrix A, rmin_matrix X, const rmin_real *row,
     rmin_modes *modes)
 {
-    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = first + i;
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
-            modes->shape[j][at] = RMIN_R(0.0);
+            modes->shape[i][j] = RMIN_R(0.0);
         }
         rmin_real sum = RMIN_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[places[j]][at] = X[j][i];
+            modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
-        modes->squared[at] = A[i][i];
-        modes->row[at] = sum;
-        modes->start[at] = RMIN_R(0.0);
+        modes->squared[i] = A[i][i];
+        modes->row[i] = sum;
+        modes->start[i] = RMIN_R(0.0);
     }
-    modes->count = first + size;
+    modes->count = size;
+    modes->rigid = 0;
+    modes->fastest = RMIN_REAL_MAX;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -121,7 +100,7 @@ static int lead(const rmin_real pull[RMIN_SYSTEM], rmin_modes *modes, rmin_real 
     for (int i = 0; i < modes->count; ++i) {
         rmin_real along = RMIN_R(0.0);
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
-            along += modes->shape[j][i]*pull[j];
+            along += modes->shape[i][j]*pull[j];
         }
         if (RMIN_FABS(along) > RMIN_R(0.0)) {
             if (!(RMIN_FABS(modes->squared[i]) > RMIN_R(0.0))) {
@@ -164,6 +143,7 @@ static void whole(const rmin_arrival *arrival, const rmin_params *p, rmin_matrix
 #endif
 }
 
+#if !RMIN_STRUCTURED
 int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift)
 {
@@ -186,9 +166,7 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
-#if !RMIN_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
-#endif
         }
     }
     *drift = RMIN_R(1.0);
@@ -196,23 +174,16 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     if (!unit_motions(size, mass, X)) {
         return RMIN_SINGULAR;
     }
-#if RMIN_STRUCTURED
-    rmin_real k[RMIN_N];
-    for (int i = 0; i < RMIN_N; ++i) {
-        k[i] = RMIN_SPRING(p, i);
-    }
-    stretch(k, X, A);
-    const rmin_real noise = RMIN_R(0.0);
-#else
     const rmin_real noise = congruent(size, K, X, A);
-#endif
     if (!rmin_diagonalise(size, A, X, noise)) {
         return RMIN_SINGULAR;
     }
-    append(size, places, A, X, row, modes);
+    take_over(size, places, A, X, row, modes);
+    modes->noise = RMIN_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
+#endif
 
 int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift)
@@ -240,7 +211,7 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
     if (!rmin_diagonalise(RMIN_SYSTEM, A, X, noise)) {
         return RMIN_SINGULAR;
     }
-    append(RMIN_SYSTEM, places, A, X, row, modes);
+    take_over(RMIN_SYSTEM, places, A, X, row, modes);
     modes->noise = noise;
     *drift = RMIN_R(1.0);
     rmin_real pull[RMIN_SYSTEM];
@@ -248,74 +219,7 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
     return lead(pull, modes, drift);
 }
 
-#if RMIN_STRUCTURED
-/*
- * Deflections d of the springs, by d'' + (1/M + 1/B) k d = -(1/M) J'n f, and the motion r of links
- * and rotors together: x = J r + g'd with g = B (M + B)^-1 J'n.
- */
-int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
-    rmin_real carried[RMIN_N])
-{
-    rmin_matrix mass;
-    rmin_matrix X;
-    rmin_matrix A;
-    rmin_matrix mobility;
-    int places[RMIN_SYSTEM];
-    rmin_real k[RMIN_N];
-    (void)p;
-    rmin_real moved[RMIN_N]; /* (M + B)^-1 J'n */
-    for (int i = 0; i < RMIN_N; ++i) {
-        places[i] = i;
-        k[i] = RMIN_SPRING(p, i);
-        moved[i] = arrival->row[i];
-        for (int j = 0; j < RMIN_N; ++j) {
-            mass[i][j] = arrival->links.M[i][j];
-            A[i][j] = mass[i][j];
-        }
-        A[i][i] += RMIN_ROTOR(p, i);
-    }
-    if (!unit_motions(RMIN_N, mass, X) || !rmin_cholesky(RMIN_N, A)) {
-        return RMIN_SINGULAR;
-    }
-    rmin_forward(RMIN_N, A, moved);
-    rmin_backward(RMIN_N, A, moved);
-    rmin_real together = RMIN_R(0.0);
-    for (int i = 0; i < RMIN_N; ++i) {
-        together += arrival->row[i]*moved[i];
-        carried[i] = RMIN_ROTOR(p, i)*moved[i];
-        for (int j = 0; j <= i; ++j) {
-            rmin_real sum = RMIN_R(0.0);
-            for (int l = i; l < RMIN_N; ++l) {
-                sum += X[i][l]*X[j][l];
-            }
-            mobility[i][j] = sum;
-            mobility[j][i] = sum;
-        }
-        mobility[i][i] += RMIN_R(1.0)/RMIN_ROTOR(p, i);
-    }
-    if (!(together > RMIN_R(0.0)) || !rmin_cholesky(RMIN_N, mobility)) {
-        return RMIN_SINGULAR;
-    }
-    for (int i = 0; i < RMIN_N; ++i) {
-        for (int j = 0; j < RMIN_N; ++j) {
-            X[i][j] = j <= i ? mobility[i][j] : RMIN_R(0.0);
-        }
-    }
-    stretch(k, X, A);
-    if (!rmin_diagonalise(RMIN_N, A, X, RMIN_R(0.0))) {
-        return RMIN_SINGULAR;
-    }
-    modes->count = 1; /* the first: r */
-    modes->squared[0] = RMIN_R(0.0);
-    modes->row[0] = RMIN_SQRT(together);
-    modes->start[0] = RMIN_R(1.0)/modes->row[0];
-    for (int j = 0; j < RMIN_SYSTEM; ++j) {
-        modes->shape[j][0] = RMIN_R(0.0);
-    }
-    append(RMIN_N, places, A, X, carried, modes);
-    return RMIN_OK;
-}
-#else
+#if !RMIN_STRUCTURED
 int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real carried[RMIN_N])
 {
@@ -346,10 +250,11 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     if (!rmin_diagonalise(RMIN_SYSTEM, A, X, noise)) {
         return RMIN_SINGULAR;
     }
-    append(RMIN_SYSTEM, places, A, X, row, modes);
+    take_over(RMIN_SYSTEM, places, A, X, row, modes);
+    modes->noise = RMIN_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
-            modes->start[i] += modes->shape[j][i]*momentum[j];
+            modes->start[i] += modes->shape[i][j]*momentum[j];
         }
     }
     return RMIN_OK;

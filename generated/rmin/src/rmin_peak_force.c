@@ -35,12 +35,16 @@ int rmin_peak_force(const rmin_real q[RMIN_JOINTS], const rmin_real n[3], rmin_r
         }
         rmin_peak peak;
         rmin_impact_run(&impact, speed, &budget, &peak);
+        if (impact.status != RMIN_OK) {
+            return impact.status;
+        }
         if (!peak.ended) {
-            if (!(impact.bound > RMIN_R(0.0))) {
+            const rmin_real bound = rmin_bound(&impact);
+            if (!(bound > RMIN_R(0.0))) {
                 return RMIN_UNRESOLVED;
             }
             bounded = true;
-            peak.force = impact.bound*speed;
+            peak.force = bound*speed;
         }
         if (peak.force > found.force) {
             found.force = peak.force;

@@ -12,8 +12,6 @@
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 24
 #define APART RMIN_R(4e-3)
-/* Usual exponent of the force over speed: between a spring's and Hertz's law. */
-#define EXPONENT RMIN_R(1.025)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP RMIN_R(8.0)
 
@@ -23,17 +21,18 @@ typedef struct {
     rmin_real high; /* the least known not to be; 0 while unknown */
 } search;
 
-/* Next speed to try: by the usual power law, unless that is known to be wrong. */
-static rmin_real next_speed(const search *s, rmin_real v, rmin_real force)
+/* Next speed to try: as for two bodies that meet, unless that is known to be wrong. */
+static rmin_real next_speed(const rmin_impact *impact, const search *s, rmin_real v, rmin_real force)
 {
-    const rmin_real ratio = RMIN_POW(AIM*s->limit/force, RMIN_R(1.0)/EXPONENT);
+    const rmin_real ratio = rmin_two_body_speed(impact->region, impact->mobility, AIM*s->limit)
+        /rmin_two_body_speed(impact->region, impact->mobility, force);
     const rmin_real next = v*RMIN_FMIN(LEAP, RMIN_FMAX(RMIN_R(1.0)/LEAP, ratio));
     const bool fits = next > s->low && (next < s->high || !(s->high > RMIN_R(0.0)));
     return fits ? next : RMIN_R(0.5)*(s->low + s->high);
 }
 
 /* Tries a speed; false once the steps are used up. */
-static bool try_speed(const rmin_impact *impact, rmin_real v, bool rough, search *s,
+static bool try_speed(rmin_impact *impact, rmin_real v, bool rough, search *s,
     rmin_budget *budget, rmin_real *force)
 {
     rmin_peak peak;
@@ -61,7 +60,7 @@ static bool is_found(const search *s, rmin_real cap)
 }
 
 /* Searches; false if the steps do not do. */
-static bool find(const rmin_impact *impact, rmin_real guess, rmin_real cap, search *s,
+static bool find(rmin_impact *impact, rmin_real guess, rmin_real cap, search *s,
     rmin_budget *budget)
 {
     rmin_real v = guess;
@@ -72,7 +71,7 @@ static bool find(const rmin_impact *impact, rmin_real guess, rmin_real cap, sear
         if (!try_speed(impact, v, true, s, budget, &force)) {
             return false;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > RMIN_R(0.0) ? RMIN_FMIN(v, cap) : v;
     }
     for (int k = 1; k < TRIALS; ++k) {
@@ -85,10 +84,34 @@ static bool find(const rmin_impact *impact, rmin_real guess, rmin_real cap, sear
         if (is_found(s, cap)) {
             return true;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > RMIN_R(0.0) ? RMIN_FMIN(v, cap) : v;
     }
     return false;
+}
+
+/* Whether loose motors bring too little energy for a force: rmin_settled.c, w = 0 at first touch. */
+static bool are_weak(const rmin_impact *impact, rmin_real speed, rmin_real force)
+{
+    const rmin_real depth =
+        RMIN_POW(force/impact->region->hertz_stiffness, RMIN_R(2.0)/RMIN_R(3.0));
+    const rmin_real needed = force*force/impact->hold + RMIN_R(0.8)*force*depth;
+    return impact->together > RMIN_R(0.0) && speed*speed <= needed*impact->together;
+}
+
+/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
+static int prepare_end(const rmin_region *region, const rmin_params *p, int motors, rmin_real limit,
+    bool again, rmin_impact *impact)
+{
+    if (again && RMIN_STRUCTURED && impact->phase[RMIN_LOOSE].ready) {
+        rmin_phase *const loose = &impact->phase[RMIN_LOOSE];
+        const rmin_real steps = RMIN_HORIZON(p)/loose->level[0].h;
+        loose->steps = steps < (rmin_real)p->steps ? (int)steps + 1 : p->steps;
+        impact->motors = motors;
+        impact->first = RMIN_LOOSE;
+        return RMIN_OK;
+    }
+    return rmin_impact_prepare(region, p, motors, limit, impact);
 }
 
 int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real limit,
@@ -102,17 +125,24 @@ int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real l
     found->speed = cap;
     found->force = RMIN_R(0.0);
     for (int motors = last; motors >= first; --motors) {
-        int status = rmin_impact_prepare(region, p, motors, limit, impact);
+        if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
+            continue;
+        }
+        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
         if (status != RMIN_OK) {
             return status;
         }
         const rmin_real guess = rmin_two_body_speed(region, impact->mobility, AIM*limit);
         search s = {limit, RMIN_R(0.0), RMIN_R(0.0), RMIN_R(0.0)};
         if (!find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget)) {
+            if (impact->status != RMIN_OK) {
+                return impact->status;
+            }
             bounded = true;
-            if (impact->bound > RMIN_R(0.0) && s.low < limit/impact->bound) {
-                s.low = RMIN_FMIN(limit/impact->bound, found->speed > RMIN_R(0.0) ? found->speed : RMIN_REAL_MAX);
-                s.low_force = s.low*impact->bound;
+            const rmin_real bound = rmin_bound(impact);
+            if (bound > RMIN_R(0.0) && s.low < limit/bound) {
+                s.low = RMIN_FMIN(limit/bound, found->speed > RMIN_R(0.0) ? found->speed : RMIN_REAL_MAX);
+                s.low_force = s.low*bound;
             }
             if (!(s.low > RMIN_R(0.0))) {
                 return RMIN_UNRESOLVED;

@@ -3,8 +3,8 @@
 #include "rmin_impact.h"
 
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
-#define CONTACT_STEP RMIN_R(0.5)
-#define MODE_STEP RMIN_R(2.8)
+#define CONTACT_STEP RMIN_R(1.0)
+#define MODE_STEP RMIN_R(5.6)
 /* Most damping of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP RMIN_R(0.1)
 /*
@@ -33,21 +33,21 @@ static void exchange(rmin_modes *modes, int i, int j)
     modes->squared[j] = squared;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < RMIN_SYSTEM; ++k) {
-        const rmin_real shape = modes->shape[k][i];
-        modes->shape[k][i] = modes->shape[k][j];
-        modes->shape[k][j] = shape;
+    for (int k = 0; k < RMIN_SYSTEM && i != j; ++k) {
+        const rmin_real shape = modes->shape[i][k];
+        modes->shape[i][k] = modes->shape[j][k];
+        modes->shape[j][k] = shape;
     }
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
-static void let_stand(rmin_real contact, const rmin_region *region, rmin_real mobility,
-    bool released, rmin_phase *phase)
+static void let_stand(const rmin_impact *impact, rmin_real contact, bool released, rmin_phase *phase)
 {
     rmin_modes *const modes = &phase->modes;
-    const rmin_real heavy = contact*contact/(STANDS*mobility);
+    const rmin_region *const region = impact->region;
+    const rmin_real heavy = contact*contact/(STANDS*impact->mobility);
     const rmin_real twice = region->damping*region->damping/FELT;
-    const rmin_real jump = twice*twice*mobility/region->stiffness;
+    const rmin_real jump = twice*twice*impact->mobility/region->stiffness;
     rmin_real swing = RMIN_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         const rmin_real along = modes->row[i]*modes->start[i];
@@ -56,16 +56,24 @@ static void let_stand(rmin_real contact, const rmin_region *region, rmin_real mo
     swing *= STANDS*STANDS;
     phase->active = 0;
     phase->compliance = RMIN_R(0.0);
+    phase->reach = RMIN_R(0.0);
+    phase->settles = !phase->damped;
     for (int i = 0; i < modes->count; ++i) {
+        const bool body = impact->gives_way && i == modes->count - 1;
         const rmin_real weight = modes->row[i]*modes->row[i];
         const rmin_real along = modes->row[i]*modes->start[i];
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
             && (!released || weight*region->stiffness < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
+        if (i >= modes->rigid && !body) {
+            phase->settles = phase->settles && modes->squared[i] > RMIN_R(0.0);
+            phase->reach += weight/modes->squared[i];
+        }
         if (stands) {
             phase->compliance += weight/modes->squared[i];
         } else {
+            phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
             exchange(modes, phase->active, i);
             ++phase->active;
         }
@@ -107,39 +115,50 @@ static void mode_steps(rmin_phase *phase, int i)
     }
 }
 
-void rmin_phase_steps(const rmin_region *region, rmin_real mobility, rmin_real skin_rate,
-    rmin_real time, bool released, rmin_phase *phase)
+/* Most that a servo's gains damp a mode, 1/s. */
+static rmin_real damping_rate(const rmin_phase *phase)
 {
+    rmin_real rate = RMIN_R(0.0);
+    for (int i = 0; i < RMIN_N && phase->damped; ++i) {
+        rmin_real of_motor = RMIN_R(0.0);
+        for (int k = 0; k < phase->modes.count; ++k) {
+            const rmin_real shape = phase->modes.shape[k][RMIN_SYSTEM - RMIN_N + i];
+            of_motor += shape*shape;
+        }
+        rate = RMIN_FMAX(rate, phase->damping[i]*of_motor);
+    }
+    return rate;
+}
+
+void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *phase)
+{
+    const rmin_region *const region = impact->region;
     rmin_modes *const modes = &phase->modes;
-    const rmin_real spring = region->stiffness*mobility;
-    const rmin_real damper = RMIN_R(0.5)*region->damping*mobility;
-    const rmin_real contact = RMIN_FMIN(spring + damper*damper, skin_rate);
-    if (region->clamped == 0) {
+    const rmin_real spring = region->stiffness*impact->mobility;
+    const rmin_real damper = RMIN_R(0.5)*region->damping*impact->mobility;
+    const rmin_real contact = RMIN_FMIN(spring + damper*damper, impact->skin_rate);
+    const bool released = phase == &impact->phase[RMIN_LOOSE] && impact->first == RMIN_LED;
+    if (impact->gives_way) {
         const int body = modes->count;
         modes->squared[body] = RMIN_R(0.0);
         modes->row[body] = RMIN_R(1.0)/RMIN_SQRT(region->effective_mass);
         modes->start[body] = RMIN_R(0.0);
         for (int k = 0; k < RMIN_SYSTEM; ++k) {
-            modes->shape[k][body] = RMIN_R(0.0);
+            modes->shape[body][k] = RMIN_R(0.0);
         }
         ++modes->count;
     }
-    let_stand(contact, region, mobility, released, phase);
-    rmin_real rate2 = contact/(CONTACT_STEP*CONTACT_STEP);
+    let_stand(impact, contact, released, phase);
+    rmin_real moving = RMIN_R(0.0);
+    rmin_real rate2 = RMIN_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
+        moving += modes->row[i]*modes->row[i];
         rate2 = RMIN_FMAX(rate2, RMIN_FABS(modes->squared[i])/(MODE_STEP*MODE_STEP));
     }
-    rmin_real rate = RMIN_SQRT(rate2);
-    if (phase->damped) {
-        for (int i = 0; i < RMIN_N; ++i) {
-            rmin_real of_motor = RMIN_R(0.0);
-            const rmin_real *const shape = modes->shape[RMIN_SYSTEM - RMIN_N + i];
-            for (int k = 0; k < modes->count; ++k) {
-                of_motor += shape[k]*shape[k];
-            }
-            rate = RMIN_FMAX(rate, phase->damping[i]*of_motor/SERVO_STEP);
-        }
-    }
+    const rmin_real share = RMIN_FMIN(moving/impact->mobility, RMIN_R(1.0));
+    rate2 = RMIN_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
+    const rmin_real slowest = RMIN_R(1.0)/time;
+    const rmin_real rate = RMIN_FMAX(slowest, RMIN_FMAX(RMIN_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const rmin_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     rmin_real h = wanted < MOST ? time/(rmin_real)phase->steps : RMIN_R(1.0)/rate;
@@ -157,4 +176,5 @@ void rmin_phase_steps(const rmin_region *region, rmin_real mobility, rmin_real s
     for (int i = 0; i < phase->active; ++i) {
         mode_steps(phase, i);
     }
+    phase->ready = true;
 }

@@ -119,27 +119,29 @@ rr_real rr_two_body_speed(const rr_region *region, rr_real mobility, rr_real for
 }
 
 /* Modes of a phase. */
-static int modes_of(int motors, const rr_params *p, rr_impact *impact, rr_phase *phase)
+static int modes_of(rr_impact *impact, int which)
 {
+    rr_phase *const phase = &impact->phase[which];
     phase->drift = RR_R(0.0);
     phase->modes.noise = RR_R(0.0);
     phase->damped = false;
     for (int i = 0; i < RR_N; ++i) {
         phase->damping[i] = RR_R(0.0);
     }
-    if (motors == RR_MOTORS_FREE) {
-        return rr_free_modes(&impact->arrival, p, &phase->modes, impact->carried);
+    if (which == RR_LOOSE) {
+        return rr_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     }
-    if (motors == RR_MOTORS_DRIVEN) {
-        return rr_driven_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    if (impact->motors == RR_MOTORS_DRIVEN) {
+        return rr_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < RR_N; ++i) {
-        phase->damping[i] = RR_DAMPING_GAIN(p, i);
+        phase->damping[i] = RR_DAMPING_GAIN(impact->p, i);
         phase->damped = phase->damped || phase->damping[i] > RR_R(0.0);
     }
-    return rr_servo_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    return rr_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
 
+#if !RR_STRUCTURED
 static rr_real mobility_of(const rr_modes *modes)
 {
     rr_real sum = RR_R(0.0);
@@ -148,58 +150,102 @@ static rr_real mobility_of(const rr_modes *modes)
     }
     return sum;
 }
+#endif
+
+/* Times at which a phase begins and ends. */
+static rr_real time_of(const rr_impact *impact, int which)
+{
+    const rr_real horizon = RR_HORIZON(impact->p);
+    const rr_real until = which < impact->last ? RR_REACTION_TIME(impact->p) : horizon;
+    return which > impact->first ? horizon - RR_REACTION_TIME(impact->p) : until;
+}
+
+static void steps_of(rr_impact *impact, int which)
+{
+    rr_phase *const phase = &impact->phase[which];
+    const rr_real time = time_of(impact, which);
+    phase->blurred = phase->modes.noise*time*time > BLURS;
+    rr_phase_steps(impact, time, phase);
+    const rr_real numbers[2] = {phase->level[0].h, phase->level[RR_LEVELS - 1].h};
+    if (rr_check_positive(numbers, 2) != RR_OK) {
+        impact->status = RR_SINGULAR;
+    }
+}
+
+void rr_impact_let_go(rr_impact *impact)
+{
+    if (!impact->phase[RR_LOOSE].ready) {
+        impact->status = modes_of(impact, RR_LOOSE);
+        if (impact->status == RR_OK) {
+            steps_of(impact, RR_LOOSE);
+        }
+    }
+}
+
+/* Mobilities of the contact, and modes where those need them. */
+static void weigh(rr_impact *impact)
+{
+    const rr_real body = impact->gives_way ? RR_R(1.0)/impact->region->effective_mass : RR_R(0.0);
+    rr_real mobility = RR_R(0.0);
+#if RR_STRUCTURED
+    rr_real found[3];
+    impact->status = rr_mobilities(&impact->arrival, impact->p, found);
+    mobility = found[0];
+    impact->together = found[1] + body;
+    impact->rotors = found[2];
+#else
+    for (int k = impact->first; k <= impact->last && impact->status == RR_OK; ++k) {
+        impact->status = modes_of(impact, k);
+        mobility = RR_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    }
+    impact->together = RR_R(0.0);
+    impact->rotors = RR_R(0.0);
+    const bool held = !RR_ELASTIC && impact->last == RR_LED && impact->motors == RR_MOTORS_DRIVEN;
+    if (!(mobility > RR_LEAST_MOBILITY) && !held) {
+        impact->status = RR_SINGULAR;
+    }
+#endif
+    impact->mobility = RR_FMAX(mobility, RR_LEAST_MOBILITY) + body;
+}
 
 int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
     rr_real force, rr_impact *impact)
 {
-    const rr_real horizon = RR_HORIZON(p);
     const rr_real reaction = RR_REACTION_TIME(p);
-    const bool released = motors != RR_MOTORS_FREE && reaction < horizon;
-    const bool at_once = released && !(reaction > RR_R(0.0));
-    impact->phases = released && !at_once ? 2 : 1;
-    int status = modes_of(at_once ? RR_MOTORS_FREE : motors, p, impact, &impact->phase[0]);
-    if (status == RR_OK && impact->phases == 2) {
-        status = modes_of(RR_MOTORS_FREE, p, impact, &impact->phase[1]);
-    }
-    if (status != RR_OK) {
-        return status;
-    }
-    const rr_real served = RR_FMIN(reaction, horizon);
-    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
-    impact->stiffness = region->stiffness;
-    impact->damping = region->damping;
-    impact->skin = region->hertz_stiffness;
+    const bool loose = motors == RR_MOTORS_FREE || !(reaction > RR_R(0.0));
+    impact->region = region;
+    impact->p = p;
+    impact->motors = motors;
     impact->gives_way = region->clamped == 0;
-    const rr_real body = impact->gives_way ? RR_R(1.0)/region->effective_mass : RR_R(0.0);
-    rr_real mobility = RR_R(0.0);
-    for (int k = 0; k < impact->phases; ++k) {
-        mobility = RR_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    impact->first = loose ? RR_LOOSE : RR_LED;
+    impact->last = loose || reaction < RR_HORIZON(p) ? RR_LOOSE : RR_LED;
+    impact->status = RR_OK;
+    impact->phase[RR_LED].ready = false;
+    impact->phase[RR_LOOSE].ready = false;
+    weigh(impact);
+    if (impact->status != RR_OK) {
+        return impact->status;
     }
-    const bool moves = mobility > RR_LEAST_MOBILITY;
-    if (!moves && (RR_ELASTIC || motors == RR_MOTORS_FREE || impact->phases == 2)) {
-        return RR_SINGULAR;
-    }
-    impact->mobility = RR_FMAX(mobility, RR_LEAST_MOBILITY) + body;
     const rr_real size =
         force > RR_R(0.0) ? force : rr_two_body_force(region, impact->mobility, -force);
     impact->scale = RR_R(0.4)*size;
+    impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rr_real damped = region->damping*RR_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RR_R(1.0)/(RR_R(1.0) + RR_R(4.0)*damped);
-    const rr_real skin_rate = skin_stiffness(region, size)*impact->mobility;
-    for (int k = 0; k < impact->phases; ++k) {
-        const rr_real from = k > 0 ? reaction : RR_R(0.0);
-        const rr_real until = k == 0 && impact->phases == 2 ? reaction : horizon;
-        rr_phase_steps(region, impact->mobility, skin_rate, until - from, k > 0, &impact->phase[k]);
+    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    const rr_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
+    if (!rr_all_finite(numbers, 3) || rr_check_positive(numbers, 3) != RR_OK) {
+        return RR_SINGULAR;
     }
-#if RR_ELASTIC
-    for (int i = 0; i < RR_N; ++i) {
-        impact->springs[i] = RR_SPRING(p, i);
-        impact->rotors[i] = RR_ROTOR(p, i);
+#if RR_STRUCTURED
+    impact->status = modes_of(impact, impact->first);
+    if (impact->status == RR_OK) {
+        steps_of(impact, impact->first);
+    }
+#else
+    for (int k = impact->first; k <= impact->last; ++k) {
+        steps_of(impact, k);
     }
 #endif
-    impact->bound = rr_bound(p, motors, impact);
-    const rr_real numbers[4] = {impact->mobility, impact->scale, impact->phase[0].level[0].h,
-        impact->phase[impact->phases - 1].level[0].h};
-    return rr_all_finite(numbers, 4) && rr_check_positive(numbers, 4) == RR_OK
-        ? RR_OK : RR_SINGULAR;
+    return impact->status;
 }

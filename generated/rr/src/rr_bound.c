@@ -6,7 +6,9 @@
  * speed at which contact point and body approach. Kinetic energy is at least u^2/(2 mobility), so that with an
  * energy E in robot and body, f^2 <= 2 E (k + c^2 mobility).
  *
- * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v.
+ * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v; where nothing
+ * but joints' springs pulls only the motion of links, rotors and body that is the contact point's has
+ * to do with it: E = v^2/2 over the mobility of that.
  *
  * Motors that drive or servo: in axes that go on with the motion before, the only one who does work is
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
@@ -23,9 +25,14 @@ static rr_real while_driven(rr_real time, rr_real hold, rr_real damping)
     return y*y;
 }
 
-/* r'(M + B) r */
-static rr_real twice_energy(const rr_params *p, const rr_arrival *arrival)
+/* r'(M + B) r, or what of it an impact can take. */
+static rr_real twice_energy(const rr_impact *impact)
 {
+    const rr_params *const p = impact->p;
+    const rr_arrival *const arrival = &impact->arrival;
+    if (impact->together > RR_R(0.0)) {
+        return RR_R(1.0)/impact->together;
+    }
     rr_real sum = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) {
         for (int j = 0; j < RR_N; ++j) {
@@ -54,7 +61,7 @@ static bool is_held_by_nothing(const rr_impact *impact)
             return false;
         }
     }
-    const rr_modes *const modes = &impact->phase[impact->phases - 1].modes;
+    const rr_modes *const modes = &impact->phase[impact->last].modes;
     rr_real largest = RR_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         largest = RR_FMAX(largest, modes->squared[i]);
@@ -70,20 +77,20 @@ static bool is_held_by_nothing(const rr_impact *impact)
     return true;
 }
 
-rr_real rr_bound(const rr_params *p, int motors, const rr_impact *impact)
+rr_real rr_bound(const rr_impact *impact)
 {
     if (!is_held_by_nothing(impact)) {
         return RR_R(0.0);
     }
-    const rr_real hold = impact->stiffness + impact->damping*impact->damping*impact->mobility;
-    const rr_real twice = twice_energy(p, &impact->arrival);
-    if (motors == RR_MOTORS_FREE) {
+    const rr_real hold = impact->hold;
+    const rr_real twice = twice_energy(impact);
+    if (impact->first == RR_LOOSE) {
         return RR_SQRT(twice*hold);
     }
-    const rr_real horizon = RR_HORIZON(p);
-    const rr_real reaction = RR_FMIN(RR_REACTION_TIME(p), horizon);
-    const rr_real always = while_driven(horizon, hold, impact->damping);
-    const rr_real until = while_driven(reaction, hold, impact->damping);
+    const rr_real horizon = RR_HORIZON(impact->p);
+    const rr_real reaction = RR_FMIN(RR_REACTION_TIME(impact->p), horizon);
+    const rr_real always = while_driven(horizon, hold, impact->region->damping);
+    const rr_real until = while_driven(reaction, hold, impact->region->damping);
     const rr_real root = RR_SQRT(RR_R(2.0)*until*reaction) + RR_SQRT(twice);
     return RR_FMIN(always, RR_FMAX(until, root*RR_SQRT(hold)));
 }

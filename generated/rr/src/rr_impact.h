@@ -27,14 +27,24 @@ typedef struct {
     rr_real rates[RR_N]; /* joint velocities for an approach of 1 m/s */
 } rr_arrival;
 
-/* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
+/* Matrices over the links alone, and of up to RR_SYSTEM rows. */
+typedef rr_real rr_square[RR_N][RR_N];
+typedef rr_real rr_matrix[RR_SYSTEM][RR_SYSTEM];
+
+/*
+ * Motions of unit mass that do not act on each other: displacement = shape amplitude. Displacements are of
+ * links and motors; of deflections times the root of their springs' stiffness, u, where the motors have
+ * none of their own (driven) or are eliminated (free motors without gravity).
+ */
 typedef struct {
     int count;
+    int rigid; /* the first ones have no frequency */
     rr_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
+    rr_real fastest; /* largest squared frequency that is known, 1/s^2 */
     rr_real squared[RR_MODES]; /* frequency, 1/s^2 */
     rr_real row[RR_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     rr_real start[RR_MODES]; /* rates at first touch of an approach of 1 m/s */
-    rr_real shape[RR_SYSTEM][RR_MODES];
+    rr_real shape[RR_MODES][RR_SYSTEM];
 } rr_modes;
 
 /* One step of a mode: what amplitude, rate and the forces at both ends do. */
@@ -56,9 +66,13 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
+    bool ready;
+    bool blurred; /* too few digits to integrate it */
+    bool settles; /* no energy enters but by the motors' drift: see rr_settled.c */
     rr_modes modes; /* the first `active` ones move, the others stand, bent by the force */
     int active;
     rr_real compliance; /* of those that stand, m/N */
+    rr_real reach; /* of all that vibrate, m/N */
     rr_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
     rr_real damping[RR_N];
@@ -69,26 +83,31 @@ typedef struct {
 /* Everything that does not depend on the speed. */
 typedef struct {
     rr_arrival arrival;
-    rr_real stiffness, damping, skin; /* k_h, c_h, k_f */
+    const rr_region *region;
+    const rr_params *p;
+    int motors;
     bool gives_way;
     rr_real mobility; /* of the contact, 1/kg */
+    rr_real together; /* of links and rotors as one, and of the body, 1/kg */
+    rr_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
+    rr_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
+    rr_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
     rr_real scale; /* of forces, N: what bends are measured by */
-    bool blurred; /* too few digits to integrate it */
     rr_real smooth; /* 1, or less where the damper makes forces jump */
-    int phases; /* one, or two where motors are released */
-    rr_phase phase[2];
-#if RR_ELASTIC
-    rr_real springs[RR_N]; /* k_s */
-    rr_real rotors[RR_N]; /* B */
-#endif
-    rr_real carried[RR_N]; /* what deflections move of the contact point, rotors being free */
-    rr_real bound; /* no force is larger than this times the speed, N s/m; 0: no bound */
+    int first, last; /* phases of an impact */
+    int status; /* of what was prepared */
+    rr_phase phase[2]; /* RR_LED and RR_LOOSE */
+    rr_real carried[RR_N]; /* what u moves of the contact point, rotors being free */
 } rr_impact;
+
+/* Phases: motors drive or servo, motors are free. */
+#define RR_LED 0
+#define RR_LOOSE 1
 
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
-    bool rough; /* steps twice as long do */
+    bool rough; /* longer steps do */
     rr_real stop_above; /* force after whose passing the rest does not matter, N */
 } rr_budget;
 
@@ -113,8 +132,11 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival);
 int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
     rr_real force, rr_impact *impact);
 
+/* Prepares what comes after the motors' release, once it is asked for. */
+void rr_impact_let_go(rr_impact *impact);
+
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
-rr_real rr_bound(const rr_params *p, int motors, const rr_impact *impact);
+rr_real rr_bound(const rr_impact *impact);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void rr_kinds_of_motors(const rr_params *p, int *first, int *last);
@@ -131,10 +153,10 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
     rr_real cap, rr_impact *impact, rr_safe_speed_t *found);
 
 /* Largest force over all contacts of an impact at a speed. */
-void rr_impact_run(const rr_impact *impact, rr_real speed, rr_budget *budget,
+void rr_impact_run(rr_impact *impact, rr_real speed, rr_budget *budget,
     rr_peak *peak);
 
-/* Modes of links whose motors follow `motors`, and of released ones; 0 or a status. */
+/* Modes of links whose motors drive or servo, and of loose ones; 0 or a status. */
 int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real *drift);
 int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
@@ -143,14 +165,13 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     rr_real carried[RR_N]);
 
 /*
- * Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`; one in which
- * motors have just been `released` starts with modes that swing.
+ * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
+ * 1/kg; 0 or a status.
  */
-void rr_phase_steps(const rr_region *region, rr_real mobility, rr_real skin_rate,
-    rr_real time, bool released, rr_phase *phase);
+int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real found[3]);
 
-/* Linear algebra on matrices of up to RR_SYSTEM rows. */
-typedef rr_real rr_matrix[RR_SYSTEM][RR_SYSTEM];
+/* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
+void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase);
 
 /* L of A = L L' in place, below and on the diagonal; false unless A is positive definite. */
 bool rr_cholesky(int size, rr_matrix A);
@@ -162,5 +183,7 @@ void rr_backward(int size, rr_matrix L, rr_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool rr_diagonalise(int size, rr_matrix A, rr_matrix X, rr_real noise);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
+bool rr_spectrum(rr_square A, rr_real values[RR_N], rr_square vectors);
 
 #endif

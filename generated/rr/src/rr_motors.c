@@ -30,27 +30,6 @@ static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
     return true;
 }
 
-#if RR_STRUCTURED
-/* A = X' diag(k) X. */
-static void stretch(const rr_real *k, rr_matrix X, rr_matrix A)
-{
-    for (int i = 0; i < RR_N; ++i) {
-        rr_real pulled[RR_N];
-        for (int l = 0; l < RR_N; ++l) {
-            pulled[l] = k[l]*X[l][i];
-        }
-        for (int j = 0; j <= i; ++j) {
-            rr_real sum = RR_R(0.0);
-            for (int l = 0; l < RR_N; ++l) {
-                sum += pulled[l]*X[l][j];
-            }
-            A[i][j] = sum;
-            A[j][i] = sum;
-        }
-    }
-}
-#endif
-
 /* A = X'KX; returns the noise in its entries. */
 static rr_real congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
 {
@@ -76,26 +55,26 @@ static rr_real congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
     return NOISE*largest;
 }
 
-/* Appends the eigenvectors X, over the coordinates `places`, to modes. */
-static void append(int size, const int *places, rr_matrix A, rr_matrix X, const rr_real *row,
+/* Takes over the eigenvectors X, over the coordinates `places`. */
+static void take_over(int size, const int *places, rr_matrix A, rr_matrix X, const rr_real *row,
     rr_modes *modes)
 {
-    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = first + i;
         for (int j = 0; j < RR_SYSTEM; ++j) {
-            modes->shape[j][at] = RR_R(0.0);
+            modes->shape[i][j] = RR_R(0.0);
         }
         rr_real sum = RR_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[places[j]][at] = X[j][i];
+            modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
-        modes->squared[at] = A[i][i];
-        modes->row[at] = sum;
-        modes->start[at] = RR_R(0.0);
+        modes->squared[i] = A[i][i];
+        modes->row[i] = sum;
+        modes->start[i] = RR_R(0.0);
     }
-    modes->count = first + size;
+    modes->count = size;
+    modes->rigid = 0;
+    modes->fastest = RR_REAL_MAX;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -121,7 +100,7 @@ static int lead(const rr_real pull[RR_SYSTEM], rr_modes *modes, rr_real *drift)
     for (int i = 0; i < modes->count; ++i) {
         rr_real along = RR_R(0.0);
         for (int j = 0; j < RR_SYSTEM; ++j) {
-            along += modes->shape[j][i]*pull[j];
+            along += modes->shape[i][j]*pull[j];
         }
         if (RR_FABS(along) > RR_R(0.0)) {
             if (!(RR_FABS(modes->squared[i]) > RR_R(0.0))) {
@@ -164,6 +143,7 @@ static void whole(const rr_arrival *arrival, const rr_params *p, rr_matrix mass,
 #endif
 }
 
+#if !RR_STRUCTURED
 int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real *drift)
 {
@@ -186,9 +166,7 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
-#if !RR_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
-#endif
         }
     }
     *drift = RR_R(1.0);
@@ -196,23 +174,16 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     if (!unit_motions(size, mass, X)) {
         return RR_SINGULAR;
     }
-#if RR_STRUCTURED
-    rr_real k[RR_N];
-    for (int i = 0; i < RR_N; ++i) {
-        k[i] = RR_SPRING(p, i);
-    }
-    stretch(k, X, A);
-    const rr_real noise = RR_R(0.0);
-#else
     const rr_real noise = congruent(size, K, X, A);
-#endif
     if (!rr_diagonalise(size, A, X, noise)) {
         return RR_SINGULAR;
     }
-    append(size, places, A, X, row, modes);
+    take_over(size, places, A, X, row, modes);
+    modes->noise = RR_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
+#endif
 
 int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real *drift)
@@ -240,7 +211,7 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
     if (!rr_diagonalise(RR_SYSTEM, A, X, noise)) {
         return RR_SINGULAR;
     }
-    append(RR_SYSTEM, places, A, X, row, modes);
+    take_over(RR_SYSTEM, places, A, X, row, modes);
     modes->noise = noise;
     *drift = RR_R(1.0);
     rr_real pull[RR_SYSTEM];
@@ -248,74 +219,7 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
     return lead(pull, modes, drift);
 }
 
-#if RR_STRUCTURED
-/*
- * Deflections d of the springs, by d'' + (1/M + 1/B) k d = -(1/M) J'n f, and the motion r of links
- * and rotors together: x = J r + g'd with g = B (M + B)^-1 J'n.
- */
-int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
-    rr_real carried[RR_N])
-{
-    rr_matrix mass;
-    rr_matrix X;
-    rr_matrix A;
-    rr_matrix mobility;
-    int places[RR_SYSTEM];
-    rr_real k[RR_N];
-    (void)p;
-    rr_real moved[RR_N]; /* (M + B)^-1 J'n */
-    for (int i = 0; i < RR_N; ++i) {
-        places[i] = i;
-        k[i] = RR_SPRING(p, i);
-        moved[i] = arrival->row[i];
-        for (int j = 0; j < RR_N; ++j) {
-            mass[i][j] = arrival->links.M[i][j];
-            A[i][j] = mass[i][j];
-        }
-        A[i][i] += RR_ROTOR(p, i);
-    }
-    if (!unit_motions(RR_N, mass, X) || !rr_cholesky(RR_N, A)) {
-        return RR_SINGULAR;
-    }
-    rr_forward(RR_N, A, moved);
-    rr_backward(RR_N, A, moved);
-    rr_real together = RR_R(0.0);
-    for (int i = 0; i < RR_N; ++i) {
-        together += arrival->row[i]*moved[i];
-        carried[i] = RR_ROTOR(p, i)*moved[i];
-        for (int j = 0; j <= i; ++j) {
-            rr_real sum = RR_R(0.0);
-            for (int l = i; l < RR_N; ++l) {
-                sum += X[i][l]*X[j][l];
-            }
-            mobility[i][j] = sum;
-            mobility[j][i] = sum;
-        }
-        mobility[i][i] += RR_R(1.0)/RR_ROTOR(p, i);
-    }
-    if (!(together > RR_R(0.0)) || !rr_cholesky(RR_N, mobility)) {
-        return RR_SINGULAR;
-    }
-    for (int i = 0; i < RR_N; ++i) {
-        for (int j = 0; j < RR_N; ++j) {
-            X[i][j] = j <= i ? mobility[i][j] : RR_R(0.0);
-        }
-    }
-    stretch(k, X, A);
-    if (!rr_diagonalise(RR_N, A, X, RR_R(0.0))) {
-        return RR_SINGULAR;
-    }
-    modes->count = 1; /* the first: r */
-    modes->squared[0] = RR_R(0.0);
-    modes->row[0] = RR_SQRT(together);
-    modes->start[0] = RR_R(1.0)/modes->row[0];
-    for (int j = 0; j < RR_SYSTEM; ++j) {
-        modes->shape[j][0] = RR_R(0.0);
-    }
-    append(RR_N, places, A, X, carried, modes);
-    return RR_OK;
-}
-#else
+#if !RR_STRUCTURED
 int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real carried[RR_N])
 {
@@ -346,10 +250,11 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     if (!rr_diagonalise(RR_SYSTEM, A, X, noise)) {
         return RR_SINGULAR;
     }
-    append(RR_SYSTEM, places, A, X, row, modes);
+    take_over(RR_SYSTEM, places, A, X, row, modes);
+    modes->noise = RR_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < RR_SYSTEM; ++j) {
-            modes->start[i] += modes->shape[j][i]*momentum[j];
+            modes->start[i] += modes->shape[i][j]*momentum[j];
         }
     }
     return RR_OK;

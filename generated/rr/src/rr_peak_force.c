@@ -35,12 +35,16 @@ int rr_peak_force(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real speed,
         }
         rr_peak peak;
         rr_impact_run(&impact, speed, &budget, &peak);
+        if (impact.status != RR_OK) {
+            return impact.status;
+        }
         if (!peak.ended) {
-            if (!(impact.bound > RR_R(0.0))) {
+            const rr_real bound = rr_bound(&impact);
+            if (!(bound > RR_R(0.0))) {
                 return RR_UNRESOLVED;
             }
             bounded = true;
-            peak.force = impact.bound*speed;
+            peak.force = bound*speed;
         }
         if (peak.force > found.force) {
             found.force = peak.force;

@@ -12,8 +12,6 @@
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 24
 #define APART RR_R(4e-3)
-/* Usual exponent of the force over speed: between a spring's and Hertz's law. */
-#define EXPONENT RR_R(1.025)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP RR_R(8.0)
 
@@ -23,17 +21,18 @@ typedef struct {
     rr_real high; /* the least known not to be; 0 while unknown */
 } search;
 
-/* Next speed to try: by the usual power law, unless that is known to be wrong. */
-static rr_real next_speed(const search *s, rr_real v, rr_real force)
+/* Next speed to try: as for two bodies that meet, unless that is known to be wrong. */
+static rr_real next_speed(const rr_impact *impact, const search *s, rr_real v, rr_real force)
 {
-    const rr_real ratio = RR_POW(AIM*s->limit/force, RR_R(1.0)/EXPONENT);
+    const rr_real ratio = rr_two_body_speed(impact->region, impact->mobility, AIM*s->limit)
+        /rr_two_body_speed(impact->region, impact->mobility, force);
     const rr_real next = v*RR_FMIN(LEAP, RR_FMAX(RR_R(1.0)/LEAP, ratio));
     const bool fits = next > s->low && (next < s->high || !(s->high > RR_R(0.0)));
     return fits ? next : RR_R(0.5)*(s->low + s->high);
 }
 
 /* Tries a speed; false once the steps are used up. */
-static bool try_speed(const rr_impact *impact, rr_real v, bool rough, search *s,
+static bool try_speed(rr_impact *impact, rr_real v, bool rough, search *s,
     rr_budget *budget, rr_real *force)
 {
     rr_peak peak;
@@ -61,7 +60,7 @@ static bool is_found(const search *s, rr_real cap)
 }
 
 /* Searches; false if the steps do not do. */
-static bool find(const rr_impact *impact, rr_real guess, rr_real cap, search *s,
+static bool find(rr_impact *impact, rr_real guess, rr_real cap, search *s,
     rr_budget *budget)
 {
     rr_real v = guess;
@@ -72,7 +71,7 @@ static bool find(const rr_impact *impact, rr_real guess, rr_real cap, search *s,
         if (!try_speed(impact, v, true, s, budget, &force)) {
             return false;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > RR_R(0.0) ? RR_FMIN(v, cap) : v;
     }
     for (int k = 1; k < TRIALS; ++k) {
@@ -85,10 +84,34 @@ static bool find(const rr_impact *impact, rr_real guess, rr_real cap, search *s,
         if (is_found(s, cap)) {
             return true;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > RR_R(0.0) ? RR_FMIN(v, cap) : v;
     }
     return false;
+}
+
+/* Whether loose motors bring too little energy for a force: rr_settled.c, w = 0 at first touch. */
+static bool are_weak(const rr_impact *impact, rr_real speed, rr_real force)
+{
+    const rr_real depth =
+        RR_POW(force/impact->region->hertz_stiffness, RR_R(2.0)/RR_R(3.0));
+    const rr_real needed = force*force/impact->hold + RR_R(0.8)*force*depth;
+    return impact->together > RR_R(0.0) && speed*speed <= needed*impact->together;
+}
+
+/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
+static int prepare_end(const rr_region *region, const rr_params *p, int motors, rr_real limit,
+    bool again, rr_impact *impact)
+{
+    if (again && RR_STRUCTURED && impact->phase[RR_LOOSE].ready) {
+        rr_phase *const loose = &impact->phase[RR_LOOSE];
+        const rr_real steps = RR_HORIZON(p)/loose->level[0].h;
+        loose->steps = steps < (rr_real)p->steps ? (int)steps + 1 : p->steps;
+        impact->motors = motors;
+        impact->first = RR_LOOSE;
+        return RR_OK;
+    }
+    return rr_impact_prepare(region, p, motors, limit, impact);
 }
 
 int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
@@ -102,17 +125,24 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
     found->speed = cap;
     found->force = RR_R(0.0);
     for (int motors = last; motors >= first; --motors) {
-        int status = rr_impact_prepare(region, p, motors, limit, impact);
+        if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
+            continue;
+        }
+        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
         if (status != RR_OK) {
             return status;
         }
         const rr_real guess = rr_two_body_speed(region, impact->mobility, AIM*limit);
         search s = {limit, RR_R(0.0), RR_R(0.0), RR_R(0.0)};
         if (!find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget)) {
+            if (impact->status != RR_OK) {
+                return impact->status;
+            }
             bounded = true;
-            if (impact->bound > RR_R(0.0) && s.low < limit/impact->bound) {
-                s.low = RR_FMIN(limit/impact->bound, found->speed > RR_R(0.0) ? found->speed : RR_REAL_MAX);
-                s.low_force = s.low*impact->bound;
+            const rr_real bound = rr_bound(impact);
+            if (bound > RR_R(0.0) && s.low < limit/bound) {
+                s.low = RR_FMIN(limit/bound, found->speed > RR_R(0.0) ? found->speed : RR_REAL_MAX);
+                s.low_force = s.low*bound;
             }
             if (!(s.low > RR_R(0.0))) {
                 return RR_UNRESOLVED;

@@ -3,8 +3,8 @@
 #include "rr_impact.h"
 
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
-#define CONTACT_STEP RR_R(0.5)
-#define MODE_STEP RR_R(2.8)
+#define CONTACT_STEP RR_R(1.0)
+#define MODE_STEP RR_R(5.6)
 /* Most damping of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP RR_R(0.1)
 /*
@@ -33,21 +33,21 @@ static void exchange(rr_modes *modes, int i, int j)
     modes->squared[j] = squared;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < RR_SYSTEM; ++k) {
-        const rr_real shape = modes->shape[k][i];
-        modes->shape[k][i] = modes->shape[k][j];
-        modes->shape[k][j] = shape;
+    for (int k = 0; k < RR_SYSTEM && i != j; ++k) {
+        const rr_real shape = modes->shape[i][k];
+        modes->shape[i][k] = modes->shape[j][k];
+        modes->shape[j][k] = shape;
     }
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
-static void let_stand(rr_real contact, const rr_region *region, rr_real mobility,
-    bool released, rr_phase *phase)
+static void let_stand(const rr_impact *impact, rr_real contact, bool released, rr_phase *phase)
 {
     rr_modes *const modes = &phase->modes;
-    const rr_real heavy = contact*contact/(STANDS*mobility);
+    const rr_region *const region = impact->region;
+    const rr_real heavy = contact*contact/(STANDS*impact->mobility);
     const rr_real twice = region->damping*region->damping/FELT;
-    const rr_real jump = twice*twice*mobility/region->stiffness;
+    const rr_real jump = twice*twice*impact->mobility/region->stiffness;
     rr_real swing = RR_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         const rr_real along = modes->row[i]*modes->start[i];
@@ -56,16 +56,24 @@ static void let_stand(rr_real contact, const rr_region *region, rr_real mobility
     swing *= STANDS*STANDS;
     phase->active = 0;
     phase->compliance = RR_R(0.0);
+    phase->reach = RR_R(0.0);
+    phase->settles = !phase->damped;
     for (int i = 0; i < modes->count; ++i) {
+        const bool body = impact->gives_way && i == modes->count - 1;
         const rr_real weight = modes->row[i]*modes->row[i];
         const rr_real along = modes->row[i]*modes->start[i];
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
             && (!released || weight*region->stiffness < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
+        if (i >= modes->rigid && !body) {
+            phase->settles = phase->settles && modes->squared[i] > RR_R(0.0);
+            phase->reach += weight/modes->squared[i];
+        }
         if (stands) {
             phase->compliance += weight/modes->squared[i];
         } else {
+            phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
             exchange(modes, phase->active, i);
             ++phase->active;
         }
@@ -107,39 +115,50 @@ static void mode_steps(rr_phase *phase, int i)
     }
 }
 
-void rr_phase_steps(const rr_region *region, rr_real mobility, rr_real skin_rate,
-    rr_real time, bool released, rr_phase *phase)
+/* Most that a servo's gains damp a mode, 1/s. */
+static rr_real damping_rate(const rr_phase *phase)
 {
+    rr_real rate = RR_R(0.0);
+    for (int i = 0; i < RR_N && phase->damped; ++i) {
+        rr_real of_motor = RR_R(0.0);
+        for (int k = 0; k < phase->modes.count; ++k) {
+            const rr_real shape = phase->modes.shape[k][RR_SYSTEM - RR_N + i];
+            of_motor += shape*shape;
+        }
+        rate = RR_FMAX(rate, phase->damping[i]*of_motor);
+    }
+    return rate;
+}
+
+void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
+{
+    const rr_region *const region = impact->region;
     rr_modes *const modes = &phase->modes;
-    const rr_real spring = region->stiffness*mobility;
-    const rr_real damper = RR_R(0.5)*region->damping*mobility;
-    const rr_real contact = RR_FMIN(spring + damper*damper, skin_rate);
-    if (region->clamped == 0) {
+    const rr_real spring = region->stiffness*impact->mobility;
+    const rr_real damper = RR_R(0.5)*region->damping*impact->mobility;
+    const rr_real contact = RR_FMIN(spring + damper*damper, impact->skin_rate);
+    const bool released = phase == &impact->phase[RR_LOOSE] && impact->first == RR_LED;
+    if (impact->gives_way) {
         const int body = modes->count;
         modes->squared[body] = RR_R(0.0);
         modes->row[body] = RR_R(1.0)/RR_SQRT(region->effective_mass);
         modes->start[body] = RR_R(0.0);
         for (int k = 0; k < RR_SYSTEM; ++k) {
-            modes->shape[k][body] = RR_R(0.0);
+            modes->shape[body][k] = RR_R(0.0);
         }
         ++modes->count;
     }
-    let_stand(contact, region, mobility, released, phase);
-    rr_real rate2 = contact/(CONTACT_STEP*CONTACT_STEP);
+    let_stand(impact, contact, released, phase);
+    rr_real moving = RR_R(0.0);
+    rr_real rate2 = RR_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
+        moving += modes->row[i]*modes->row[i];
         rate2 = RR_FMAX(rate2, RR_FABS(modes->squared[i])/(MODE_STEP*MODE_STEP));
     }
-    rr_real rate = RR_SQRT(rate2);
-    if (phase->damped) {
-        for (int i = 0; i < RR_N; ++i) {
-            rr_real of_motor = RR_R(0.0);
-            const rr_real *const shape = modes->shape[RR_SYSTEM - RR_N + i];
-            for (int k = 0; k < modes->count; ++k) {
-                of_motor += shape[k]*shape[k];
-            }
-            rate = RR_FMAX(rate, phase->damping[i]*of_motor/SERVO_STEP);
-        }
-    }
+    const rr_real share = RR_FMIN(moving/impact->mobility, RR_R(1.0));
+    rate2 = RR_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
+    const rr_real slowest = RR_R(1.0)/time;
+    const rr_real rate = RR_FMAX(slowest, RR_FMAX(RR_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const rr_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     rr_real h = wanted < MOST ? time/(rr_real)phase->steps : RR_R(1.0)/rate;
@@ -157,4 +176,5 @@ void rr_phase_steps(const rr_region *region, rr_real mobility, rr_real skin_rate
     for (int i = 0; i < phase->active; ++i) {
         mode_steps(phase, i);
     }
+    phase->ready = true;
 }

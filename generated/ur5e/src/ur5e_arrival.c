@@ -119,27 +119,29 @@ ur5e_real ur5e_two_body_speed(const ur5e_region *region, ur5e_real mobility, ur5
 }
 
 /* Modes of a phase. */
-static int modes_of(int motors, const ur5e_params *p, ur5e_impact *impact, ur5e_phase *phase)
+static int modes_of(ur5e_impact *impact, int which)
 {
+    ur5e_phase *const phase = &impact->phase[which];
     phase->drift = UR5E_R(0.0);
     phase->modes.noise = UR5E_R(0.0);
     phase->damped = false;
     for (int i = 0; i < UR5E_N; ++i) {
         phase->damping[i] = UR5E_R(0.0);
     }
-    if (motors == UR5E_MOTORS_FREE) {
-        return ur5e_free_modes(&impact->arrival, p, &phase->modes, impact->carried);
+    if (which == UR5E_LOOSE) {
+        return ur5e_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     }
-    if (motors == UR5E_MOTORS_DRIVEN) {
-        return ur5e_driven_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    if (impact->motors == UR5E_MOTORS_DRIVEN) {
+        return ur5e_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < UR5E_N; ++i) {
-        phase->damping[i] = UR5E_DAMPING_GAIN(p, i);
+        phase->damping[i] = UR5E_DAMPING_GAIN(impact->p, i);
         phase->damped = phase->damped || phase->damping[i] > UR5E_R(0.0);
     }
-    return ur5e_servo_modes(&impact->arrival, p, &phase->modes, &phase->drift);
+    return ur5e_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
 
+#if !UR5E_STRUCTURED
 static ur5e_real mobility_of(const ur5e_modes *modes)
 {
     ur5e_real sum = UR5E_R(0.0);
@@ -148,58 +150,102 @@ static ur5e_real mobility_of(const ur5e_modes *modes)
     }
     return sum;
 }
+#endif
+
+/* Times at which a phase begins and ends. */
+static ur5e_real time_of(const ur5e_impact *impact, int which)
+{
+    const ur5e_real horizon = UR5E_HORIZON(impact->p);
+    const ur5e_real until = which < impact->last ? UR5E_REACTION_TIME(impact->p) : horizon;
+    return which > impact->first ? horizon - UR5E_REACTION_TIME(impact->p) : until;
+}
+
+static void steps_of(ur5e_impact *impact, int which)
+{
+    ur5e_phase *const phase = &impact->phase[which];
+    const ur5e_real time = time_of(impact, which);
+    phase->blurred = phase->modes.noise*time*time > BLURS;
+    ur5e_phase_steps(impact, time, phase);
+    const ur5e_real numbers[2] = {phase->level[0].h, phase->level[UR5E_LEVELS - 1].h};
+    if (ur5e_check_positive(numbers, 2) != UR5E_OK) {
+        impact->status = UR5E_SINGULAR;
+    }
+}
+
+void ur5e_impact_let_go(ur5e_impact *impact)
+{
+    if (!impact->phase[UR5E_LOOSE].ready) {
+        impact->status = modes_of(impact, UR5E_LOOSE);
+        if (impact->status == UR5E_OK) {
+            steps_of(impact, UR5E_LOOSE);
+        }
+    }
+}
+
+/* Mobilities of the contact, and modes where those need them. */
+static void weigh(ur5e_impact *impact)
+{
+    const ur5e_real body = impact->gives_way ? UR5E_R(1.0)/impact->region->effective_mass : UR5E_R(0.0);
+    ur5e_real mobility = UR5E_R(0.0);
+#if UR5E_STRUCTURED
+    ur5e_real found[3];
+    impact->status = ur5e_mobilities(&impact->arrival, impact->p, found);
+    mobility = found[0];
+    impact->together = found[1] + body;
+    impact->rotors = found[2];
+#else
+    for (int k = impact->first; k <= impact->last && impact->status == UR5E_OK; ++k) {
+        impact->status = modes_of(impact, k);
+        mobility = UR5E_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    }
+    impact->together = UR5E_R(0.0);
+    impact->rotors = UR5E_R(0.0);
+    const bool held = !UR5E_ELASTIC && impact->last == UR5E_LED && impact->motors == UR5E_MOTORS_DRIVEN;
+    if (!(mobility > UR5E_LEAST_MOBILITY) && !held) {
+        impact->status = UR5E_SINGULAR;
+    }
+#endif
+    impact->mobility = UR5E_FMAX(mobility, UR5E_LEAST_MOBILITY) + body;
+}
 
 int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int motors,
     ur5e_real force, ur5e_impact *impact)
 {
-    const ur5e_real horizon = UR5E_HORIZON(p);
     const ur5e_real reaction = UR5E_REACTION_TIME(p);
-    const bool released = motors != UR5E_MOTORS_FREE && reaction < horizon;
-    const bool at_once = released && !(reaction > UR5E_R(0.0));
-    impact->phases = released && !at_once ? 2 : 1;
-    int status = modes_of(at_once ? UR5E_MOTORS_FREE : motors, p, impact, &impact->phase[0]);
-    if (status == UR5E_OK && impact->phases == 2) {
-        status = modes_of(UR5E_MOTORS_FREE, p, impact, &impact->phase[1]);
-    }
-    if (status != UR5E_OK) {
-        return status;
-    }
-    const ur5e_real served = UR5E_FMIN(reaction, horizon);
-    impact->blurred = impact->phase[0].modes.noise*served*served > BLURS;
-    impact->stiffness = region->stiffness;
-    impact->damping = region->damping;
-    impact->skin = region->hertz_stiffness;
+    const bool loose = motors == UR5E_MOTORS_FREE || !(reaction > UR5E_R(0.0));
+    impact->region = region;
+    impact->p = p;
+    impact->motors = motors;
     impact->gives_way = region->clamped == 0;
-    const ur5e_real body = impact->gives_way ? UR5E_R(1.0)/region->effective_mass : UR5E_R(0.0);
-    ur5e_real mobility = UR5E_R(0.0);
-    for (int k = 0; k < impact->phases; ++k) {
-        mobility = UR5E_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    impact->first = loose ? UR5E_LOOSE : UR5E_LED;
+    impact->last = loose || reaction < UR5E_HORIZON(p) ? UR5E_LOOSE : UR5E_LED;
+    impact->status = UR5E_OK;
+    impact->phase[UR5E_LED].ready = false;
+    impact->phase[UR5E_LOOSE].ready = false;
+    weigh(impact);
+    if (impact->status != UR5E_OK) {
+        return impact->status;
     }
-    const bool moves = mobility > UR5E_LEAST_MOBILITY;
-    if (!moves && (UR5E_ELASTIC || motors == UR5E_MOTORS_FREE || impact->phases == 2)) {
-        return UR5E_SINGULAR;
-    }
-    impact->mobility = UR5E_FMAX(mobility, UR5E_LEAST_MOBILITY) + body;
     const ur5e_real size =
         force > UR5E_R(0.0) ? force : ur5e_two_body_force(region, impact->mobility, -force);
     impact->scale = UR5E_R(0.4)*size;
+    impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const ur5e_real damped = region->damping*UR5E_SQRT(impact->mobility/region->stiffness);
     impact->smooth = UR5E_R(1.0)/(UR5E_R(1.0) + UR5E_R(4.0)*damped);
-    const ur5e_real skin_rate = skin_stiffness(region, size)*impact->mobility;
-    for (int k = 0; k < impact->phases; ++k) {
-        const ur5e_real from = k > 0 ? reaction : UR5E_R(0.0);
-        const ur5e_real until = k == 0 && impact->phases == 2 ? reaction : horizon;
-        ur5e_phase_steps(region, impact->mobility, skin_rate, until - from, k > 0, &impact->phase[k]);
+    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    const ur5e_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
+    if (!ur5e_all_finite(numbers, 3) || ur5e_check_positive(numbers, 3) != UR5E_OK) {
+        return UR5E_SINGULAR;
     }
-#if UR5E_ELASTIC
-    for (int i = 0; i < UR5E_N; ++i) {
-        impact->springs[i] = UR5E_SPRING(p, i);
-        impact->rotors[i] = UR5E_ROTOR(p, i);
+#if UR5E_STRUCTURED
+    impact->status = modes_of(impact, impact->first);
+    if (impact->status == UR5E_OK) {
+        steps_of(impact, impact->first);
+    }
+#else
+    for (int k = impact->first; k <= impact->last; ++k) {
+        steps_of(impact, k);
     }
 #endif
-    impact->bound = ur5e_bound(p, motors, impact);
-    const ur5e_real numbers[4] = {impact->mobility, impact->scale, impact->phase[0].level[0].h,
-        impact->phase[impact->phases - 1].level[0].h};
-    return ur5e_all_finite(numbers, 4) && ur5e_check_positive(numbers, 4) == UR5E_OK
-        ? UR5E_OK : UR5E_SINGULAR;
+    return impact->status;
 }

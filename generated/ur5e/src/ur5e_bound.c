@@ -6,7 +6,9 @@
  * speed at which contact point and body approach. Kinetic energy is at least u^2/(2 mobility), so that with an
  * energy E in robot and body, f^2 <= 2 E (k + c^2 mobility).
  *
- * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v.
+ * Motors free: E is what the robot arrives with, v^2/2 r'(M + B)r for joint velocities r v; where nothing
+ * but joints' springs pulls only the motion of links, rotors and body that is the contact point's has
+ * to do with it: E = v^2/2 over the mobility of that.
  *
  * Motors that drive or servo: in axes that go on with the motion before, the only one who does work is
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
@@ -23,9 +25,14 @@ static ur5e_real while_driven(ur5e_real time, ur5e_real hold, ur5e_real damping)
     return y*y;
 }
 
-/* r'(M + B) r */
-static ur5e_real twice_energy(const ur5e_params *p, const ur5e_arrival *arrival)
+/* r'(M + B) r, or what of it an impact can take. */
+static ur5e_real twice_energy(const ur5e_impact *impact)
 {
+    const ur5e_params *const p = impact->p;
+    const ur5e_arrival *const arrival = &impact->arrival;
+    if (impact->together > UR5E_R(0.0)) {
+        return UR5E_R(1.0)/impact->together;
+    }
     ur5e_real sum = UR5E_R(0.0);
     for (int i = 0; i < UR5E_N; ++i) {
         for (int j = 0; j < UR5E_N; ++j) {
@@ -54,7 +61,7 @@ static bool is_held_by_nothing(const ur5e_impact *impact)
             return false;
         }
     }
-    const ur5e_modes *const modes = &impact->phase[impact->phases - 1].modes;
+    const ur5e_modes *const modes = &impact->phase[impact->last].modes;
     ur5e_real largest = UR5E_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         largest = UR5E_FMAX(largest, modes->squared[i]);
@@ -70,20 +77,20 @@ static bool is_held_by_nothing(const ur5e_impact *impact)
     return true;
 }
 
-ur5e_real ur5e_bound(const ur5e_params *p, int motors, const ur5e_impact *impact)
+ur5e_real ur5e_bound(const ur5e_impact *impact)
 {
     if (!is_held_by_nothing(impact)) {
         return UR5E_R(0.0);
     }
-    const ur5e_real hold = impact->stiffness + impact->damping*impact->damping*impact->mobility;
-    const ur5e_real twice = twice_energy(p, &impact->arrival);
-    if (motors == UR5E_MOTORS_FREE) {
+    const ur5e_real hold = impact->hold;
+    const ur5e_real twice = twice_energy(impact);
+    if (impact->first == UR5E_LOOSE) {
         return UR5E_SQRT(twice*hold);
     }
-    const ur5e_real horizon = UR5E_HORIZON(p);
-    const ur5e_real reaction = UR5E_FMIN(UR5E_REACTION_TIME(p), horizon);
-    const ur5e_real always = while_driven(horizon, hold, impact->damping);
-    const ur5e_real until = while_driven(reaction, hold, impact->damping);
+    const ur5e_real horizon = UR5E_HORIZON(impact->p);
+    const ur5e_real reaction = UR5E_FMIN(UR5E_REACTION_TIME(impact->p), horizon);
+    const ur5e_real always = while_driven(horizon, hold, impact->region->damping);
+    const ur5e_real until = while_driven(reaction, hold, impact->region->damping);
     const ur5e_real root = UR5E_SQRT(UR5E_R(2.0)*until*reaction) + UR5E_SQRT(twice);
     return UR5E_FMIN(always, UR5E_FMAX(until, root*UR5E_SQRT(hold)));
 }

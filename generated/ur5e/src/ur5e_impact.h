@@ -27,14 +27,24 @@ typedef struct {
     ur5e_real rates[UR5E_N]; /* joint velocities for an approach of 1 m/s */
 } ur5e_arrival;
 
-/* Motions of unit mass that do not act on each other: displacement = shape amplitude. */
+/* Matrices over the links alone, and of up to UR5E_SYSTEM rows. */
+typedef ur5e_real ur5e_square[UR5E_N][UR5E_N];
+typedef ur5e_real ur5e_matrix[UR5E_SYSTEM][UR5E_SYSTEM];
+
+/*
+ * Motions of unit mass that do not act on each other: displacement = shape amplitude. Displacements are of
+ * links and motors; of deflections times the root of their springs' stiffness, u, where the motors have
+ * none of their own (driven) or are eliminated (free motors without gravity).
+ */
 typedef struct {
     int count;
+    int rigid; /* the first ones have no frequency */
     ur5e_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
+    ur5e_real fastest; /* largest squared frequency that is known, 1/s^2 */
     ur5e_real squared[UR5E_MODES]; /* frequency, 1/s^2 */
     ur5e_real row[UR5E_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     ur5e_real start[UR5E_MODES]; /* rates at first touch of an approach of 1 m/s */
-    ur5e_real shape[UR5E_SYSTEM][UR5E_MODES];
+    ur5e_real shape[UR5E_MODES][UR5E_SYSTEM];
 } ur5e_modes;
 
 /* One step of a mode: what amplitude, rate and the forces at both ends do. */
@@ -56,9 +66,13 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
+    bool ready;
+    bool blurred; /* too few digits to integrate it */
+    bool settles; /* no energy enters but by the motors' drift: see ur5e_settled.c */
     ur5e_modes modes; /* the first `active` ones move, the others stand, bent by the force */
     int active;
     ur5e_real compliance; /* of those that stand, m/N */
+    ur5e_real reach; /* of all that vibrate, m/N */
     ur5e_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
     ur5e_real damping[UR5E_N];
@@ -69,26 +83,31 @@ typedef struct {
 /* Everything that does not depend on the speed. */
 typedef struct {
     ur5e_arrival arrival;
-    ur5e_real stiffness, damping, skin; /* k_h, c_h, k_f */
+    const ur5e_region *region;
+    const ur5e_params *p;
+    int motors;
     bool gives_way;
     ur5e_real mobility; /* of the contact, 1/kg */
+    ur5e_real together; /* of links and rotors as one, and of the body, 1/kg */
+    ur5e_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
+    ur5e_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
+    ur5e_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
     ur5e_real scale; /* of forces, N: what bends are measured by */
-    bool blurred; /* too few digits to integrate it */
     ur5e_real smooth; /* 1, or less where the damper makes forces jump */
-    int phases; /* one, or two where motors are released */
-    ur5e_phase phase[2];
-#if UR5E_ELASTIC
-    ur5e_real springs[UR5E_N]; /* k_s */
-    ur5e_real rotors[UR5E_N]; /* B */
-#endif
-    ur5e_real carried[UR5E_N]; /* what deflections move of the contact point, rotors being free */
-    ur5e_real bound; /* no force is larger than this times the speed, N s/m; 0: no bound */
+    int first, last; /* phases of an impact */
+    int status; /* of what was prepared */
+    ur5e_phase phase[2]; /* UR5E_LED and UR5E_LOOSE */
+    ur5e_real carried[UR5E_N]; /* what u moves of the contact point, rotors being free */
 } ur5e_impact;
+
+/* Phases: motors drive or servo, motors are free. */
+#define UR5E_LED 0
+#define UR5E_LOOSE 1
 
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
-    bool rough; /* steps twice as long do */
+    bool rough; /* longer steps do */
     ur5e_real stop_above; /* force after whose passing the rest does not matter, N */
 } ur5e_budget;
 
@@ -113,8 +132,11 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival);
 int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int motors,
     ur5e_real force, ur5e_impact *impact);
 
+/* Prepares what comes after the motors' release, once it is asked for. */
+void ur5e_impact_let_go(ur5e_impact *impact);
+
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
-ur5e_real ur5e_bound(const ur5e_params *p, int motors, const ur5e_impact *impact);
+ur5e_real ur5e_bound(const ur5e_impact *impact);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void ur5e_kinds_of_motors(const ur5e_params *p, int *first, int *last);
@@ -131,10 +153,10 @@ int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real l
     ur5e_real cap, ur5e_impact *impact, ur5e_safe_speed_t *found);
 
 /* Largest force over all contacts of an impact at a speed. */
-void ur5e_impact_run(const ur5e_impact *impact, ur5e_real speed, ur5e_budget *budget,
+void ur5e_impact_run(ur5e_impact *impact, ur5e_real speed, ur5e_budget *budget,
     ur5e_peak *peak);
 
-/* Modes of links whose motors follow `motors`, and of released ones; 0 or a status. */
+/* Modes of links whose motors drive or servo, and of loose ones; 0 or a status. */
 int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real *drift);
 int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
@@ -143,14 +165,13 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     ur5e_real carried[UR5E_N]);
 
 /*
- * Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`; one in which
- * motors have just been `released` starts with modes that swing.
+ * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
+ * 1/kg; 0 or a status.
  */
-void ur5e_phase_steps(const ur5e_region *region, ur5e_real mobility, ur5e_real skin_rate,
-    ur5e_real time, bool released, ur5e_phase *phase);
+int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real found[3]);
 
-/* Linear algebra on matrices of up to UR5E_SYSTEM rows. */
-typedef ur5e_real ur5e_matrix[UR5E_SYSTEM][UR5E_SYSTEM];
+/* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
+void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *phase);
 
 /* L of A = L L' in place, below and on the diagonal; false unless A is positive definite. */
 bool ur5e_cholesky(int size, ur5e_matrix A);
@@ -162,5 +183,7 @@ void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X, ur5e_real noise);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
+bool ur5e_spectrum(ur5e_square A, ur5e_real values[UR5E_N], ur5e_square vectors);
 
 #endif

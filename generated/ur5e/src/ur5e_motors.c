@@ -30,27 +30,6 @@ static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
     return true;
 }
 
-#if UR5E_STRUCTURED
-/* A = X' diag(k) X. */
-static void stretch(const ur5e_real *k, ur5e_matrix X, ur5e_matrix A)
-{
-    for (int i = 0; i < UR5E_N; ++i) {
-        ur5e_real pulled[UR5E_N];
-        for (int l = 0; l < UR5E_N; ++l) {
-            pulled[l] = k[l]*X[l][i];
-        }
-        for (int j = 0; j <= i; ++j) {
-            ur5e_real sum = UR5E_R(0.0);
-            for (int l = 0; l < UR5E_N; ++l) {
-                sum += pulled[l]*X[l][j];
-            }
-            A[i][j] = sum;
-            A[j][i] = sum;
-        }
-    }
-}
-#endif
-
 /* A = X'KX; returns the noise in its entries. */
 static ur5e_real congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A)
 {
@@ -76,26 +55,26 @@ static ur5e_real congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A
     return NOISE*largest;
 }
 
-/* Appends the eigenvectors X, over the coordinates `places`, to modes. */
-static void append(int size, const int *places, ur5e_matrix A, ur5e_matrix X, const ur5e_real *row,
+/* Takes over the eigenvectors X, over the coordinates `places`. */
+static void take_over(int size, const int *places, ur5e_matrix A, ur5e_matrix X, const ur5e_real *row,
     ur5e_modes *modes)
 {
-    const int first = modes->count;
     for (int i = 0; i < size; ++i) {
-        const int at = first + i;
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
-            modes->shape[j][at] = UR5E_R(0.0);
+            modes->shape[i][j] = UR5E_R(0.0);
         }
         ur5e_real sum = UR5E_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[places[j]][at] = X[j][i];
+            modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
-        modes->squared[at] = A[i][i];
-        modes->row[at] = sum;
-        modes->start[at] = UR5E_R(0.0);
+        modes->squared[i] = A[i][i];
+        modes->row[i] = sum;
+        modes->start[i] = UR5E_R(0.0);
     }
-    modes->count = first + size;
+    modes->count = size;
+    modes->rigid = 0;
+    modes->fastest = UR5E_REAL_MAX;
 }
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
@@ -121,7 +100,7 @@ static int lead(const ur5e_real pull[UR5E_SYSTEM], ur5e_modes *modes, ur5e_real 
     for (int i = 0; i < modes->count; ++i) {
         ur5e_real along = UR5E_R(0.0);
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
-            along += modes->shape[j][i]*pull[j];
+            along += modes->shape[i][j]*pull[j];
         }
         if (UR5E_FABS(along) > UR5E_R(0.0)) {
             if (!(UR5E_FABS(modes->squared[i]) > UR5E_R(0.0))) {
@@ -164,6 +143,7 @@ static void whole(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_matrix
 #endif
 }
 
+#if !UR5E_STRUCTURED
 int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real *drift)
 {
@@ -186,9 +166,7 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     for (int i = 0; i < size; ++i) {
         for (int j = 0; j < size; ++j) {
             mass[i][j] = mass[places[i]][places[j]];
-#if !UR5E_STRUCTURED
             K[i][j] = K[places[i]][places[j]];
-#endif
         }
     }
     *drift = UR5E_R(1.0);
@@ -196,23 +174,16 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     if (!unit_motions(size, mass, X)) {
         return UR5E_SINGULAR;
     }
-#if UR5E_STRUCTURED
-    ur5e_real k[UR5E_N];
-    for (int i = 0; i < UR5E_N; ++i) {
-        k[i] = UR5E_SPRING(p, i);
-    }
-    stretch(k, X, A);
-    const ur5e_real noise = UR5E_R(0.0);
-#else
     const ur5e_real noise = congruent(size, K, X, A);
-#endif
     if (!ur5e_diagonalise(size, A, X, noise)) {
         return UR5E_SINGULAR;
     }
-    append(size, places, A, X, row, modes);
+    take_over(size, places, A, X, row, modes);
+    modes->noise = UR5E_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
+#endif
 
 int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real *drift)
@@ -240,7 +211,7 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
     if (!ur5e_diagonalise(UR5E_SYSTEM, A, X, noise)) {
         return UR5E_SINGULAR;
     }
-    append(UR5E_SYSTEM, places, A, X, row, modes);
+    take_over(UR5E_SYSTEM, places, A, X, row, modes);
     modes->noise = noise;
     *drift = UR5E_R(1.0);
     ur5e_real pull[UR5E_SYSTEM];
@@ -248,74 +219,7 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
     return lead(pull, modes, drift);
 }
 
-#if UR5E_STRUCTURED
-/*
- * Deflections d of the springs, by d'' + (1/M + 1/B) k d = -(1/M) J'n f, and the motion r of links
- * and rotors together: x = J r + g'd with g = B (M + B)^-1 J'n.
- */
-int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
-    ur5e_real carried[UR5E_N])
-{
-    ur5e_matrix mass;
-    ur5e_matrix X;
-    ur5e_matrix A;
-    ur5e_matrix mobility;
-    int places[UR5E_SYSTEM];
-    ur5e_real k[UR5E_N];
-    (void)p;
-    ur5e_real moved[UR5E_N]; /* (M + B)^-1 J'n */
-    for (int i = 0; i < UR5E_N; ++i) {
-        places[i] = i;
-        k[i] = UR5E_SPRING(p, i);
-        moved[i] = arrival->row[i];
-        for (int j = 0; j < UR5E_N; ++j) {
-            mass[i][j] = arrival->links.M[i][j];
-            A[i][j] = mass[i][j];
-        }
-        A[i][i] += UR5E_ROTOR(p, i);
-    }
-    if (!unit_motions(UR5E_N, mass, X) || !ur5e_cholesky(UR5E_N, A)) {
-        return UR5E_SINGULAR;
-    }
-    ur5e_forward(UR5E_N, A, moved);
-    ur5e_backward(UR5E_N, A, moved);
-    ur5e_real together = UR5E_R(0.0);
-    for (int i = 0; i < UR5E_N; ++i) {
-        together += arrival->row[i]*moved[i];
-        carried[i] = UR5E_ROTOR(p, i)*moved[i];
-        for (int j = 0; j <= i; ++j) {
-            ur5e_real sum = UR5E_R(0.0);
-            for (int l = i; l < UR5E_N; ++l) {
-                sum += X[i][l]*X[j][l];
-            }
-            mobility[i][j] = sum;
-            mobility[j][i] = sum;
-        }
-        mobility[i][i] += UR5E_R(1.0)/UR5E_ROTOR(p, i);
-    }
-    if (!(together > UR5E_R(0.0)) || !ur5e_cholesky(UR5E_N, mobility)) {
-        return UR5E_SINGULAR;
-    }
-    for (int i = 0; i < UR5E_N; ++i) {
-        for (int j = 0; j < UR5E_N; ++j) {
-            X[i][j] = j <= i ? mobility[i][j] : UR5E_R(0.0);
-        }
-    }
-    stretch(k, X, A);
-    if (!ur5e_diagonalise(UR5E_N, A, X, UR5E_R(0.0))) {
-        return UR5E_SINGULAR;
-    }
-    modes->count = 1; /* the first: r */
-    modes->squared[0] = UR5E_R(0.0);
-    modes->row[0] = UR5E_SQRT(together);
-    modes->start[0] = UR5E_R(1.0)/modes->row[0];
-    for (int j = 0; j < UR5E_SYSTEM; ++j) {
-        modes->shape[j][0] = UR5E_R(0.0);
-    }
-    append(UR5E_N, places, A, X, carried, modes);
-    return UR5E_OK;
-}
-#else
+#if !UR5E_STRUCTURED
 int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real carried[UR5E_N])
 {
@@ -346,10 +250,11 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     if (!ur5e_diagonalise(UR5E_SYSTEM, A, X, noise)) {
         return UR5E_SINGULAR;
     }
-    append(UR5E_SYSTEM, places, A, X, row, modes);
+    take_over(UR5E_SYSTEM, places, A, X, row, modes);
+    modes->noise = UR5E_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
-            modes->start[i] += modes->shape[j][i]*momentum[j];
+            modes->start[i] += modes->shape[i][j]*momentum[j];
         }
     }
     return UR5E_OK;

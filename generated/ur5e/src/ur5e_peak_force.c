@@ -35,12 +35,16 @@ int ur5e_peak_force(const ur5e_real q[UR5E_JOINTS], const ur5e_real n[3], ur5e_r
         }
         ur5e_peak peak;
         ur5e_impact_run(&impact, speed, &budget, &peak);
+        if (impact.status != UR5E_OK) {
+            return impact.status;
+        }
         if (!peak.ended) {
-            if (!(impact.bound > UR5E_R(0.0))) {
+            const ur5e_real bound = ur5e_bound(&impact);
+            if (!(bound > UR5E_R(0.0))) {
                 return UR5E_UNRESOLVED;
             }
             bounded = true;
-            peak.force = impact.bound*speed;
+            peak.force = bound*speed;
         }
         if (peak.force > found.force) {
             found.force = peak.force;

@@ -12,8 +12,6 @@
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 24
 #define APART UR5E_R(4e-3)
-/* Usual exponent of the force over speed: between a spring's and Hertz's law. */
-#define EXPONENT UR5E_R(1.025)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP UR5E_R(8.0)
 
@@ -23,17 +21,18 @@ typedef struct {
     ur5e_real high; /* the least known not to be; 0 while unknown */
 } search;
 
-/* Next speed to try: by the usual power law, unless that is known to be wrong. */
-static ur5e_real next_speed(const search *s, ur5e_real v, ur5e_real force)
+/* Next speed to try: as for two bodies that meet, unless that is known to be wrong. */
+static ur5e_real next_speed(const ur5e_impact *impact, const search *s, ur5e_real v, ur5e_real force)
 {
-    const ur5e_real ratio = UR5E_POW(AIM*s->limit/force, UR5E_R(1.0)/EXPONENT);
+    const ur5e_real ratio = ur5e_two_body_speed(impact->region, impact->mobility, AIM*s->limit)
+        /ur5e_two_body_speed(impact->region, impact->mobility, force);
     const ur5e_real next = v*UR5E_FMIN(LEAP, UR5E_FMAX(UR5E_R(1.0)/LEAP, ratio));
     const bool fits = next > s->low && (next < s->high || !(s->high > UR5E_R(0.0)));
     return fits ? next : UR5E_R(0.5)*(s->low + s->high);
 }
 
 /* Tries a speed; false once the steps are used up. */
-static bool try_speed(const ur5e_impact *impact, ur5e_real v, bool rough, search *s,
+static bool try_speed(ur5e_impact *impact, ur5e_real v, bool rough, search *s,
     ur5e_budget *budget, ur5e_real *force)
 {
     ur5e_peak peak;
@@ -61,7 +60,7 @@ static bool is_found(const search *s, ur5e_real cap)
 }
 
 /* Searches; false if the steps do not do. */
-static bool find(const ur5e_impact *impact, ur5e_real guess, ur5e_real cap, search *s,
+static bool find(ur5e_impact *impact, ur5e_real guess, ur5e_real cap, search *s,
     ur5e_budget *budget)
 {
     ur5e_real v = guess;
@@ -72,7 +71,7 @@ static bool find(const ur5e_impact *impact, ur5e_real guess, ur5e_real cap, sear
         if (!try_speed(impact, v, true, s, budget, &force)) {
             return false;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > UR5E_R(0.0) ? UR5E_FMIN(v, cap) : v;
     }
     for (int k = 1; k < TRIALS; ++k) {
@@ -85,10 +84,34 @@ static bool find(const ur5e_impact *impact, ur5e_real guess, ur5e_real cap, sear
         if (is_found(s, cap)) {
             return true;
         }
-        v = next_speed(s, v, force);
+        v = next_speed(impact, s, v, force);
         v = cap > UR5E_R(0.0) ? UR5E_FMIN(v, cap) : v;
     }
     return false;
+}
+
+/* Whether loose motors bring too little energy for a force: ur5e_settled.c, w = 0 at first touch. */
+static bool are_weak(const ur5e_impact *impact, ur5e_real speed, ur5e_real force)
+{
+    const ur5e_real depth =
+        UR5E_POW(force/impact->region->hertz_stiffness, UR5E_R(2.0)/UR5E_R(3.0));
+    const ur5e_real needed = force*force/impact->hold + UR5E_R(0.8)*force*depth;
+    return impact->together > UR5E_R(0.0) && speed*speed <= needed*impact->together;
+}
+
+/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
+static int prepare_end(const ur5e_region *region, const ur5e_params *p, int motors, ur5e_real limit,
+    bool again, ur5e_impact *impact)
+{
+    if (again && UR5E_STRUCTURED && impact->phase[UR5E_LOOSE].ready) {
+        ur5e_phase *const loose = &impact->phase[UR5E_LOOSE];
+        const ur5e_real steps = UR5E_HORIZON(p)/loose->level[0].h;
+        loose->steps = steps < (ur5e_real)p->steps ? (int)steps + 1 : p->steps;
+        impact->motors = motors;
+        impact->first = UR5E_LOOSE;
+        return UR5E_OK;
+    }
+    return ur5e_impact_prepare(region, p, motors, limit, impact);
 }
 
 int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real limit,
@@ -102,17 +125,24 @@ int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real l
     found->speed = cap;
     found->force = UR5E_R(0.0);
     for (int motors = last; motors >= first; --motors) {
-        int status = ur5e_impact_prepare(region, p, motors, limit, impact);
+        if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
+            continue;
+        }
+        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
         if (status != UR5E_OK) {
             return status;
         }
         const ur5e_real guess = ur5e_two_body_speed(region, impact->mobility, AIM*limit);
         search s = {limit, UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
         if (!find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget)) {
+            if (impact->status != UR5E_OK) {
+                return impact->status;
+            }
             bounded = true;
-            if (impact->bound > UR5E_R(0.0) && s.low < limit/impact->bound) {
-                s.low = UR5E_FMIN(limit/impact->bound, found->speed > UR5E_R(0.0) ? found->speed : UR5E_REAL_MAX);
-                s.low_force = s.low*impact->bound;
+            const ur5e_real bound = ur5e_bound(impact);
+            if (bound > UR5E_R(0.0) && s.low < limit/bound) {
+                s.low = UR5E_FMIN(limit/bound, found->speed > UR5E_R(0.0) ? found->speed : UR5E_REAL_MAX);
+                s.low_force = s.low*bound;
             }
             if (!(s.low > UR5E_R(0.0))) {
                 return UR5E_UNRESOLVED;

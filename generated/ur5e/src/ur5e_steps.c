@@ -3,8 +3,8 @@
 #include "ur5e_impact.h"
 
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
-#define CONTACT_STEP UR5E_R(0.5)
-#define MODE_STEP UR5E_R(2.8)
+#define CONTACT_STEP UR5E_R(1.0)
+#define MODE_STEP UR5E_R(5.6)
 /* Most damping of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP UR5E_R(0.1)
 /*
@@ -33,21 +33,21 @@ static void exchange(ur5e_modes *modes, int i, int j)
     modes->squared[j] = squared;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < UR5E_SYSTEM; ++k) {
-        const ur5e_real shape = modes->shape[k][i];
-        modes->shape[k][i] = modes->shape[k][j];
-        modes->shape[k][j] = shape;
+    for (int k = 0; k < UR5E_SYSTEM && i != j; ++k) {
+        const ur5e_real shape = modes->shape[i][k];
+        modes->shape[i][k] = modes->shape[j][k];
+        modes->shape[j][k] = shape;
     }
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
-static void let_stand(ur5e_real contact, const ur5e_region *region, ur5e_real mobility,
-    bool released, ur5e_phase *phase)
+static void let_stand(const ur5e_impact *impact, ur5e_real contact, bool released, ur5e_phase *phase)
 {
     ur5e_modes *const modes = &phase->modes;
-    const ur5e_real heavy = contact*contact/(STANDS*mobility);
+    const ur5e_region *const region = impact->region;
+    const ur5e_real heavy = contact*contact/(STANDS*impact->mobility);
     const ur5e_real twice = region->damping*region->damping/FELT;
-    const ur5e_real jump = twice*twice*mobility/region->stiffness;
+    const ur5e_real jump = twice*twice*impact->mobility/region->stiffness;
     ur5e_real swing = UR5E_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         const ur5e_real along = modes->row[i]*modes->start[i];
@@ -56,16 +56,24 @@ static void let_stand(ur5e_real contact, const ur5e_region *region, ur5e_real mo
     swing *= STANDS*STANDS;
     phase->active = 0;
     phase->compliance = UR5E_R(0.0);
+    phase->reach = UR5E_R(0.0);
+    phase->settles = !phase->damped;
     for (int i = 0; i < modes->count; ++i) {
+        const bool body = impact->gives_way && i == modes->count - 1;
         const ur5e_real weight = modes->row[i]*modes->row[i];
         const ur5e_real along = modes->row[i]*modes->start[i];
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
             && (!released || weight*region->stiffness < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
+        if (i >= modes->rigid && !body) {
+            phase->settles = phase->settles && modes->squared[i] > UR5E_R(0.0);
+            phase->reach += weight/modes->squared[i];
+        }
         if (stands) {
             phase->compliance += weight/modes->squared[i];
         } else {
+            phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
             exchange(modes, phase->active, i);
             ++phase->active;
         }
@@ -107,39 +115,50 @@ static void mode_steps(ur5e_phase *phase, int i)
     }
 }
 
-void ur5e_phase_steps(const ur5e_region *region, ur5e_real mobility, ur5e_real skin_rate,
-    ur5e_real time, bool released, ur5e_phase *phase)
+/* Most that a servo's gains damp a mode, 1/s. */
+static ur5e_real damping_rate(const ur5e_phase *phase)
 {
+    ur5e_real rate = UR5E_R(0.0);
+    for (int i = 0; i < UR5E_N && phase->damped; ++i) {
+        ur5e_real of_motor = UR5E_R(0.0);
+        for (int k = 0; k < phase->modes.count; ++k) {
+            const ur5e_real shape = phase->modes.shape[k][UR5E_SYSTEM - UR5E_N + i];
+            of_motor += shape*shape;
+        }
+        rate = UR5E_FMAX(rate, phase->damping[i]*of_motor);
+    }
+    return rate;
+}
+
+void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *phase)
+{
+    const ur5e_region *const region = impact->region;
     ur5e_modes *const modes = &phase->modes;
-    const ur5e_real spring = region->stiffness*mobility;
-    const ur5e_real damper = UR5E_R(0.5)*region->damping*mobility;
-    const ur5e_real contact = UR5E_FMIN(spring + damper*damper, skin_rate);
-    if (region->clamped == 0) {
+    const ur5e_real spring = region->stiffness*impact->mobility;
+    const ur5e_real damper = UR5E_R(0.5)*region->damping*impact->mobility;
+    const ur5e_real contact = UR5E_FMIN(spring + damper*damper, impact->skin_rate);
+    const bool released = phase == &impact->phase[UR5E_LOOSE] && impact->first == UR5E_LED;
+    if (impact->gives_way) {
         const int body = modes->count;
         modes->squared[body] = UR5E_R(0.0);
         modes->row[body] = UR5E_R(1.0)/UR5E_SQRT(region->effective_mass);
         modes->start[body] = UR5E_R(0.0);
         for (int k = 0; k < UR5E_SYSTEM; ++k) {
-            modes->shape[k][body] = UR5E_R(0.0);
+            modes->shape[body][k] = UR5E_R(0.0);
         }
         ++modes->count;
     }
-    let_stand(contact, region, mobility, released, phase);
-    ur5e_real rate2 = contact/(CONTACT_STEP*CONTACT_STEP);
+    let_stand(impact, contact, released, phase);
+    ur5e_real moving = UR5E_R(0.0);
+    ur5e_real rate2 = UR5E_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
+        moving += modes->row[i]*modes->row[i];
         rate2 = UR5E_FMAX(rate2, UR5E_FABS(modes->squared[i])/(MODE_STEP*MODE_STEP));
     }
-    ur5e_real rate = UR5E_SQRT(rate2);
-    if (phase->damped) {
-        for (int i = 0; i < UR5E_N; ++i) {
-            ur5e_real of_motor = UR5E_R(0.0);
-            const ur5e_real *const shape = modes->shape[UR5E_SYSTEM - UR5E_N + i];
-            for (int k = 0; k < modes->count; ++k) {
-                of_motor += shape[k]*shape[k];
-            }
-            rate = UR5E_FMAX(rate, phase->damping[i]*of_motor/SERVO_STEP);
-        }
-    }
+    const ur5e_real share = UR5E_FMIN(moving/impact->mobility, UR5E_R(1.0));
+    rate2 = UR5E_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
+    const ur5e_real slowest = UR5E_R(1.0)/time;
+    const ur5e_real rate = UR5E_FMAX(slowest, UR5E_FMAX(UR5E_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const ur5e_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     ur5e_real h = wanted < MOST ? time/(ur5e_real)phase->steps : UR5E_R(1.0)/rate;
@@ -157,4 +176,5 @@ void ur5e_phase_steps(const ur5e_region *region, ur5e_real mobility, ur5e_real s
     for (int i = 0; i < phase->active; ++i) {
         mode_steps(phase, i);
     }
+    phase->ready = true;
 }

@@ -180,15 +180,14 @@ function paintAxes(pen, view, camera, width, height, looks) {
 export function underPointer(picture, x, y) {
   const { to } = picture.arrow;
   if (Math.hypot(to.x - x, to.y - y) < HANDLE + 3) return { arrow: true };
-  let best = null;
+  let best = null; // the last painted one, which covers the others
   picture.solids.forEach((solid) => {
     const { p, r } = solid;
     const [dx, dy] = [r.x - p.x, r.y - p.y];
     const share = Math.min(1, Math.max(0, ((x - p.x) * dx + (y - p.y) * dy) / (dx * dx + dy * dy || 1)));
     const away = Math.hypot(p.x + share * dx - x, p.y + share * dy - y);
     const thick = Math.max((solid.from + share * (solid.to - solid.from)) * p.scale, 10);
-    const depth = p.depth + share * (r.depth - p.depth);
-    if (away < thick && (!best || depth > best.depth)) best = { body: solid.body, share, depth, local: solid.local };
+    if (away < thick) best = { body: solid.body, share, local: solid.local };
   });
   if (!best) return null;
   const [a, b] = best.local;

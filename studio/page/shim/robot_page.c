@@ -5,6 +5,8 @@
 /* Share of a limit that counts as kept, as in robot_safe_speed.c; and halvings of a speed. */
 #define KEPT ROBOT_R(0.9975)
 #define HALVINGS 24
+/* Until when it is followed what still presses on a clamped body, s: as simulate has it. */
+#define PRESSED_UNTIL ROBOT_R(0.6)
 /* Speed of a contact point that counts as rest, m/s. */
 #define AT_REST ROBOT_R(1e-6)
 
@@ -69,6 +71,21 @@ static int prepare(const robot_real *q, const robot_real *n, robot_real speed, c
     return status == ROBOT_OK ? robot_impact_prepare(region, p, motors, -speed, impact) : status;
 }
 
+/* The force that presses on a clamped body from half a second on; infinite where nobody knows. */
+static robot_real pressing_at(const robot_real *q, const robot_real *n, robot_real speed,
+    const robot_region *region, const robot_params *p, int motors)
+{
+    robot_impact impact;
+    robot_peak peak;
+    robot_params longer = *p;
+    longer.horizon = PRESSED_UNTIL;
+    if (region->clamped == 0) {
+        return ROBOT_R(0.0);
+    }
+    return prepare(q, n, speed, region, &longer, motors, &impact) == ROBOT_OK
+        ? robot_run_seen(&impact, speed, p->steps, &peak, NULL) : ROBOT_REAL_MAX;
+}
+
 int robot_follow(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real speed,
     const robot_region *region, const robot_params *p, robot_follow_t *out)
 {
@@ -84,10 +101,11 @@ int robot_follow(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_
         return prepared;
     }
     out->count = 0;
-    out->pressing = robot_run_seen(&impact, speed, p->steps, &peak, out);
+    (void)robot_run_seen(&impact, speed, p->steps, &peak, out);
     out->force = found.force;
     out->peak_time = found.time;
     out->contact = peak.contact;
+    out->pressing = pressing_at(q, n, speed, region, p, p->motors);
     for (int i = 0; i < ROBOT_JOINTS; ++i) {
         out->rates[i] = impact.arrival.rates[i]*speed;
     }
@@ -102,10 +120,7 @@ static bool presses_little(const robot_real *q, const robot_real *n, robot_real 
     int last;
     robot_kinds_of_motors(p, &first, &last);
     for (int motors = first; motors <= last; ++motors) {
-        robot_impact impact;
-        robot_peak peak;
-        if (prepare(q, n, speed, region, p, motors, &impact) != ROBOT_OK
-            || robot_run_seen(&impact, speed, p->steps, &peak, NULL) > KEPT*region->quasi_static_limit) {
+        if (pressing_at(q, n, speed, region, p, motors) > KEPT*region->quasi_static_limit) {
             return false;
         }
     }
@@ -122,7 +137,7 @@ int robot_keeping(const robot_real q[ROBOT_JOINTS], const robot_real n[3], const
     }
     out->speed = safe.speed;
     out->pressed = 0;
-    if (region->clamped == 0 || presses_little(q, n, safe.speed, region, p)) {
+    if (presses_little(q, n, safe.speed, region, p)) {
         return status;
     }
     robot_real low = ROBOT_R(0.0);

@@ -35,7 +35,7 @@ typedef struct {
     robot_real force; /* N; largest */
     robot_real peak_time; /* s */
     int contact; /* in which that is; the first is 1 */
-    robot_real pressing; /* N; force as the horizon ends */
+    robot_real pressing; /* N; largest from 0.5 s on, on a clamped body */
     robot_real rates[ROBOT_JOINTS]; /* rad/s; with which joints arrive */
     int count; /* of moments */
     robot_real time[ROBOT_SEEN]; /* s */

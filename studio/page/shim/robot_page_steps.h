@@ -5,7 +5,10 @@
 
 #include "robot_impact.h"
 
-/* Follows an impact at a speed through its steps; `out` may be NULL. Returns what presses in the end. */
+/*
+ * Follows an impact at a speed through its steps; `out` may be NULL. Returns the largest force from
+ * half a second on, or of all where the steps do not do.
+ */
 robot_real robot_run_seen(const robot_impact *impact, robot_real speed, int steps, robot_peak *peak,
     robot_follow_t *out);
 

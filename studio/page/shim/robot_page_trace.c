@@ -4,6 +4,9 @@
 
 #include "robot_page_steps.h"
 
+/* When the quasi-static limit takes over from the transient one, s; a little less for rounding. */
+#define PRESSED_FROM ROBOT_R(0.499999)
+
 /* Writes down every so many moments, twice as many once there is no more room. */
 typedef struct {
     int every, passed;
@@ -35,6 +38,7 @@ robot_real robot_run_seen(const robot_impact *impact, robot_real speed, int step
     trial t;
     pace p = {1, 0};
     int left = steps;
+    robot_real pressing = ROBOT_R(0.0);
     *peak = none;
     start(impact, speed, &s);
     for (int k = 0; k < impact->phases; ++k) {
@@ -45,6 +49,7 @@ robot_real robot_run_seen(const robot_impact *impact, robot_real speed, int step
             if (out != NULL) {
                 write_down(&s, &p, out);
             }
+            pressing = s.time >= PRESSED_FROM ? ROBOT_FMAX(pressing, s.f) : pressing;
             bool taken = false;
             while (!taken) { /* steps on trial count, too */
                 if (left-- <= 0) {
@@ -64,5 +69,5 @@ robot_real robot_run_seen(const robot_impact *impact, robot_real speed, int step
         write_down(&s, &p, out);
     }
     peak->ended = true;
-    return s.f;
+    return ROBOT_FMAX(pressing, s.f);
 }

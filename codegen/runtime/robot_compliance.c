@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Modes of robot_ where nothing but springs in the joints pulls.
+ *
+ * With u = sqrt(k) (links - motors), S = M over sqrt(k k'), R = B over k and b = J'n over sqrt(k), links
+ * whose motors drive obey S u'' + u = -b f, x = v t + b'u. Those with loose motors obey C u'' + u = -g f,
+ * x = r + g'u, where C = S (S + R)^-1 R is both compliances in series, g = R (S + R)^-1 b, and r is the
+ * motion of links and rotors together, whose mobility is b'(S + R)^-1 b.
+ *
+ * So the eigenvalues are 1/frequency^2, and what rounding costs it costs the fastest modes, which
+ * stand. With S = L L' and G = I + L'(1/R) L, C = L G^-1 L' and g = L G^-1 L^-1 b: no difference of
+ * what may be nearly the same, whether rotors are much lighter or heavier than links.
+ */
+#include "robot_impact.h"
+
+/* A mode of less than this share of all squared periods has no digits left. */
+#define NOISE (ROBOT_R(8.0)*ROBOT_EPSILON)
+
+#if ROBOT_STRUCTURED
+/* S, R and b. */
+typedef struct {
+    robot_matrix S;
+    robot_real R[ROBOT_N];
+    robot_real b[ROBOT_N];
+} scaled;
+
+static void scale(const robot_arrival *arrival, const robot_params *p, scaled *out)
+{
+    robot_real soft[ROBOT_N];
+    for (int i = 0; i < ROBOT_N; ++i) {
+        const robot_real compliance = ROBOT_R(1.0)/ROBOT_SPRING(p, i);
+        soft[i] = ROBOT_SQRT(compliance);
+        out->R[i] = ROBOT_ROTOR(p, i)*compliance;
+        out->b[i] = arrival->row[i]*soft[i];
+        for (int j = 0; j <= i; ++j) {
+            out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+        }
+    }
+}
+
+/* Appends the modes of a compliance, which is lost, to those there are. */
+static int modes_of(robot_square C, const robot_real b[ROBOT_N], robot_modes *modes)
+{
+    robot_real squares[ROBOT_N];
+    robot_square vectors;
+    robot_real all = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        all += C[i][i];
+    }
+    if (!robot_spectrum(C, squares, vectors)) {
+        return ROBOT_SINGULAR;
+    }
+    const robot_real least = NOISE*all;
+    modes->fastest = ROBOT_R(1.0)/least;
+    for (int i = 0; i < ROBOT_N; ++i) {
+        const int at = modes->rigid + i;
+        const robot_real squared = ROBOT_R(1.0)/ROBOT_FMAX(squares[i], least);
+        const robot_real rate = ROBOT_SQRT(squared);
+        robot_real row = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_N; ++j) {
+            row += vectors[i][j]*b[j];
+            modes->shape[at][j] = vectors[i][j]*rate;
+        }
+        for (int j = ROBOT_N; j < ROBOT_SYSTEM; ++j) {
+            modes->shape[at][j] = ROBOT_R(0.0);
+        }
+        modes->squared[at] = squared;
+        modes->row[at] = row*rate;
+        modes->start[at] = ROBOT_R(0.0);
+    }
+    modes->count = modes->rigid + ROBOT_N;
+    modes->noise = ROBOT_R(0.0);
+    return ROBOT_OK;
+}
+
+int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
+    robot_real *drift)
+{
+    scaled s;
+    robot_square C;
+    scale(arrival, p, &s);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            C[i][j] = s.S[i][j];
+            C[j][i] = s.S[i][j];
+        }
+    }
+    *drift = ROBOT_R(1.0);
+    modes->rigid = 0;
+    return modes_of(C, s.b, modes);
+}
+
+int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
+    robot_real carried[ROBOT_N])
+{
+    scaled s;
+    robot_matrix G;
+    robot_square Y; /* columns of L_G^-1 L' */
+    robot_square C;
+    robot_real z[ROBOT_N];
+    scale(arrival, p, &s);
+    if (!robot_cholesky(ROBOT_N, s.S)) {
+        return ROBOT_SINGULAR;
+    }
+    for (int i = 0; i < ROBOT_N; ++i) {
+        z[i] = s.b[i];
+        robot_real stiff[ROBOT_N];
+        for (int l = i; l < ROBOT_N; ++l) {
+            stiff[l] = s.S[l][i]/s.R[l];
+        }
+        for (int j = 0; j <= i; ++j) {
+            robot_real sum = i == j ? ROBOT_R(1.0) : ROBOT_R(0.0);
+            for (int l = i; l < ROBOT_N; ++l) {
+                sum += stiff[l]*s.S[l][j];
+            }
+            G[i][j] = sum;
+        }
+    }
+    if (!robot_cholesky(ROBOT_N, G)) {
+        return ROBOT_SINGULAR;
+    }
+    robot_forward(ROBOT_N, s.S, z);
+    robot_forward(ROBOT_N, G, z);
+    robot_real together = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_N; ++i) { /* column i of L' ends at its row i */
+        robot_real sum = ROBOT_R(0.0);
+        for (int l = 0; l < ROBOT_N; ++l) {
+            robot_real rest = l <= i ? s.S[i][l] : ROBOT_R(0.0);
+            for (int m = 0; m < l; ++m) {
+                rest -= G[l][m]*Y[i][m];
+            }
+            Y[i][l] = rest/G[l][l];
+            sum += Y[i][l]*z[l];
+        }
+        carried[i] = sum;
+        together += s.b[i]*sum/s.R[i];
+        for (int j = 0; j <= i; ++j) {
+            robot_real entry = ROBOT_R(0.0);
+            for (int l = 0; l < ROBOT_N; ++l) {
+                entry += Y[i][l]*Y[j][l];
+            }
+            C[i][j] = entry;
+            C[j][i] = entry;
+        }
+    }
+    if (!(together > ROBOT_R(0.0) && together <= ROBOT_REAL_MAX)) {
+        return ROBOT_SINGULAR;
+    }
+    modes->rigid = 1; /* r */
+    modes->squared[0] = ROBOT_R(0.0);
+    modes->row[0] = ROBOT_SQRT(together);
+    modes->start[0] = ROBOT_R(1.0)/modes->row[0];
+    for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+        modes->shape[0][j] = ROBOT_R(0.0);
+    }
+    return modes_of(C, carried, modes);
+}
+
+/* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
+static robot_real mobility_of(robot_matrix mass, const robot_real row[ROBOT_N])
+{
+    robot_real z[ROBOT_N];
+    robot_real sum = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        z[i] = row[i];
+    }
+    if (robot_cholesky(ROBOT_N, mass)) {
+        robot_forward(ROBOT_N, mass, z);
+        for (int i = 0; i < ROBOT_N; ++i) {
+            sum += z[i]*z[i];
+        }
+    }
+    return sum;
+}
+
+int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_real found[3])
+{
+    robot_matrix mass;
+    robot_matrix together;
+    found[2] = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+            together[i][j] = mass[i][j];
+        }
+        together[i][i] += ROBOT_ROTOR(p, i);
+        found[2] += arrival->row[i]*arrival->row[i]/ROBOT_ROTOR(p, i);
+    }
+    (void)p;
+    found[0] = mobility_of(mass, arrival->row);
+    found[1] = mobility_of(together, arrival->row);
+    return found[0] > ROBOT_LEAST_MOBILITY && found[1] > ROBOT_R(0.0) ? ROBOT_OK : ROBOT_SINGULAR;
+}
+#endif

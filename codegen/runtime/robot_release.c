@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What is left of an impact of robot_ when its motors are let go, in modes of loose motors. */
+#include "robot_state.h"
+
+/* Levels by which the first step is shorter than the last: the bend of the force jumps. */
+#define AFTER 2
+
+/* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
+static void coordinates_of(const robot_state *s, int size, robot_real *place, robot_real *rate)
+{
+    const robot_modes *const modes = &s->phase->modes;
+    for (int j = 0; j < size; ++j) {
+        place[j] = ROBOT_R(0.0);
+        rate[j] = ROBOT_R(0.0);
+    }
+    for (int i = 0; i < modes->count; ++i) {
+        const bool moves = i < s->phase->active;
+        const robot_real led = modes->start[i]*s->speed;
+        const robot_real a = moves ? s->amplitude[i] - led*s->time : -modes->row[i]/modes->squared[i]*s->f;
+        const robot_real b = moves ? s->rate[i] - led : ROBOT_R(0.0);
+        const robot_real *const shape = modes->shape[i];
+        for (int j = 0; j < size; ++j) {
+            place[j] += shape[j]*a;
+            rate[j] += shape[j]*b;
+        }
+    }
+}
+
+void robot_release(robot_state *s)
+{
+    const robot_impact *const impact = s->impact;
+    const robot_phase *const next = &impact->phase[ROBOT_LOOSE];
+    const robot_modes *const modes = &next->modes;
+    robot_real place[ROBOT_SYSTEM];
+    robot_real rate[ROBOT_SYSTEM];
+    robot_real a[ROBOT_MODES];
+    robot_real b[ROBOT_MODES];
+    coordinates_of(s, ROBOT_STRUCTURED && impact->motors == ROBOT_MOTORS_DRIVEN ? ROBOT_N : ROBOT_SYSTEM, place, rate);
+#if ROBOT_STRUCTURED
+    const robot_modes *const before = &s->phase->modes;
+    const int own = s->phase->active - (impact->gives_way ? 1 : 0);
+    robot_real x = s->drifted - s->phase->compliance*s->f;
+    robot_real v = s->phase->drift*s->speed;
+    for (int i = 0; i < own; ++i) {
+        x += before->row[i]*s->amplitude[i];
+        v += before->row[i]*s->rate[i];
+    }
+    for (int j = 0; j < ROBOT_N; ++j) {
+        if (impact->motors == ROBOT_MOTORS_SERVO) {
+            const robot_real root = ROBOT_SQRT(ROBOT_SPRING(impact->p, j));
+            place[j] = root*(place[j] - place[ROBOT_N + j]);
+            rate[j] = root*(rate[j] - rate[ROBOT_N + j]);
+        }
+        x -= impact->carried[j]*place[j];
+        v -= impact->carried[j]*rate[j];
+    }
+    a[0] = x/modes->row[0];
+    b[0] = v/modes->row[0];
+    for (int i = 1; i < next->active; ++i) {
+        a[i] = ROBOT_R(0.0);
+        b[i] = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_N; ++j) {
+            a[i] += modes->shape[i][j]*place[j];
+            b[i] += modes->shape[i][j]*rate[j];
+        }
+        if (modes->squared[i] > ROBOT_R(0.0)) {
+            a[i] /= modes->squared[i];
+            b[i] /= modes->squared[i];
+        }
+    }
+#else
+    robot_real momentum[ROBOT_SYSTEM];
+    robot_real carry[ROBOT_SYSTEM];
+    for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+        const robot_real before = s->speed*impact->arrival.rates[j % ROBOT_N];
+        place[j] += before*s->time;
+        rate[j] += before;
+    }
+    for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+        momentum[j] = ROBOT_R(0.0);
+        carry[j] = ROBOT_R(0.0);
+        if (j < ROBOT_N) {
+            for (int k = 0; k < ROBOT_N; ++k) {
+                momentum[j] += impact->arrival.links.M[j][k]*rate[k];
+                carry[j] += impact->arrival.links.M[j][k]*place[k];
+            }
+        }
+#if ROBOT_ELASTIC
+        if (j >= ROBOT_N) {
+            momentum[j] = ROBOT_ROTOR(impact->p, j - ROBOT_N)*rate[j];
+            carry[j] = ROBOT_ROTOR(impact->p, j - ROBOT_N)*place[j];
+        }
+#endif
+    }
+    for (int i = 0; i < next->active; ++i) {
+        a[i] = ROBOT_R(0.0);
+        b[i] = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            a[i] += modes->shape[i][j]*carry[j];
+            b[i] += modes->shape[i][j]*momentum[j];
+        }
+    }
+#endif
+    /* The body is the last of the modes that move: at least one does. */
+    if (impact->gives_way && next->active > 0 && s->phase->active > 0) {
+        a[next->active - 1] = s->amplitude[s->phase->active - 1];
+        b[next->active - 1] = s->rate[s->phase->active - 1];
+    }
+    for (int i = 0; i < next->active; ++i) {
+        s->amplitude[i] = a[i];
+        s->rate[i] = b[i];
+    }
+    const robot_real h = s->phase->level[s->level].h;
+    s->phase = next;
+    s->drifted = ROBOT_R(0.0);
+    s->level = 0;
+    for (int k = 0; k < ROBOT_LEVELS - 1; ++k) { /* the longest step that is no longer than the last */
+        s->level = next->level[k].h > ROBOT_R(1.01)*h ? k + 1 : s->level;
+    }
+    s->level = s->level + AFTER < ROBOT_LEVELS ? s->level + AFTER : ROBOT_LEVELS - 1;
+    s->past = s->past > 1 ? 1 : s->past;
+    s->ticks = next->steps*(1 << (ROBOT_LEVELS - 1));
+}
+

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Where an impact of robot_ is, and a step of it; not for its users. */
+#ifndef ROBOT_STATE_H
+#define ROBOT_STATE_H
+
+#include "robot_impact.h"
+
+typedef struct {
+    robot_impact *impact;
+    const robot_phase *phase;
+    robot_real speed;
+    robot_real scale; /* of forces, N */
+    int level;
+    int ticks; /* of the shortest step, until the phase is over */
+    robot_real time;
+    robot_real drifted; /* by the motors, m */
+    robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
+    bool touching;
+    int past; /* steps since the touch */
+    robot_real h, h_before, x; /* last steps, contact point */
+    robot_real bump; /* what the bend adds to the force on average of the last step */
+    robot_real f, rise; /* force, and by how much it grew in the last step */
+    robot_real u, u_before, root; /* deformation of the skin; root of its depth */
+    robot_real rest; /* deflection of the body out of contact */
+    robot_real depth; /* of the skin at the largest force so far */
+} robot_state;
+
+/* A step on trial. */
+typedef struct {
+    robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
+    robot_real x, v; /* of the contact point without the force at the end */
+    robot_real f, bump, base, share; /* force at the end; what its bend adds on the way */
+    robot_real u, root;
+} robot_trial;
+
+/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate);
+
+/* Moves all modes by a step without forces. */
+void robot_glide(const robot_state *s, robot_trial *t);
+
+/* Finds the force at the end of a step in contact; 0 where robot and body part. */
+void robot_press(const robot_state *s, robot_trial *t);
+
+/* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
+void robot_take(const robot_trial *t, robot_state *s);
+
+/* Goes over from motors that drive or servo to loose ones. */
+void robot_release(robot_state *s);
+
+/*
+ * Whether no later force exceeds the largest so far: proven, but for a share by which the energy may
+ * exceed what that takes.
+ */
+bool robot_is_settled(const robot_state *s, robot_real force, robot_real share);
+
+#endif

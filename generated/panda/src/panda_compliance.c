@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Modes of panda_ where nothing but springs in the joints pulls.
+ *
+ * With u = sqrt(k) (links - motors), S = M over sqrt(k k'), R = B over k and b = J'n over sqrt(k), links
+ * whose motors drive obey S u'' + u = -b f, x = v t + b'u. Those with loose motors obey C u'' + u = -g f,
+ * x = r + g'u, where C = S (S + R)^-1 R is both compliances in series, g = R (S + R)^-1 b, and r is the
+ * motion of links and rotors together, whose mobility is b'(S + R)^-1 b.
+ *
+ * So the eigenvalues are 1/frequency^2, and what rounding costs it costs the fastest modes, which
+ * stand. With S = L L' and G = I + L'(1/R) L, C = L G^-1 L' and g = L G^-1 L^-1 b: no difference of
+ * what may be nearly the same, whether rotors are much lighter or heavier than links.
+ */
+#include "panda_impact.h"
+
+/* A mode of less than this share of all squared periods has no digits left. */
+#define NOISE (PANDA_R(8.0)*PANDA_EPSILON)
+
+#if PANDA_STRUCTURED
+/* S, R and b. */
+typedef struct {
+    panda_matrix S;
+    panda_real R[PANDA_N];
+    panda_real b[PANDA_N];
+} scaled;
+
+static void scale(const panda_arrival *arrival, const panda_params *p, scaled *out)
+{
+    panda_real soft[PANDA_N];
+    for (int i = 0; i < PANDA_N; ++i) {
+        const panda_real compliance = PANDA_R(1.0)/PANDA_SPRING(p, i);
+        soft[i] = PANDA_SQRT(compliance);
+        out->R[i] = PANDA_ROTOR(p, i)*compliance;
+        out->b[i] = arrival->row[i]*soft[i];
+        for (int j = 0; j <= i; ++j) {
+            out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+        }
+    }
+}
+
+/* Appends the modes of a compliance, which is lost, to those there are. */
+static int modes_of(panda_square C, const panda_real b[PANDA_N], panda_modes *modes)
+{
+    panda_real squares[PANDA_N];
+    panda_square vectors;
+    panda_real all = PANDA_R(0.0);
+    for (int i = 0; i < PANDA_N; ++i) {
+        all += C[i][i];
+    }
+    if (!panda_spectrum(C, squares, vectors)) {
+        return PANDA_SINGULAR;
+    }
+    const panda_real least = NOISE*all;
+    modes->fastest = PANDA_R(1.0)/least;
+    for (int i = 0; i < PANDA_N; ++i) {
+        const int at = modes->rigid + i;
+        const panda_real squared = PANDA_R(1.0)/PANDA_FMAX(squares[i], least);
+        const panda_real rate = PANDA_SQRT(squared);
+        panda_real row = PANDA_R(0.0);
+        for (int j = 0; j < PANDA_N; ++j) {
+            row += vectors[i][j]*b[j];
+            modes->shape[at][j] = vectors[i][j]*rate;
+        }
+        for (int j = PANDA_N; j < PANDA_SYSTEM; ++j) {
+            modes->shape[at][j] = PANDA_R(0.0);
+        }
+        modes->squared[at] = squared;
+        modes->row[at] = row*rate;
+        modes->start[at] = PANDA_R(0.0);
+    }
+    modes->count = modes->rigid + PANDA_N;
+    modes->noise = PANDA_R(0.0);
+    return PANDA_OK;
+}
+
+int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
+    panda_real *drift)
+{
+    scaled s;
+    panda_square C;
+    scale(arrival, p, &s);
+    for (int i = 0; i < PANDA_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            C[i][j] = s.S[i][j];
+            C[j][i] = s.S[i][j];
+        }
+    }
+    *drift = PANDA_R(1.0);
+    modes->rigid = 0;
+    return modes_of(C, s.b, modes);
+}
+
+int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
+    panda_real carried[PANDA_N])
+{
+    scaled s;
+    panda_matrix G;
+    panda_square Y; /* columns of L_G^-1 L' */
+    panda_square C;
+    panda_real z[PANDA_N];
+    scale(arrival, p, &s);
+    if (!panda_cholesky(PANDA_N, s.S)) {
+        return PANDA_SINGULAR;
+    }
+    for (int i = 0; i < PANDA_N; ++i) {
+        z[i] = s.b[i];
+        panda_real stiff[PANDA_N];
+        for (int l = i; l < PANDA_N; ++l) {
+            stiff[l] = s.S[l][i]/s.R[l];
+        }
+        for (int j = 0; j <= i; ++j) {
+            panda_real sum = i == j ? PANDA_R(1.0) : PANDA_R(0.0);
+            for (int l = i; l < PANDA_N; ++l) {
+                sum += stiff[l]*s.S[l][j];
+            }
+            G[i][j] = sum;
+        }
+    }
+    if (!panda_cholesky(PANDA_N, G)) {
+        return PANDA_SINGULAR;
+    }
+    panda_forward(PANDA_N, s.S, z);
+    panda_forward(PANDA_N, G, z);
+    panda_real together = PANDA_R(0.0);
+    for (int i = 0; i < PANDA_N; ++i) { /* column i of L' ends at its row i */
+        panda_real sum = PANDA_R(0.0);
+        for (int l = 0; l < PANDA_N; ++l) {
+            panda_real rest = l <= i ? s.S[i][l] : PANDA_R(0.0);
+            for (int m = 0; m < l; ++m) {
+                rest -= G[l][m]*Y[i][m];
+            }
+            Y[i][l] = rest/G[l][l];
+            sum += Y[i][l]*z[l];
+        }
+        carried[i] = sum;
+        together += s.b[i]*sum/s.R[i];
+        for (int j = 0; j <= i; ++j) {
+            panda_real entry = PANDA_R(0.0);
+            for (int l = 0; l < PANDA_N; ++l) {
+                entry += Y[i][l]*Y[j][l];
+            }
+            C[i][j] = entry;
+            C[j][i] = entry;
+        }
+    }
+    if (!(together > PANDA_R(0.0) && together <= PANDA_REAL_MAX)) {
+        return PANDA_SINGULAR;
+    }
+    modes->rigid = 1; /* r */
+    modes->squared[0] = PANDA_R(0.0);
+    modes->row[0] = PANDA_SQRT(together);
+    modes->start[0] = PANDA_R(1.0)/modes->row[0];
+    for (int j = 0; j < PANDA_SYSTEM; ++j) {
+        modes->shape[0][j] = PANDA_R(0.0);
+    }
+    return modes_of(C, carried, modes);
+}
+
+/* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
+static panda_real mobility_of(panda_matrix mass, const panda_real row[PANDA_N])
+{
+    panda_real z[PANDA_N];
+    panda_real sum = PANDA_R(0.0);
+    for (int i = 0; i < PANDA_N; ++i) {
+        z[i] = row[i];
+    }
+    if (panda_cholesky(PANDA_N, mass)) {
+        panda_forward(PANDA_N, mass, z);
+        for (int i = 0; i < PANDA_N; ++i) {
+            sum += z[i]*z[i];
+        }
+    }
+    return sum;
+}
+
+int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_real found[3])
+{
+    panda_matrix mass;
+    panda_matrix together;
+    found[2] = PANDA_R(0.0);
+    for (int i = 0; i < PANDA_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+            together[i][j] = mass[i][j];
+        }
+        together[i][i] += PANDA_ROTOR(p, i);
+        found[2] += arrival->row[i]*arrival->row[i]/PANDA_ROTOR(p, i);
+    }
+    (void)p;
+    found[0] = mobility_of(mass, arrival->row);
+    found[1] = mobility_of(together, arrival->row);
+    return found[0] > PANDA_LEAST_MOBILITY && found[1] > PANDA_R(0.0) ? PANDA_OK : PANDA_SINGULAR;
+}
+#endif

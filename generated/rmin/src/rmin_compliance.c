@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Modes of rmin_ where nothing but springs in the joints pulls.
+ *
+ * With u = sqrt(k) (links - motors), S = M over sqrt(k k'), R = B over k and b = J'n over sqrt(k), links
+ * whose motors drive obey S u'' + u = -b f, x = v t + b'u. Those with loose motors obey C u'' + u = -g f,
+ * x = r + g'u, where C = S (S + R)^-1 R is both compliances in series, g = R (S + R)^-1 b, and r is the
+ * motion of links and rotors together, whose mobility is b'(S + R)^-1 b.
+ *
+ * So the eigenvalues are 1/frequency^2, and what rounding costs it costs the fastest modes, which
+ * stand. With S = L L' and G = I + L'(1/R) L, C = L G^-1 L' and g = L G^-1 L^-1 b: no difference of
+ * what may be nearly the same, whether rotors are much lighter or heavier than links.
+ */
+#include "rmin_impact.h"
+
+/* A mode of less than this share of all squared periods has no digits left. */
+#define NOISE (RMIN_R(8.0)*RMIN_EPSILON)
+
+#if RMIN_STRUCTURED
+/* S, R and b. */
+typedef struct {
+    rmin_matrix S;
+    rmin_real R[RMIN_N];
+    rmin_real b[RMIN_N];
+} scaled;
+
+static void scale(const rmin_arrival *arrival, const rmin_params *p, scaled *out)
+{
+    rmin_real soft[RMIN_N];
+    for (int i = 0; i < RMIN_N; ++i) {
+        const rmin_real compliance = RMIN_R(1.0)/RMIN_SPRING(p, i);
+        soft[i] = RMIN_SQRT(compliance);
+        out->R[i] = RMIN_ROTOR(p, i)*compliance;
+        out->b[i] = arrival->row[i]*soft[i];
+        for (int j = 0; j <= i; ++j) {
+            out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+        }
+    }
+}
+
+/* Appends the modes of a compliance, which is lost, to those there are. */
+static int modes_of(rmin_square C, const rmin_real b[RMIN_N], rmin_modes *modes)
+{
+    rmin_real squares[RMIN_N];
+    rmin_square vectors;
+    rmin_real all = RMIN_R(0.0);
+    for (int i = 0; i < RMIN_N; ++i) {
+        all += C[i][i];
+    }
+    if (!rmin_spectrum(C, squares, vectors)) {
+        return RMIN_SINGULAR;
+    }
+    const rmin_real least = NOISE*all;
+    modes->fastest = RMIN_R(1.0)/least;
+    for (int i = 0; i < RMIN_N; ++i) {
+        const int at = modes->rigid + i;
+        const rmin_real squared = RMIN_R(1.0)/RMIN_FMAX(squares[i], least);
+        const rmin_real rate = RMIN_SQRT(squared);
+        rmin_real row = RMIN_R(0.0);
+        for (int j = 0; j < RMIN_N; ++j) {
+            row += vectors[i][j]*b[j];
+            modes->shape[at][j] = vectors[i][j]*rate;
+        }
+        for (int j = RMIN_N; j < RMIN_SYSTEM; ++j) {
+            modes->shape[at][j] = RMIN_R(0.0);
+        }
+        modes->squared[at] = squared;
+        modes->row[at] = row*rate;
+        modes->start[at] = RMIN_R(0.0);
+    }
+    modes->count = modes->rigid + RMIN_N;
+    modes->noise = RMIN_R(0.0);
+    return RMIN_OK;
+}
+
+int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
+    rmin_real *drift)
+{
+    scaled s;
+    rmin_square C;
+    scale(arrival, p, &s);
+    for (int i = 0; i < RMIN_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            C[i][j] = s.S[i][j];
+            C[j][i] = s.S[i][j];
+        }
+    }
+    *drift = RMIN_R(1.0);
+    modes->rigid = 0;
+    return modes_of(C, s.b, modes);
+}
+
+int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
+    rmin_real carried[RMIN_N])
+{
+    scaled s;
+    rmin_matrix G;
+    rmin_square Y; /* columns of L_G^-1 L' */
+    rmin_square C;
+    rmin_real z[RMIN_N];
+    scale(arrival, p, &s);
+    if (!rmin_cholesky(RMIN_N, s.S)) {
+        return RMIN_SINGULAR;
+    }
+    for (int i = 0; i < RMIN_N; ++i) {
+        z[i] = s.b[i];
+        rmin_real stiff[RMIN_N];
+        for (int l = i; l < RMIN_N; ++l) {
+            stiff[l] = s.S[l][i]/s.R[l];
+        }
+        for (int j = 0; j <= i; ++j) {
+            rmin_real sum = i == j ? RMIN_R(1.0) : RMIN_R(0.0);
+            for (int l = i; l < RMIN_N; ++l) {
+                sum += stiff[l]*s.S[l][j];
+            }
+            G[i][j] = sum;
+        }
+    }
+    if (!rmin_cholesky(RMIN_N, G)) {
+        return RMIN_SINGULAR;
+    }
+    rmin_forward(RMIN_N, s.S, z);
+    rmin_forward(RMIN_N, G, z);
+    rmin_real together = RMIN_R(0.0);
+    for (int i = 0; i < RMIN_N; ++i) { /* column i of L' ends at its row i */
+        rmin_real sum = RMIN_R(0.0);
+        for (int l = 0; l < RMIN_N; ++l) {
+            rmin_real rest = l <= i ? s.S[i][l] : RMIN_R(0.0);
+            for (int m = 0; m < l; ++m) {
+                rest -= G[l][m]*Y[i][m];
+            }
+            Y[i][l] = rest/G[l][l];
+            sum += Y[i][l]*z[l];
+        }
+        carried[i] = sum;
+        together += s.b[i]*sum/s.R[i];
+        for (int j = 0; j <= i; ++j) {
+            rmin_real entry = RMIN_R(0.0);
+            for (int l = 0; l < RMIN_N; ++l) {
+                entry += Y[i][l]*Y[j][l];
+            }
+            C[i][j] = entry;
+            C[j][i] = entry;
+        }
+    }
+    if (!(together > RMIN_R(0.0) && together <= RMIN_REAL_MAX)) {
+        return RMIN_SINGULAR;
+    }
+    modes->rigid = 1; /* r */
+    modes->squared[0] = RMIN_R(0.0);
+    modes->row[0] = RMIN_SQRT(together);
+    modes->start[0] = RMIN_R(1.0)/modes->row[0];
+    for (int j = 0; j < RMIN_SYSTEM; ++j) {
+        modes->shape[0][j] = RMIN_R(0.0);
+    }
+    return modes_of(C, carried, modes);
+}
+
+/* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
+static rmin_real mobility_of(rmin_matrix mass, const rmin_real row[RMIN_N])
+{
+    rmin_real z[RMIN_N];
+    rmin_real sum = RMIN_R(0.0);
+    for (int i = 0; i < RMIN_N; ++i) {
+        z[i] = row[i];
+    }
+    if (rmin_cholesky(RMIN_N, mass)) {
+        rmin_forward(RMIN_N, mass, z);
+        for (int i = 0; i < RMIN_N; ++i) {
+            sum += z[i]*z[i];
+        }
+    }
+    return sum;
+}
+
+int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real found[3])
+{
+    rmin_matrix mass;
+    rmin_matrix together;
+    found[2] = RMIN_R(0.0);
+    for (int i = 0; i < RMIN_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+            together[i][j] = mass[i][j];
+        }
+        together[i][i] += RMIN_ROTOR(p, i);
+        found[2] += arrival->row[i]*arrival->row[i]/RMIN_ROTOR(p, i);
+    }
+    (void)p;
+    found[0] = mobility_of(mass, arrival->row);
+    found[1] = mobility_of(together, arrival->row);
+    return found[0] > RMIN_LEAST_MOBILITY && found[1] > RMIN_R(0.0) ? RMIN_OK : RMIN_SINGULAR;
+}
+#endif

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What is left of an impact of rmin_ when its motors are let go, in modes of loose motors. */
+#include "rmin_state.h"
+
+/* Levels by which the first step is shorter than the last: the bend of the force jumps. */
+#define AFTER 2
+
+/* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
+static void coordinates_of(const rmin_state *s, int size, rmin_real *place, rmin_real *rate)
+{
+    const rmin_modes *const modes = &s->phase->modes;
+    for (int j = 0; j < size; ++j) {
+        place[j] = RMIN_R(0.0);
+        rate[j] = RMIN_R(0.0);
+    }
+    for (int i = 0; i < modes->count; ++i) {
+        const bool moves = i < s->phase->active;
+        const rmin_real led = modes->start[i]*s->speed;
+        const rmin_real a = moves ? s->amplitude[i] - led*s->time : -modes->row[i]/modes->squared[i]*s->f;
+        const rmin_real b = moves ? s->rate[i] - led : RMIN_R(0.0);
+        const rmin_real *const shape = modes->shape[i];
+        for (int j = 0; j < size; ++j) {
+            place[j] += shape[j]*a;
+            rate[j] += shape[j]*b;
+        }
+    }
+}
+
+void rmin_release(rmin_state *s)
+{
+    const rmin_impact *const impact = s->impact;
+    const rmin_phase *const next = &impact->phase[RMIN_LOOSE];
+    const rmin_modes *const modes = &next->modes;
+    rmin_real place[RMIN_SYSTEM];
+    rmin_real rate[RMIN_SYSTEM];
+    rmin_real a[RMIN_MODES];
+    rmin_real b[RMIN_MODES];
+    coordinates_of(s, RMIN_STRUCTURED && impact->motors == RMIN_MOTORS_DRIVEN ? RMIN_N : RMIN_SYSTEM, place, rate);
+#if RMIN_STRUCTURED
+    const rmin_modes *const before = &s->phase->modes;
+    const int own = s->phase->active - (impact->gives_way ? 1 : 0);
+    rmin_real x = s->drifted - s->phase->compliance*s->f;
+    rmin_real v = s->phase->drift*s->speed;
+    for (int i = 0; i < own; ++i) {
+        x += before->row[i]*s->amplitude[i];
+        v += before->row[i]*s->rate[i];
+    }
+    for (int j = 0; j < RMIN_N; ++j) {
+        if (impact->motors == RMIN_MOTORS_SERVO) {
+            const rmin_real root = RMIN_SQRT(RMIN_SPRING(impact->p, j));
+            place[j] = root*(place[j] - place[RMIN_N + j]);
+            rate[j] = root*(rate[j] - rate[RMIN_N + j]);
+        }
+        x -= impact->carried[j]*place[j];
+        v -= impact->carried[j]*rate[j];
+    }
+    a[0] = x/modes->row[0];
+    b[0] = v/modes->row[0];
+    for (int i = 1; i < next->active; ++i) {
+        a[i] = RMIN_R(0.0);
+        b[i] = RMIN_R(0.0);
+        for (int j = 0; j < RMIN_N; ++j) {
+            a[i] += modes->shape[i][j]*place[j];
+            b[i] += modes->shape[i][j]*rate[j];
+        }
+        if (modes->squared[i] > RMIN_R(0.0)) {
+            a[i] /= modes->squared[i];
+            b[i] /= modes->squared[i];
+        }
+    }
+#else
+    rmin_real momentum[RMIN_SYSTEM];
+    rmin_real carry[RMIN_SYSTEM];
+    for (int j = 0; j < RMIN_SYSTEM; ++j) {
+        const rmin_real before = s->speed*impact->arrival.rates[j % RMIN_N];
+        place[j] += before*s->time;
+        rate[j] += before;
+    }
+    for (int j = 0; j < RMIN_SYSTEM; ++j) {
+        momentum[j] = RMIN_R(0.0);
+        carry[j] = RMIN_R(0.0);
+        if (j < RMIN_N) {
+            for (int k = 0; k < RMIN_N; ++k) {
+                momentum[j] += impact->arrival.links.M[j][k]*rate[k];
+                carry[j] += impact->arrival.links.M[j][k]*place[k];
+            }
+        }
+#if RMIN_ELASTIC
+        if (j >= RMIN_N) {
+            momentum[j] = RMIN_ROTOR(impact->p, j - RMIN_N)*rate[j];
+            carry[j] = RMIN_ROTOR(impact->p, j - RMIN_N)*place[j];
+        }
+#endif
+    }
+    for (int i = 0; i < next->active; ++i) {
+        a[i] = RMIN_R(0.0);
+        b[i] = RMIN_R(0.0);
+        for (int j = 0; j < RMIN_SYSTEM; ++j) {
+            a[i] += modes->shape[i][j]*carry[j];
+            b[i] += modes->shape[i][j]*momentum[j];
+        }
+    }
+#endif
+    /* The body is the last of the modes that move: at least one does. */
+    if (impact->gives_way && next->active > 0 && s->phase->active > 0) {
+        a[next->active - 1] = s->amplitude[s->phase->active - 1];
+        b[next->active - 1] = s->rate[s->phase->active - 1];
+    }
+    for (int i = 0; i < next->active; ++i) {
+        s->amplitude[i] = a[i];
+        s->rate[i] = b[i];
+    }
+    const rmin_real h = s->phase->level[s->level].h;
+    s->phase = next;
+    s->drifted = RMIN_R(0.0);
+    s->level = 0;
+    for (int k = 0; k < RMIN_LEVELS - 1; ++k) { /* the longest step that is no longer than the last */
+        s->level = next->level[k].h > RMIN_R(1.01)*h ? k + 1 : s->level;
+    }
+    s->level = s->level + AFTER < RMIN_LEVELS ? s->level + AFTER : RMIN_LEVELS - 1;
+    s->past = s->past > 1 ? 1 : s->past;
+    s->ticks = next->steps*(1 << (RMIN_LEVELS - 1));
+}
+

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * When the rest of an impact of rmin_ cannot be harder than what was.
+ *
+ * The contact point is at x = r + w: r is the part of motors, or of links and rotors as one, against the
+ * body's own mass; w the part of what vibrates, of energy E. The contact force only pushes r back, so once
+ * r' < 0 it stays so, r does not grow, and with the energy V of skin, body and standing modes, E + V does
+ * not either: (E + V)' = f r' - c s'^2 <= 0. At the largest force F of a later contact f = k s + c x' with
+ * x' <= w', which takes F^2/(2 K) in w' and s (rmin_bound.c), 0.4 F depth in the skin, and depth + s - r = w
+ * takes w^2/(2 reach) in the vibration. With less than that there is no such F.
+ *
+ * Driven motors that are let go later: seen from their motion before, E is of links and rotors, these
+ * move at most sqrt(2 E rotors) on, and the rest holds if r' < 0 by more than that.
+ */
+#include "rmin_state.h"
+
+bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real share)
+{
+    const rmin_impact *const impact = s->impact;
+    const rmin_phase *const phase = s->phase;
+    const rmin_modes *const modes = &phase->modes;
+    const rmin_region *const region = impact->region;
+    const int body = phase->active - (impact->gives_way ? 1 : 0);
+    rmin_real r = s->drifted;
+    rmin_real away = phase->drift*s->speed;
+    for (int i = 0; i < modes->rigid; ++i) {
+        r += modes->row[i]*s->amplitude[i];
+        away += modes->row[i]*s->rate[i];
+    }
+    if (impact->gives_way) {
+        r += modes->row[body]*s->amplitude[body];
+        away += modes->row[body]*s->rate[body];
+    }
+    if (!phase->settles || !(away < RMIN_R(0.0))) {
+        return false;
+    }
+    const rmin_real bent = s->touching ? s->x - s->u : s->rest;
+    rmin_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
+        + RMIN_R(0.8)*s->f*s->root*s->root;
+    for (int i = modes->rigid; i < body; ++i) {
+        twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
+    }
+    if (phase == &impact->phase[RMIN_LED] && impact->last == RMIN_LOOSE
+        && !(away*away > twice*impact->rotors)) {
+        return false;
+    }
+    const rmin_real slip = region->damping*RMIN_SQRT(twice*impact->mobility);
+    const rmin_real pressed = RMIN_FMAX(force - slip, RMIN_R(0.0))/region->stiffness;
+    const rmin_real gap = RMIN_FMAX(s->depth + pressed - r, RMIN_R(0.0));
+    const rmin_real needed = force*force/impact->hold + RMIN_R(0.8)*force*s->depth;
+    return twice*phase->reach <= share*(needed*phase->reach + gap*gap);
+}

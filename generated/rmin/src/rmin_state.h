@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Where an impact of rmin_ is, and a step of it; not for its users. */
+#ifndef RMIN_STATE_H
+#define RMIN_STATE_H
+
+#include "rmin_impact.h"
+
+typedef struct {
+    rmin_impact *impact;
+    const rmin_phase *phase;
+    rmin_real speed;
+    rmin_real scale; /* of forces, N */
+    int level;
+    int ticks; /* of the shortest step, until the phase is over */
+    rmin_real time;
+    rmin_real drifted; /* by the motors, m */
+    rmin_real amplitude[RMIN_MODES], rate[RMIN_MODES];
+    bool touching;
+    int past; /* steps since the touch */
+    rmin_real h, h_before, x; /* last steps, contact point */
+    rmin_real bump; /* what the bend adds to the force on average of the last step */
+    rmin_real f, rise; /* force, and by how much it grew in the last step */
+    rmin_real u, u_before, root; /* deformation of the skin; root of its depth */
+    rmin_real rest; /* deflection of the body out of contact */
+    rmin_real depth; /* of the skin at the largest force so far */
+} rmin_state;
+
+/* A step on trial. */
+typedef struct {
+    rmin_real amplitude[RMIN_MODES], rate[RMIN_MODES];
+    rmin_real x, v; /* of the contact point without the force at the end */
+    rmin_real f, bump, base, share; /* force at the end; what its bend adds on the way */
+    rmin_real u, root;
+} rmin_trial;
+
+/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate);
+
+/* Moves all modes by a step without forces. */
+void rmin_glide(const rmin_state *s, rmin_trial *t);
+
+/* Finds the force at the end of a step in contact; 0 where robot and body part. */
+void rmin_press(const rmin_state *s, rmin_trial *t);
+
+/* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
+void rmin_take(const rmin_trial *t, rmin_state *s);
+
+/* Goes over from motors that drive or servo to loose ones. */
+void rmin_release(rmin_state *s);
+
+/*
+ * Whether no later force exceeds the largest so far: proven, but for a share by which the energy may
+ * exceed what that takes.
+ */
+bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real share);
+
+#endif

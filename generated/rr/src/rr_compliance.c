@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Modes of rr_ where nothing but springs in the joints pulls.
+ *
+ * With u = sqrt(k) (links - motors), S = M over sqrt(k k'), R = B over k and b = J'n over sqrt(k), links
+ * whose motors drive obey S u'' + u = -b f, x = v t + b'u. Those with loose motors obey C u'' + u = -g f,
+ * x = r + g'u, where C = S (S + R)^-1 R is both compliances in series, g = R (S + R)^-1 b, and r is the
+ * motion of links and rotors together, whose mobility is b'(S + R)^-1 b.
+ *
+ * So the eigenvalues are 1/frequency^2, and what rounding costs it costs the fastest modes, which
+ * stand. With S = L L' and G = I + L'(1/R) L, C = L G^-1 L' and g = L G^-1 L^-1 b: no difference of
+ * what may be nearly the same, whether rotors are much lighter or heavier than links.
+ */
+#include "rr_impact.h"
+
+/* A mode of less than this share of all squared periods has no digits left. */
+#define NOISE (RR_R(8.0)*RR_EPSILON)
+
+#if RR_STRUCTURED
+/* S, R and b. */
+typedef struct {
+    rr_matrix S;
+    rr_real R[RR_N];
+    rr_real b[RR_N];
+} scaled;
+
+static void scale(const rr_arrival *arrival, const rr_params *p, scaled *out)
+{
+    rr_real soft[RR_N];
+    for (int i = 0; i < RR_N; ++i) {
+        const rr_real compliance = RR_R(1.0)/RR_SPRING(p, i);
+        soft[i] = RR_SQRT(compliance);
+        out->R[i] = RR_ROTOR(p, i)*compliance;
+        out->b[i] = arrival->row[i]*soft[i];
+        for (int j = 0; j <= i; ++j) {
+            out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+        }
+    }
+}
+
+/* Appends the modes of a compliance, which is lost, to those there are. */
+static int modes_of(rr_square C, const rr_real b[RR_N], rr_modes *modes)
+{
+    rr_real squares[RR_N];
+    rr_square vectors;
+    rr_real all = RR_R(0.0);
+    for (int i = 0; i < RR_N; ++i) {
+        all += C[i][i];
+    }
+    if (!rr_spectrum(C, squares, vectors)) {
+        return RR_SINGULAR;
+    }
+    const rr_real least = NOISE*all;
+    modes->fastest = RR_R(1.0)/least;
+    for (int i = 0; i < RR_N; ++i) {
+        const int at = modes->rigid + i;
+        const rr_real squared = RR_R(1.0)/RR_FMAX(squares[i], least);
+        const rr_real rate = RR_SQRT(squared);
+        rr_real row = RR_R(0.0);
+        for (int j = 0; j < RR_N; ++j) {
+            row += vectors[i][j]*b[j];
+            modes->shape[at][j] = vectors[i][j]*rate;
+        }
+        for (int j = RR_N; j < RR_SYSTEM; ++j) {
+            modes->shape[at][j] = RR_R(0.0);
+        }
+        modes->squared[at] = squared;
+        modes->row[at] = row*rate;
+        modes->start[at] = RR_R(0.0);
+    }
+    modes->count = modes->rigid + RR_N;
+    modes->noise = RR_R(0.0);
+    return RR_OK;
+}
+
+int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
+    rr_real *drift)
+{
+    scaled s;
+    rr_square C;
+    scale(arrival, p, &s);
+    for (int i = 0; i < RR_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            C[i][j] = s.S[i][j];
+            C[j][i] = s.S[i][j];
+        }
+    }
+    *drift = RR_R(1.0);
+    modes->rigid = 0;
+    return modes_of(C, s.b, modes);
+}
+
+int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
+    rr_real carried[RR_N])
+{
+    scaled s;
+    rr_matrix G;
+    rr_square Y; /* columns of L_G^-1 L' */
+    rr_square C;
+    rr_real z[RR_N];
+    scale(arrival, p, &s);
+    if (!rr_cholesky(RR_N, s.S)) {
+        return RR_SINGULAR;
+    }
+    for (int i = 0; i < RR_N; ++i) {
+        z[i] = s.b[i];
+        rr_real stiff[RR_N];
+        for (int l = i; l < RR_N; ++l) {
+            stiff[l] = s.S[l][i]/s.R[l];
+        }
+        for (int j = 0; j <= i; ++j) {
+            rr_real sum = i == j ? RR_R(1.0) : RR_R(0.0);
+            for (int l = i; l < RR_N; ++l) {
+                sum += stiff[l]*s.S[l][j];
+            }
+            G[i][j] = sum;
+        }
+    }
+    if (!rr_cholesky(RR_N, G)) {
+        return RR_SINGULAR;
+    }
+    rr_forward(RR_N, s.S, z);
+    rr_forward(RR_N, G, z);
+    rr_real together = RR_R(0.0);
+    for (int i = 0; i < RR_N; ++i) { /* column i of L' ends at its row i */
+        rr_real sum = RR_R(0.0);
+        for (int l = 0; l < RR_N; ++l) {
+            rr_real rest = l <= i ? s.S[i][l] : RR_R(0.0);
+            for (int m = 0; m < l; ++m) {
+                rest -= G[l][m]*Y[i][m];
+            }
+            Y[i][l] = rest/G[l][l];
+            sum += Y[i][l]*z[l];
+        }
+        carried[i] = sum;
+        together += s.b[i]*sum/s.R[i];
+        for (int j = 0; j <= i; ++j) {
+            rr_real entry = RR_R(0.0);
+            for (int l = 0; l < RR_N; ++l) {
+                entry += Y[i][l]*Y[j][l];
+            }
+            C[i][j] = entry;
+            C[j][i] = entry;
+        }
+    }
+    if (!(together > RR_R(0.0) && together <= RR_REAL_MAX)) {
+        return RR_SINGULAR;
+    }
+    modes->rigid = 1; /* r */
+    modes->squared[0] = RR_R(0.0);
+    modes->row[0] = RR_SQRT(together);
+    modes->start[0] = RR_R(1.0)/modes->row[0];
+    for (int j = 0; j < RR_SYSTEM; ++j) {
+        modes->shape[0][j] = RR_R(0.0);
+    }
+    return modes_of(C, carried, modes);
+}
+
+/* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
+static rr_real mobility_of(rr_matrix mass, const rr_real row[RR_N])
+{
+    rr_real z[RR_N];
+    rr_real sum = RR_R(0.0);
+    for (int i = 0; i < RR_N; ++i) {
+        z[i] = row[i];
+    }
+    if (rr_cholesky(RR_N, mass)) {
+        rr_forward(RR_N, mass, z);
+        for (int i = 0; i < RR_N; ++i) {
+            sum += z[i]*z[i];
+        }
+    }
+    return sum;
+}
+
+int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real found[3])
+{
+    rr_matrix mass;
+    rr_matrix together;
+    found[2] = RR_R(0.0);
+    for (int i = 0; i < RR_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+            together[i][j] = mass[i][j];
+        }
+        together[i][i] += RR_ROTOR(p, i);
+        found[2] += arrival->row[i]*arrival->row[i]/RR_ROTOR(p, i);
+    }
+    (void)p;
+    found[0] = mobility_of(mass, arrival->row);
+    found[1] = mobility_of(together, arrival->row);
+    return found[0] > RR_LEAST_MOBILITY && found[1] > RR_R(0.0) ? RR_OK : RR_SINGULAR;
+}
+#endif

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Modes of ur5e_ where nothing but springs in the joints pulls.
+ *
+ * With u = sqrt(k) (links - motors), S = M over sqrt(k k'), R = B over k and b = J'n over sqrt(k), links
+ * whose motors drive obey S u'' + u = -b f, x = v t + b'u. Those with loose motors obey C u'' + u = -g f,
+ * x = r + g'u, where C = S (S + R)^-1 R is both compliances in series, g = R (S + R)^-1 b, and r is the
+ * motion of links and rotors together, whose mobility is b'(S + R)^-1 b.
+ *
+ * So the eigenvalues are 1/frequency^2, and what rounding costs it costs the fastest modes, which
+ * stand. With S = L L' and G = I + L'(1/R) L, C = L G^-1 L' and g = L G^-1 L^-1 b: no difference of
+ * what may be nearly the same, whether rotors are much lighter or heavier than links.
+ */
+#include "ur5e_impact.h"
+
+/* A mode of less than this share of all squared periods has no digits left. */
+#define NOISE (UR5E_R(8.0)*UR5E_EPSILON)
+
+#if UR5E_STRUCTURED
+/* S, R and b. */
+typedef struct {
+    ur5e_matrix S;
+    ur5e_real R[UR5E_N];
+    ur5e_real b[UR5E_N];
+} scaled;
+
+static void scale(const ur5e_arrival *arrival, const ur5e_params *p, scaled *out)
+{
+    ur5e_real soft[UR5E_N];
+    for (int i = 0; i < UR5E_N; ++i) {
+        const ur5e_real compliance = UR5E_R(1.0)/UR5E_SPRING(p, i);
+        soft[i] = UR5E_SQRT(compliance);
+        out->R[i] = UR5E_ROTOR(p, i)*compliance;
+        out->b[i] = arrival->row[i]*soft[i];
+        for (int j = 0; j <= i; ++j) {
+            out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+        }
+    }
+}
+
+/* Appends the modes of a compliance, which is lost, to those there are. */
+static int modes_of(ur5e_square C, const ur5e_real b[UR5E_N], ur5e_modes *modes)
+{
+    ur5e_real squares[UR5E_N];
+    ur5e_square vectors;
+    ur5e_real all = UR5E_R(0.0);
+    for (int i = 0; i < UR5E_N; ++i) {
+        all += C[i][i];
+    }
+    if (!ur5e_spectrum(C, squares, vectors)) {
+        return UR5E_SINGULAR;
+    }
+    const ur5e_real least = NOISE*all;
+    modes->fastest = UR5E_R(1.0)/least;
+    for (int i = 0; i < UR5E_N; ++i) {
+        const int at = modes->rigid + i;
+        const ur5e_real squared = UR5E_R(1.0)/UR5E_FMAX(squares[i], least);
+        const ur5e_real rate = UR5E_SQRT(squared);
+        ur5e_real row = UR5E_R(0.0);
+        for (int j = 0; j < UR5E_N; ++j) {
+            row += vectors[i][j]*b[j];
+            modes->shape[at][j] = vectors[i][j]*rate;
+        }
+        for (int j = UR5E_N; j < UR5E_SYSTEM; ++j) {
+            modes->shape[at][j] = UR5E_R(0.0);
+        }
+        modes->squared[at] = squared;
+        modes->row[at] = row*rate;
+        modes->start[at] = UR5E_R(0.0);
+    }
+    modes->count = modes->rigid + UR5E_N;
+    modes->noise = UR5E_R(0.0);
+    return UR5E_OK;
+}
+
+int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
+    ur5e_real *drift)
+{
+    scaled s;
+    ur5e_square C;
+    scale(arrival, p, &s);
+    for (int i = 0; i < UR5E_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            C[i][j] = s.S[i][j];
+            C[j][i] = s.S[i][j];
+        }
+    }
+    *drift = UR5E_R(1.0);
+    modes->rigid = 0;
+    return modes_of(C, s.b, modes);
+}
+
+int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
+    ur5e_real carried[UR5E_N])
+{
+    scaled s;
+    ur5e_matrix G;
+    ur5e_square Y; /* columns of L_G^-1 L' */
+    ur5e_square C;
+    ur5e_real z[UR5E_N];
+    scale(arrival, p, &s);
+    if (!ur5e_cholesky(UR5E_N, s.S)) {
+        return UR5E_SINGULAR;
+    }
+    for (int i = 0; i < UR5E_N; ++i) {
+        z[i] = s.b[i];
+        ur5e_real stiff[UR5E_N];
+        for (int l = i; l < UR5E_N; ++l) {
+            stiff[l] = s.S[l][i]/s.R[l];
+        }
+        for (int j = 0; j <= i; ++j) {
+            ur5e_real sum = i == j ? UR5E_R(1.0) : UR5E_R(0.0);
+            for (int l = i; l < UR5E_N; ++l) {
+                sum += stiff[l]*s.S[l][j];
+            }
+            G[i][j] = sum;
+        }
+    }
+    if (!ur5e_cholesky(UR5E_N, G)) {
+        return UR5E_SINGULAR;
+    }
+    ur5e_forward(UR5E_N, s.S, z);
+    ur5e_forward(UR5E_N, G, z);
+    ur5e_real together = UR5E_R(0.0);
+    for (int i = 0; i < UR5E_N; ++i) { /* column i of L' ends at its row i */
+        ur5e_real sum = UR5E_R(0.0);
+        for (int l = 0; l < UR5E_N; ++l) {
+            ur5e_real rest = l <= i ? s.S[i][l] : UR5E_R(0.0);
+            for (int m = 0; m < l; ++m) {
+                rest -= G[l][m]*Y[i][m];
+            }
+            Y[i][l] = rest/G[l][l];
+            sum += Y[i][l]*z[l];
+        }
+        carried[i] = sum;
+        together += s.b[i]*sum/s.R[i];
+        for (int j = 0; j <= i; ++j) {
+            ur5e_real entry = UR5E_R(0.0);
+            for (int l = 0; l < UR5E_N; ++l) {
+                entry += Y[i][l]*Y[j][l];
+            }
+            C[i][j] = entry;
+            C[j][i] = entry;
+        }
+    }
+    if (!(together > UR5E_R(0.0) && together <= UR5E_REAL_MAX)) {
+        return UR5E_SINGULAR;
+    }
+    modes->rigid = 1; /* r */
+    modes->squared[0] = UR5E_R(0.0);
+    modes->row[0] = UR5E_SQRT(together);
+    modes->start[0] = UR5E_R(1.0)/modes->row[0];
+    for (int j = 0; j < UR5E_SYSTEM; ++j) {
+        modes->shape[0][j] = UR5E_R(0.0);
+    }
+    return modes_of(C, carried, modes);
+}
+
+/* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
+static ur5e_real mobility_of(ur5e_matrix mass, const ur5e_real row[UR5E_N])
+{
+    ur5e_real z[UR5E_N];
+    ur5e_real sum = UR5E_R(0.0);
+    for (int i = 0; i < UR5E_N; ++i) {
+        z[i] = row[i];
+    }
+    if (ur5e_cholesky(UR5E_N, mass)) {
+        ur5e_forward(UR5E_N, mass, z);
+        for (int i = 0; i < UR5E_N; ++i) {
+            sum += z[i]*z[i];
+        }
+    }
+    return sum;
+}
+
+int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real found[3])
+{
+    ur5e_matrix mass;
+    ur5e_matrix together;
+    found[2] = UR5E_R(0.0);
+    for (int i = 0; i < UR5E_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+            together[i][j] = mass[i][j];
+        }
+        together[i][i] += UR5E_ROTOR(p, i);
+        found[2] += arrival->row[i]*arrival->row[i]/UR5E_ROTOR(p, i);
+    }
+    (void)p;
+    found[0] = mobility_of(mass, arrival->row);
+    found[1] = mobility_of(together, arrival->row);
+    return found[0] > UR5E_LEAST_MOBILITY && found[1] > UR5E_R(0.0) ? UR5E_OK : UR5E_SINGULAR;
+}
+#endif

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * When the rest of an impact of ur5e_ cannot be harder than what was.
+ *
+ * The contact point is at x = r + w: r is the part of motors, or of links and rotors as one, against the
+ * body's own mass; w the part of what vibrates, of energy E. The contact force only pushes r back, so once
+ * r' < 0 it stays so, r does not grow, and with the energy V of skin, body and standing modes, E + V does
+ * not either: (E + V)' = f r' - c s'^2 <= 0. At the largest force F of a later contact f = k s + c x' with
+ * x' <= w', which takes F^2/(2 K) in w' and s (ur5e_bound.c), 0.4 F depth in the skin, and depth + s - r = w
+ * takes w^2/(2 reach) in the vibration. With less than that there is no such F.
+ *
+ * Driven motors that are let go later: seen from their motion before, E is of links and rotors, these
+ * move at most sqrt(2 E rotors) on, and the rest holds if r' < 0 by more than that.
+ */
+#include "ur5e_state.h"
+
+bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real share)
+{
+    const ur5e_impact *const impact = s->impact;
+    const ur5e_phase *const phase = s->phase;
+    const ur5e_modes *const modes = &phase->modes;
+    const ur5e_region *const region = impact->region;
+    const int body = phase->active - (impact->gives_way ? 1 : 0);
+    ur5e_real r = s->drifted;
+    ur5e_real away = phase->drift*s->speed;
+    for (int i = 0; i < modes->rigid; ++i) {
+        r += modes->row[i]*s->amplitude[i];
+        away += modes->row[i]*s->rate[i];
+    }
+    if (impact->gives_way) {
+        r += modes->row[body]*s->amplitude[body];
+        away += modes->row[body]*s->rate[body];
+    }
+    if (!phase->settles || !(away < UR5E_R(0.0))) {
+        return false;
+    }
+    const ur5e_real bent = s->touching ? s->x - s->u : s->rest;
+    ur5e_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
+        + UR5E_R(0.8)*s->f*s->root*s->root;
+    for (int i = modes->rigid; i < body; ++i) {
+        twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
+    }
+    if (phase == &impact->phase[UR5E_LED] && impact->last == UR5E_LOOSE
+        && !(away*away > twice*impact->rotors)) {
+        return false;
+    }
+    const ur5e_real slip = region->damping*UR5E_SQRT(twice*impact->mobility);
+    const ur5e_real pressed = UR5E_FMAX(force - slip, UR5E_R(0.0))/region->stiffness;
+    const ur5e_real gap = UR5E_FMAX(s->depth + pressed - r, UR5E_R(0.0));
+    const ur5e_real needed = force*force/impact->hold + UR5E_R(0.8)*force*s->depth;
+    return twice*phase->reach <= share*(needed*phase->reach + gap*gap);
+}

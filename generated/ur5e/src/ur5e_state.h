@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: 0BSD */
+/* Where an impact of ur5e_ is, and a step of it; not for its users. */
+#ifndef UR5E_STATE_H
+#define UR5E_STATE_H
+
+#include "ur5e_impact.h"
+
+typedef struct {
+    ur5e_impact *impact;
+    const ur5e_phase *phase;
+    ur5e_real speed;
+    ur5e_real scale; /* of forces, N */
+    int level;
+    int ticks; /* of the shortest step, until the phase is over */
+    ur5e_real time;
+    ur5e_real drifted; /* by the motors, m */
+    ur5e_real amplitude[UR5E_MODES], rate[UR5E_MODES];
+    bool touching;
+    int past; /* steps since the touch */
+    ur5e_real h, h_before, x; /* last steps, contact point */
+    ur5e_real bump; /* what the bend adds to the force on average of the last step */
+    ur5e_real f, rise; /* force, and by how much it grew in the last step */
+    ur5e_real u, u_before, root; /* deformation of the skin; root of its depth */
+    ur5e_real rest; /* deflection of the body out of contact */
+    ur5e_real depth; /* of the skin at the largest force so far */
+} ur5e_state;
+
+/* A step on trial. */
+typedef struct {
+    ur5e_real amplitude[UR5E_MODES], rate[UR5E_MODES];
+    ur5e_real x, v; /* of the contact point without the force at the end */
+    ur5e_real f, bump, base, share; /* force at the end; what its bend adds on the way */
+    ur5e_real u, root;
+} ur5e_trial;
+
+/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+void ur5e_damp(const ur5e_phase *phase, ur5e_real speed, ur5e_real time, ur5e_real *rate);
+
+/* Moves all modes by a step without forces. */
+void ur5e_glide(const ur5e_state *s, ur5e_trial *t);
+
+/* Finds the force at the end of a step in contact; 0 where robot and body part. */
+void ur5e_press(const ur5e_state *s, ur5e_trial *t);
+
+/* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
+void ur5e_take(const ur5e_trial *t, ur5e_state *s);
+
+/* Goes over from motors that drive or servo to loose ones. */
+void ur5e_release(ur5e_state *s);
+
+/*
+ * Whether no later force exceeds the largest so far: proven, but for a share by which the energy may
+ * exceed what that takes.
+ */
+bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real share);
+
+#endif

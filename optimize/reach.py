@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether bounds can be kept at all, which of them conflict, and how near one can come.
+
+All of that needs no impact, so that it is told before any search.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from softimpact.symbolic.robot.rigid import Array
+
+from .bounds import Bound
+from .evaluation import figures, largest_deflection, largest_share
+from .failure import Infeasible
+from .ipopt import Bounds
+from .nlp import task_function, task_numbers
+from .poses import Candidate
+from .solver_options import quiet
+from .stiffest import Stiffest
+from .study import Study
+from .tip_pose import POSE, tip_pose
+
+WITHIN = 1e-5
+"""Excess of a bound's row up to which it counts as kept: Ipopt's tolerance."""
+
+IPOPT = {"hessian_approximation": "limited-memory", "max_iter": 300, "tol": 1e-8}
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """How near hardware can come to keeping some bounds in some poses.
+
+    Attributes:
+        excess: largest of the bounds' rows that are made small; at most zero where all are kept.
+        v: log10 of the hardware's values.
+        postures: of the poses, K×n [rad].
+    """
+
+    excess: float
+    v: Array
+    postures: Array
+
+
+def reach(
+    study: Study,
+    postures: Sequence[Array],
+    bounds: Sequence[Bound],
+    sought: Sequence[Bound] | None = None,
+    *,
+    free: bool,
+) -> Reach:
+    """Make the largest excess of bounds small.
+
+    Args:
+        study: the robot and its variables.
+        postures: that one machine must keep the bounds in, K of length n [rad].
+        bounds: to look at.
+        sought: those of them whose excess is made small, the others are kept; default all.
+        free: whether the postures may move along their self-motion.
+    """
+    # of the study's own bounds there are no others, so that none counts twice
+    asked = replace(study, other_bounds=tuple(b for b in bounds if b != study.deflection))
+    with_deflection = any(b == study.deflection for b in bounds)
+    task, rows = task_function(asked)
+    limits = Bounds.of(study)
+    n, V, K = study.robot.n, limits.lower.size, len(postures)
+    chosen = [with_deflection, *(True for _ in asked.other_bounds)]
+    soft = [sought is None or bound in sought for bound in asked.bounds]
+    x, t = ca.MX.sym("x", V + K * n), ca.MX.sym("t")
+    v, *qs = ca.vertsplit(x, [0, *(V + n * k for k in range(K + 1))])
+    held, poses = [], []
+    for q, given in zip(qs, postures, strict=True):
+        found = task(ca.vertcat(q, v), task_numbers(asked, *tip_pose(study.model, given)))[0]
+        poses.append(found[:POSE])
+        pieces = ca.vertsplit(found[POSE:], np.cumsum([0, *rows]).tolist())
+        for piece, is_chosen, is_soft in zip(pieces, chosen, soft, strict=True):
+            if is_chosen:
+                held.append(piece - t if is_soft else piece)
+    g_poses, g_held = ca.vertcat(*poses), ca.vertcat(*held)
+    problem: dict[str, Any] = {
+        "x": ca.vertcat(x, t),
+        "f": t,
+        "g": ca.vertcat(g_poses, g_held),
+    }
+    solver = ca.nlpsol("reach", "ipopt", problem, quiet(IPOPT))
+    loose = 0.0 if free else np.inf
+    flat = np.concatenate(list(postures))
+    lower, upper = study.robot.limits
+    least = np.concatenate([limits.lower, np.tile(lower, K) if free else flat, [-np.inf]])
+    most = np.concatenate([limits.upper, np.tile(upper, K) if free else flat, [np.inf]])
+    best: Reach | None = None
+    for start in (limits.upper, limits.start):
+        solution = solver(
+            x0=np.concatenate([start, flat, [1.0]]),
+            lbx=least,
+            ubx=most,
+            lbg=np.concatenate(
+                [np.full(g_poses.numel(), -loose), np.full(g_held.numel(), -np.inf)]
+            ),
+            ubg=np.concatenate([np.full(g_poses.numel(), loose), np.zeros(g_held.numel())]),
+        )
+        end = np.clip(np.array(solution["x"]).ravel(), least, most)
+        missed = np.array(solution["g"]).ravel()
+        off = abs(missed[: g_poses.numel()]).max() if free else 0.0
+        excess = float(end[-1] + max(missed[g_poses.numel() :].max(), 0.0))
+        if off < 1e-6 and (best is None or excess < best.excess):
+            best = Reach(excess, end[:V], end[V:-1].reshape(K, n))
+        if best is not None and best.excess <= WITHIN:
+            break
+    return best or Reach(np.inf, limits.upper, np.array(postures))
+
+
+def reachable(study: Study, q: Array, *, free: bool) -> bool:
+    """Return whether some hardware keeps all bounds in one posture."""
+    if largest_share(study, q, study.upper) <= 1:
+        return True
+    return reach(study, [q], study.bounds, free=free).excess <= WITHIN
+
+
+def require_reachable(study: Study, poses: Sequence[Candidate], *, free: bool) -> None:
+    """Raise Infeasible if no hardware keeps all bounds in all poses at once."""
+    if all(largest_share(study, pose.q, study.upper) <= 1 for pose in poses):
+        return
+    if reach(study, [pose.q for pose in poses], study.bounds, free=free).excess <= WITHIN:
+        return
+    raise infeasible(study, poses, free=free)
+
+
+def infeasible(study: Study, poses: Sequence[Candidate], *, free: bool) -> Infeasible:
+    """Return why no hardware keeps all bounds: a set of them of which each is needed for that."""
+
+    def broken(some: Sequence[Candidate], bounds: Sequence[Bound]) -> bool:
+        return reach(study, [p.q for p in some], bounds, free=free).excess > WITHIN
+
+    alone = [pose for pose in poses if broken([pose], study.bounds)]
+    some = _needed([alone[0]] if alone else poses, lambda left: broken(left, study.bounds))
+    bounds = _needed(study.bounds, lambda left: broken(some, left))
+    postures = [pose.q for pose in some]
+    ends = []
+    for bound in bounds:
+        found = reach(study, postures, bounds, [bound], free=free)
+        springs, others = Bounds.of(study).parted(found.v)
+        each = [figures(bound, study, q, springs, others) for q in found.postures]
+        figure = max(e.max() for e in each) if bound.sense == "most" else min(e.min() for e in each)
+        ends.append((bound, float(figure), found))
+    at = _at_their_ends(study, ends[0][2].v)
+    springs, _ = Bounds.of(study).parted(ends[0][2].v)
+    q = ends[0][2].postures[0]
+    least = Stiffest(q, springs, largest_deflection(study, q, springs))
+    names = [pose.pose.name for pose in some]
+    return Infeasible.of(least, [end[:2] for end in ends], names, at, free=free)
+
+
+def _needed(members: Iterable[Any], broken: Any) -> list[Any]:
+    """Return an irreducible set: members are left out as long as what is left is still broken."""
+    left = list(members)
+    for member in list(left):
+        without = [each for each in left if each is not member]
+        if without and broken(without):
+            left = without
+    return left
+
+
+def _at_their_ends(study: Study, v: Array) -> str:
+    """Return which limits of the springs hold the hardware back, in words."""
+    springs = max(study.groups) + 1
+    names = study.range.names[:springs]
+    stiff = v[:springs] >= np.log10(study.range.upper[:springs]) - 1e-3
+    at = ", ".join(name for name, is_stiff in zip(names, stiff, strict=True) if is_stiff)
+    return f"stiffness.upper of {at}" if at else "stiffness"

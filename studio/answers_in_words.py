@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which numbers of a design matter, and what its bounds cost, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from softimpact.optimize import Study
+from softimpact.optimize.answers import Price, by_name
+from softimpact.symbolic.robot.rigid import Array
+
+
+def answers_in_words(study: Study, ranges: Array, prices: Sequence[Price]) -> Iterator[str]:
+    """Yield the ranges of values that cost less than 0.5 %, and the prices, a line each.
+
+    Args:
+        study: that was solved.
+        ranges: of each value of the hardware.
+        prices: of bounds.
+    """
+    joints, named = study.robot.joint_names, by_name(study, ranges)
+    springs = ", ".join(f"{name} {named[name][0]:.0f}–{named[name][1]:.0f}" for name in joints)
+    yield f"costs less than 0.5 %, one at a time: {springs} N·m/rad"
+    others = [f"{k} {low:.4g}–{high:.4g}" for k, (low, high) in named.items() if k not in joints]
+    if others:
+        yield f"the same of the rest: {', '.join(others)}"
+    for price in prices:
+        yield f"{price.bound}: {price.room} buys {price.gain:.2g} {price.unit}"

@@ -1,0 +1,363 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``softimpact studio``: the page says what Python says, in a real browser, wide and narrow."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browser import Tab, browser
+from command_line import refusal, run
+
+from softimpact.simulate import Approach, ImpactHistory, bracket, simulate_impact
+from softimpact.simulate.band import impact_band
+from softimpact.simulate.tolerances import Tolerances
+from softimpact.simulate.trajectory import passes, trajectory
+from softimpact.studio.page import module
+from softimpact.studio.page.opened import opened
+from softimpact.studio.page.write import bundled
+from softimpact.symbolic import (
+    REGIONS,
+    Contact,
+    ImpactModel,
+    Motors,
+    analyse,
+    drives,
+    frame_pose,
+    limits_of,
+    load_robot,
+    two_body,
+    with_load,
+)
+from softimpact.symbolic.impact.two_body import moving_mass
+
+ROOT = Path(__file__).parents[2]
+STUDY = ROOT / "robots" / "studies" / "panda_24_poses.toml"
+PANDA = load_robot("panda")
+MOST_BYTES = 3_000_000
+FRAME = 16.0
+"""Most time of a picture [ms], of which a screen shows 60 a second."""
+
+SIZES = {"wide": (1440, 900), "narrow": (390, 844)}
+
+Q9 = [-1.22, 0.84, 0.72, -2.41, 0.79, 1.97, -2.04]
+SITUATIONS: dict[str, dict[str, Any]] = {
+    "chest": {"q": Q9, "n": [0, 1, 0], "speed": 0.5},
+    "hand, free": {"q": Q9, "n": [0.6, 0, -0.8], "region": "hand", "clamped": False,
+                   "springs": [1e5] * 7, "reaction_time": 0.05},
+    "forearm, payload": {"q": Q9, "n": [0, 1, 0], "body": 4, "place": [0, 0.05, -0.1],
+                         "region": "upper_arm", "payload": 3.0, "springs": [1e4] * 7},
+    "driven, never released": {"q": Q9, "n": [0, 1, 0], "motors": "driven", "reaction_time": None,
+                               "springs": [3e3] * 7, "speed": 0.1},
+}  # fmt: skip
+
+
+def model_of(state: dict[str, Any]) -> ImpactModel:
+    robot = PANDA if not state["payload"] else with_load(PANDA, "hand_tcp", state["payload"])
+    x, y, z = state["place"]
+    carrier = next(
+        name
+        for name, frame in robot.frames.items()
+        if frame.joint == state["body"] and not np.any(frame.placement.translation)
+        and np.allclose(frame.placement.rotation, np.eye(3))
+    )  # fmt: skip
+    tip = robot.frame(f"{carrier}@{x},{y},{z}").name
+    stiff = drives(robot, joint_stiffness=state["springs"], rotor_inertia=state["rotors"])
+    return ImpactModel(robot, tip, stiff)
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    pytest.importorskip("ziglang")
+    out = tmp_path_factory.mktemp("studio") / "page"
+    outcome = run("studio", STUDY, "--out", out)
+    assert outcome.code == 0, outcome
+    assert outcome.out == f"wrote {(out / 'index.html').resolve()}\n"
+    return out / "index.html"
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Tab]:
+    with browser() as tab:
+        yield tab
+
+
+@pytest.fixture(params=SIZES)
+def tab(request: pytest.FixtureRequest, chromium: Tab, page: Path) -> Iterator[Tab]:
+    width, height = SIZES[request.param]
+    chromium.open("about:blank", width, height)
+    chromium.open(page.as_uri(), width, height, mobile=request.param == "narrow")
+    chromium.wait_for("window.softimpact")
+    yield chromium
+    assert chromium.errors == []
+
+
+def set_to(tab: Tab, **change: Any) -> dict[str, Any]:
+    """Change the page's state as its controls do; return the whole."""
+    found = tab.ask(
+        f"(softimpact.set({json.dumps(change)}), softimpact.draw(), softimpact.state())"
+    )
+    assert isinstance(found, dict)
+    return found
+
+
+@pytest.mark.slow
+def test_file_stands_alone_and_is_small(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert len(text.encode()) < MOST_BYTES
+    assert not re.search(
+        r"""(src|href)=["'](?!#)|@import|\bfetch\(|https?://(?!www\.w3\.org)""", text
+    )
+    assert sorted(path.name for path in page.parent.iterdir()) == ["index.html", "results.json"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SITUATIONS)
+def test_numbers_are_pythons(tab: Tab, name: str, request: pytest.FixtureRequest) -> None:
+    if "narrow" in request.node.callspec.id and name != "chest":
+        pytest.skip("what computes is the same; one situation shows it")
+    tab.ask("softimpact.set(softimpact.content.start)")
+    state = set_to(tab, **SITUATIONS[name])
+    found = tab.ask("softimpact.found()")
+    model = model_of(state)
+    figures = analyse(model, state["q"], state["n"])
+    place = np.array(frame_pose(model.robot, model.tip, state["q"]).position).ravel()
+    assert found["scene"]["contact"] == pytest.approx(place.tolist(), abs=1e-12)
+    assert found["masses"]["m_c"] == pytest.approx(figures.m_c, rel=1e-9)
+    assert found["masses"]["k_r"] == pytest.approx(figures.k_r, rel=1e-9)
+    assert found["masses"]["m_a"] == pytest.approx(figures.m_a, rel=1e-9)
+    assert figures.giaf is None or found["masses"]["giaf"] == pytest.approx(figures.giaf, rel=1e-9)
+    along = figures.directional_giaf
+    assert along is None or found["masses"]["directional_giaf"] == pytest.approx(along, rel=1e-9)
+
+    region = REGIONS[state["region"]]
+    formula = two_body(region, state["clamped"], float(moving_mass(PANDA)), state["payload"])
+    assert found["two_body"]["force"] == pytest.approx(float(formula.force(state["speed"])))
+
+    reaction = np.inf if state["reaction_time"] is None else state["reaction_time"]
+    contact = Contact(region, state["clamped"])
+    limits = limits_of(region, state["clamped"])
+    pressing = limits.quasi_static.force if limits.quasi_static else np.inf
+    kinds = {"bracket": ("free", "driven")}.get(state["motors"], (state["motors"],))
+    shares = []
+    for kind, end in zip(kinds, found["ends"], strict=True):
+
+        def at(speed: float, kind: Any = kind) -> ImpactHistory:
+            approach = Approach(state["q"], state["n"], speed)
+            motors = Motors(kind, reaction_time=reaction)
+            return simulate_impact(model, approach, contact, motors=motors, horizon=0.5)
+
+        history = at(state["speed"])
+        assert end["kind"] == kind
+        assert end["force"] == pytest.approx(history.peak, rel=2e-3)
+        assert end["pressing"] == pytest.approx(history.pressing or 0.0, abs=2e-3 * history.peak)
+        count = end["count"]
+        forces = np.interp(history.time, end["time"][:count], end["over_time"][:count])
+        seen = history.time < end["time"][count - 1]
+        assert np.abs(forces - history.force)[seen].max() < 0.02 * history.peak
+        safe = [at(factor * found["keeping"]["speed"]) for factor in (1, 1.03)]
+        shares.append(
+            [max(h.peak / limits.transient.force, (h.pressing or 0) / pressing) for h in safe]
+        )
+    kept, exceeded = np.max(shares, axis=0)
+    assert kept <= 1 < exceeded
+    assert found["share"] == pytest.approx(found["binding"]["force"] / found["binding"]["limit"])
+
+
+@pytest.mark.slow
+def test_band_is_pythons_but_for_the_links(tab: Tab) -> None:
+    state = set_to(tab, **SITUATIONS["chest"])
+    tab.ask("softimpact.settle()")
+    shown = tab.ask("softimpact.band()")
+    model = model_of(state)
+    contact = Contact(REGIONS["chest"])
+    ends, _ = bracket(model, None, Motors())
+    band = impact_band(
+        model, Approach(state["q"], state["n"], state["speed"]), contact,
+        [end for end in ends.values() if isinstance(end, Motors)], limits_of(contact.region, True),
+        tolerances=replace(Tolerances(), links=0.0), samples=300,
+    ).peak  # fmt: skip
+    assert shown["low"] == pytest.approx(band.low, rel=0.05)
+    assert shown["high"] == pytest.approx(band.high, rel=0.05)
+
+
+@pytest.mark.slow
+def test_dragging_aims_and_a_click_chooses_a_link(tab: Tab) -> None:
+    set_to(tab, q=Q9, n=[0, 1, 0])
+    box = tab.ask("(({x, y}) => [x, y])(document.getElementById('arm').getBoundingClientRect())")
+    arrow = tab.ask("softimpact.picture().arrow")
+    x, y = box[0] + arrow["to"]["x"], box[1] + arrow["to"]["y"]
+    tab.mouse("mousePressed", x, y)
+    for k in range(1, 9):
+        tab.mouse("mouseMoved", x + 2 * k, y + 3 * k)
+    tab.mouse("mouseReleased", x + 16, y + 24)
+    n = tab.ask("softimpact.state().n")
+    assert np.linalg.norm(n) == pytest.approx(1)
+    assert 0.03 < np.linalg.norm(np.array(n) - [0, 1, 0]) < 1
+    tab.ask("softimpact.draw()")
+    tip = tab.ask("softimpact.picture().arrow.to")
+    assert 16 * (tip["x"] + box[0] - x) + 24 * (tip["y"] + box[1] - y) > 0
+
+    nearest = tab.ask(
+        "(({p, r, body, local}) => ({p, r, body, local}))(softimpact.picture().solids.at(-1))"
+    )
+    p, r = nearest["p"], nearest["r"]
+    tab.click(box[0] + (p["x"] + r["x"]) / 2, box[1] + (p["y"] + r["y"]) / 2)
+    state = tab.ask("softimpact.state()")
+    assert state["body"] == nearest["body"]
+    assert state["place"] == pytest.approx(np.mean(nearest["local"], axis=0).tolist(), abs=1e-3)
+
+
+@pytest.mark.slow
+def test_pictures_are_quick_enough_while_dragging(tab: Tab) -> None:
+    found = tab.ask(
+        """(() => {
+          const page = softimpact;
+          page.frames.length = 0;
+          for (let k = 0; k < 150; ++k) {
+            const q = [...page.state().q];
+            q[1] += 0.002 * Math.sin(k / 9);
+            page.set({ q });
+            page.draw();
+          }
+          return [...page.frames].sort((a, b) => a - b)[75];
+        })()"""
+    )
+    assert found < FRAME
+
+
+@pytest.mark.slow
+def test_self_motion_holds_the_end(tab: Tab) -> None:
+    set_to(tab, q=Q9)
+    found = tab.ask(f"softimpact.solver.slide({json.dumps(Q9)}, 0.7)")
+    assert found["done"] == pytest.approx(0.7)
+    before, after = (frame_pose(PANDA, "hand_tcp", q) for q in (Q9, found["posture"]))
+    assert np.abs(np.array(before.position - after.position)).max() < 1e-8
+    assert np.abs(np.array(before.rotation - after.rotation)).max() < 1e-8
+    assert np.linalg.norm(np.array(found["posture"]) - Q9) > 0.5
+    far = tab.ask(f"softimpact.solver.slide({json.dumps(Q9)}, 20)")
+    lower, upper = PANDA.limits
+    assert (lower <= far["posture"]).all()
+    assert (far["posture"] <= upper).all()
+
+
+@pytest.mark.slow
+def test_link_carries_the_state(tab: Tab, page: Path) -> None:
+    state = set_to(tab, **SITUATIONS["hand, free"])
+    tab.ask("softimpact.settle()")
+    link = tab.ask("location.href")
+    assert "region=hand" in link
+    tab.ask("softimpact.set(softimpact.content.start)")
+    tab.call("Page.navigate", url="about:blank")
+    tab.call("Page.navigate", url=link)
+    tab.wait_for("window.softimpact")
+    again = tab.ask("softimpact.state()")
+    assert {k: v for k, v in again.items() if k not in ("q", "n")} == {
+        k: v for k, v in state.items() if k not in ("q", "n")
+    }
+    assert again["q"] == pytest.approx(state["q"], abs=1e-5)
+    assert again["n"] == pytest.approx(state["n"], abs=1e-5)
+    tab.call("Page.navigate", url="about:blank")
+    tab.call("Page.navigate", url=f"{page.as_uri()}#q=1,2&speed=-3&region=nose&body=99&n=0,0,0")
+    tab.wait_for("window.softimpact")
+    assert tab.ask("softimpact.state()") == tab.ask("softimpact.content.start")
+
+
+@pytest.mark.slow
+def test_nothing_is_wider_than_the_screen_and_all_is_named(tab: Tab) -> None:
+    assert tab.ask("document.documentElement.scrollWidth <= innerWidth")
+    nameless = tab.ask(
+        """[...document.querySelectorAll("input, select, button, canvas, svg[role]")].filter((e) =>
+          !e.hidden && !e.getAttribute("aria-label") && !e.labels?.length && !e.textContent.trim())
+          .map((e) => e.outerHTML)"""
+    )
+    assert nameless == []
+    tab.ask("softimpact.settle()")
+    said = tab.ask("document.getElementById('spoken').textContent")
+    assert re.search(r"\d+ newtons at .* per cent of the .* limit: \w+", said)
+
+
+@pytest.mark.slow
+def test_motions_are_scrubbed_as_the_point_moves(tab: Tab, tmp_path: Path) -> None:
+    t = np.linspace(0, 1, 11)
+    q = Q9 + np.outer(np.sin(t), [0.5, 0.2, 0.1, 0.3, 0, 0.1, 0])
+    path = tmp_path / "motion.csv"
+    names = ",".join(("t", *PANDA.joint_names))
+    np.savetxt(path, np.column_stack([t, q]), delimiter=",", header=names, comments="")
+    give(tab, path)
+    tab.wait_for("!document.querySelector('.play').hidden")
+    moment = """(() => { const r = document.querySelector(".play input"); r.value = 5;
+        r.dispatchEvent(new Event("input")); return softimpact.state(); })()"""
+    state = tab.ask(moment)
+    assert state["q"] == pytest.approx(q[5].tolist())
+    J = np.array(ImpactModel(PANDA, "hand_tcp", drives(PANDA)).jacobian(q[5]))
+    v = J @ passes(trajectory(t, q)).velocity[5]
+    assert state["speed"] == pytest.approx(float(np.linalg.norm(v)), rel=1e-6)
+    assert state["n"] == pytest.approx((v / np.linalg.norm(v)).tolist(), abs=1e-6)
+    for text, said in {
+        "x,y\n1,2\n3,4\n": "has no column 't'",
+        f"{names}\n0,{'0,' * 6}0\n0,{'0,' * 6}0\n": "t must rise",
+        f"{names}\n0,{'90,' * 6}0\n1,{'0,' * 6}0\n": "look like degrees",
+        f"t,joint1\n{'0,0' * 2}\n1,0\n": "no column for joint 'joint2'",
+        "": "needs a line of names",
+    }.items():
+        path.write_text(text)
+        give(tab, path)
+        tab.wait_for(f"document.getElementById('unable').textContent.includes({json.dumps(said)})")
+
+
+def give(tab: Tab, path: Path) -> None:
+    """Choose a file in the page's file input."""
+    tree = tab.call("DOM.getDocument")
+    node = tab.call("DOM.querySelector", nodeId=tree["root"]["nodeId"], selector="input[type=file]")
+    tab.call("DOM.setFileInputFiles", files=[str(path)], nodeId=node["nodeId"])
+
+
+@pytest.mark.slow
+def test_a_browser_without_webassembly_is_told_so(chromium: Tab, page: Path) -> None:
+    without = chromium.call(
+        "Page.addScriptToEvaluateOnNewDocument", source="delete window.WebAssembly"
+    )
+    chromium.open("about:blank", 800, 600)
+    chromium.open(page.as_uri(), 800, 600)
+    chromium.wait_for("!document.getElementById('unable').hidden")
+    assert "needs WebAssembly" in chromium.ask("document.getElementById('unable').textContent")
+    chromium.call("Page.removeScriptToEvaluateOnNewDocument", **without)
+    assert chromium.errors == []
+
+
+def test_scripts_need_nothing_from_a_file(tmp_path: Path) -> None:
+    text = bundled()
+    assert not re.search(r"^(import|export) ", text, re.MULTILINE)
+    assert "</script" not in text
+
+
+def test_other_things_are_refused_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert "holds no results.json" in refusal("studio", tmp_path)
+    (tmp_path / "results.json").write_text('{"generator": "somebody"}')
+    assert "no results of design, pareto or program" in refusal("studio", tmp_path)
+    (tmp_path / "results.json").write_text("{")
+    assert "is no JSON" in refusal("studio", tmp_path)
+    gone = {"generator": "softimpact pareto", "study": {"source": "gone.toml"}}
+    (tmp_path / "results.json").write_text(json.dumps(gone))
+    assert "gone.toml, which is not there" in refusal("studio", tmp_path)
+    assert "gone.urdf" in refusal("studio", "gone.urdf")
+    assert "holds" in refusal("studio", "panda", "--out", ROOT / "docs")
+    monkeypatch.setattr(module, "find_spec", lambda name: None)
+    assert "pip install" in refusal("studio", "rr", "--out", tmp_path / "page")
+    assert not (tmp_path / "page").exists()
+
+
+def test_studies_open_in_their_task_and_with_all_poses() -> None:
+    found = opened(str(STUDY))
+    assert found.q.tolist() == Q9
+    assert len(found.postures) == 24
+    assert (found.region, found.speed, found.kind) == ("chest", 1.0, None)
