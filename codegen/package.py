@@ -168,6 +168,7 @@ def package_of(
     _check(robot, real, gravity, chain_order, floating)
     chain_order = chain_order or min(CHAIN_ORDER, longest_chain(robot))
     checked = checked_poses(robot, poses or {})
+    watched = {TIP: frame, **checked_points(robot, points or {})}
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot, payload=payload is not None)
     defaults = defaults_of(robot, parameters, drives_, payload)
@@ -208,7 +209,7 @@ def package_of(
         impact=impact_source(
             prefix,
             symbols,
-            {TIP: frame, **checked_points(robot, points or {})},
+            watched,
             golden=GOLDEN_IMPACTS if verified else 0,
         ),
         poses=checked,
