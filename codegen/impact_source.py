@@ -29,7 +29,7 @@ HORIZON = 0.5
 REACTION_TIME = 0.02
 """Default time until motors are released [s]."""
 
-STEPS = 8000
+STEPS = 800
 """Default budget of steps of a call."""
 
 

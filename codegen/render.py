@@ -120,6 +120,22 @@ class Package:
         return function in self.tables
 
 
+@cache
+def _environment() -> jinja2.Environment:
+    """Return what compiles the templates, each once in a process."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        undefined=jinja2.StrictUndefined,
+        autoescape=False,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["number"] = _number
+    environment.filters["comment"] = _comment
+    return environment
+
+
 def render(package: Package) -> tuple[dict[str, str], Costs | None]:
     """Return the text of every file but the manifest by its path, and what was measured of it."""
     name, show = package.prefix, Templates(package)
@@ -154,22 +170,6 @@ def sources(package: Package, show: Templates) -> dict[str, str]:
     if package.configuration:
         files[f"src/{name}_configuration.c"] = show("configuration.c", c=package.configuration)
     return files
-
-
-@cache
-def _environment() -> jinja2.Environment:
-    """Return what compiles the templates, each once in a process."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(TEMPLATES),
-        undefined=jinja2.StrictUndefined,
-        autoescape=False,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    environment.filters["number"] = _number
-    environment.filters["comment"] = _comment
-    return environment
 
 
 class Templates:

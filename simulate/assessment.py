@@ -159,7 +159,7 @@ def assess_impact(
         torque_limit_exceeded=_too_strong(model, found[worst]),
         band=_band(model, approach, contact, ends, limits, tolerances, horizon),
         linear_error=error,
-        warnings=(*warnings, *_of_the_file(model, lumped)),
+        warnings=(*warnings, *unused_of_the_file(model, lumped)),
     )
 
 
@@ -219,7 +219,7 @@ def _band(
     )
 
 
-def _of_the_file(model: ImpactModel, lumped: bool) -> Iterator[str]:
+def unused_of_the_file(model: ImpactModel, lumped: bool = False) -> Iterator[str]:
     """Yield what of the file is used in a way to know of, or not used."""
     robot = model.robot
     if robot.damping.any() and not lumped:

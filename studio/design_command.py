@@ -36,6 +36,7 @@ def design(
     speed: o.Speed = None,
     motors: o.StudyMotors = None,
     reaction_time: o.ReactionTime = None,
+    page: o.Report = None,
     json: o.Json = False,
 ) -> None:
     """Find the joint stiffness and the posture of least peak force with Ipopt."""
@@ -54,7 +55,7 @@ def design(
     folder = out or Path("results") / problem.source.stem
     require_replaceable(folder, GENERATOR)
     if problem.scenarios is not None:
-        _robust(problem, folder, json)
+        _robust(problem, folder, page, json)
         return
     modes = _modes(mode, problem)
     with failures_as_json(json):
@@ -63,13 +64,17 @@ def design(
     record = as_record(report)
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(report, record, fresh)
+    if page is not None:
+        from .report.design_pages import write_design_report
+
+        write_design_report(report, page)
     if json:
         print_json({"out": folder, **record})
     else:
         _print(report, folder)
 
 
-def _robust(study: Study, folder: Path, json: bool) -> None:
+def _robust(study: Study, folder: Path, page: Path | None, json: bool) -> None:
     """Design one machine for all scenarios."""
     from softimpact.codegen import generate_package
     from softimpact.optimize.robust import robust_design
@@ -96,6 +101,10 @@ def _robust(study: Study, folder: Path, json: bool) -> None:
         write_json(fresh / RESULTS, record)
         model = designed_model(found)
         generate_package(model.robot, fresh / "c", drives_=model.drives)
+    if page is not None:
+        from .report.design_pages import write_robust_report
+
+        write_robust_report(found, page)
     if json:
         print_json({"out": folder, **record})
         return

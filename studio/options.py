@@ -181,3 +181,9 @@ StudyMotors = Annotated[
         "--motors", metavar="KIND", help="free, servo or driven instead of the study's motors."
     ),
 ]
+Report = Annotated[
+    Path | None,
+    typer.Option(
+        "--report", metavar="FILE", help="Write a report: one HTML page that opens offline."
+    ),
+]

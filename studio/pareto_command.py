@@ -31,6 +31,7 @@ def pareto(
     points: Points = None,
     region: o.Region = None,
     speed: o.Speed = None,
+    page: o.Report = None,
     json: o.Json = False,
 ) -> None:
     """Find the least peak force at every accuracy: fronts with the posture free and held."""
@@ -50,6 +51,10 @@ def pareto(
     record = as_record(report)
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(report, record, fresh)
+    if page is not None:
+        from .report.pareto_pages import write_pareto_report
+
+        write_pareto_report(report, page)
     if json:
         print_json({"out": folder, **record})
     else:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -94,10 +93,6 @@ Band = Annotated[
         "--band", help="Where 95 of 100 cases lie, for what is not known exactly (tolerances)."
     ),
 ]
-Report = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE", help="Write a report to file: one HTML page that opens offline."),
-]
 SafeSpeed = Annotated[
     bool,
     typer.Option("--safe-speed", help="Find the largest speed up to which every limit is kept."),
@@ -131,7 +126,7 @@ def simulate(
     reference: Reference = None,
     safe_speed: SafeSpeed = False,
     band: Band = False,
-    report: Report = None,
+    report: o.Report = None,
     joint_stiffness: o.JointStiffness = None,
     rotor_inertia: o.RotorInertia = None,
     position_gain: o.PositionGain = None,

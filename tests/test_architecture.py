@@ -17,7 +17,7 @@ MAY_IMPORT = {
     "codegen": {"symbolic"},
     "simulate": {"symbolic"},
     "optimize": {"symbolic", "toolchain"},
-    "studio": {"robots", "symbolic", "codegen", "simulate", "optimize", "toolchain"},
+    "studio": {"robots", "symbolic", "codegen", "simulate", "optimize", "batch", "toolchain"},
     "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }
 

@@ -14,6 +14,7 @@ from design_reports import panda_report, ur5_report
 from matplotlib.image import imread
 from matplotlib.text import Annotation, Text
 from mpl_toolkits.mplot3d.axes3d import Axes3D
+from pages import well_formed
 
 from softimpact.optimize.tip_pose import tip_pose
 from softimpact.studio.design_report import DesignReport
@@ -25,6 +26,7 @@ from softimpact.studio.figures import (
     figure_of_ranking,
     figure_of_springs,
 )
+from softimpact.studio.report.design_pages import write_design_report
 from softimpact.symbolic import Contact, body_region
 
 
@@ -314,3 +316,13 @@ def test_gains_are_bars_from_zero(panda: DesignReport) -> None:
     assert forces.get_ylim()[0] == speeds.get_ylim()[0] == 0.0
     assert forces.get_ylim()[1] > panda.limit
     assert f"{100 * (1 - gains.both / gains.before):.1f} %" in " ".join(_words(figure))
+
+
+def test_the_report_is_one_page_with_the_answer(panda: DesignReport, tmp_path: Path) -> None:
+    page = write_design_report(panda, tmp_path / "design.html").read_text("utf-8")
+    assert well_formed(page)
+    winner = panda.design.winner
+    assert f"{winner.name}, posture free: {winner.force:.0f} N, which breaks the limit" in page
+    assert page.count("<svg ") >= 5
+    for joint in panda.study.robot.joint_names:
+        assert joint in page

@@ -121,8 +121,16 @@ class Sources:
         raise CompilerFailed(self.compiler[0], reason.strip())
 
 
+Gravity = tuple[float, float, float]
+
+
 def prepared(
-    robot: Robot, tip: str, real: Real, drives: Drives | None, points: Mapping[str, str]
+    robot: Robot,
+    tip: str,
+    real: Real,
+    drives: Drives | None,
+    points: Mapping[str, str],
+    gravity: Gravity | None = None,
 ) -> Sources:
     """Return the sources of a robot's package, generated if they are not in the cache.
 
@@ -133,11 +141,11 @@ def prepared(
     if compiler is None:
         raise NoCompiler
     numbers = None if drives is None else {k: repr(v) for k, v in asdict(drives).items()}
-    asked = [robot.digest(), tip, real, numbers, dict(points)]
+    asked = [robot.digest(), tip, real, numbers, dict(points), gravity]
     key = hashlib.sha256(json.dumps([softimpact.__version__, _generator(), asked]).encode())
     folder = _cache() / "batch" / key.hexdigest()[:32]
     if not folder.is_dir():
-        _generate(folder, robot, tip, real, drives, points)
+        _generate(folder, robot, tip, real, drives, points, gravity)
     return Sources(folder, real, compiler)
 
 
@@ -191,6 +199,7 @@ def _generate(
     real: Real,
     drives: Drives | None,
     points: Mapping[str, str],
+    gravity: Gravity | None,
 ) -> None:
     """Write a package's sources; whoever comes first wins."""
     from softimpact.codegen.batch_source import batch_sources
@@ -198,7 +207,14 @@ def _generate(
     from softimpact.codegen.render import Templates, sources
 
     package = package_of(
-        robot, tip=tip, real=real, name=PREFIX, drives_=drives, points=points, verified=False
+        robot,
+        tip=tip,
+        real=real,
+        name=PREFIX,
+        drives_=drives,
+        gravity=gravity,
+        points=points,
+        verified=False,
     )
     show = Templates(package)
     files = sources(package, show)

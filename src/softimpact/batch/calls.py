@@ -27,7 +27,7 @@ CHUNK = 1024
 """Fewest rows of a closed form that are worth a thread of their own; of an impact one is."""
 
 IMPACT = "region"
-"""Argument of functions that integrate in time."""
+"""Argument of functions that integrate in time, and its type."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,8 @@ class CompiledPackage:
 
     ``q`` is N×n, or n for all rows; so are ``n`` (3), ``dq`` (n), other arguments and parameters
     by the names of the C struct's fields. A region is the name of one, with ``clamped``, or a
-    mapping of the fields of the C struct. ``motors`` is a name. Results are arrays of N rows by
+    mapping of the fields of the C struct. A ``limit`` that is not given is the region's transient
+    one. ``motors`` is a name. Results are arrays of N rows by
     name, with ``status`` beside them; rows whose status is neither OK (0) nor BOUNDED (9) hold NaN,
     or -1 where numbers are whole.
 
@@ -116,6 +117,10 @@ class CompiledPackage:
         if len(given) > len(plain):
             raise InvalidValue(entry.name, f"takes {', '.join(a.name for a in plain)}, and names")
         values = dict(zip((a.name for a in plain), given, strict=False))
+        region = None
+        if any(a.type == IMPACT for a in read):
+            region = self._region(options.pop(IMPACT, "chest"), options.pop("clamped", True))
+            values.setdefault("limit", region["force_limit"])
         for a in plain:
             if a.name in options:
                 values[a.name] = options.pop(a.name)
@@ -125,9 +130,9 @@ class CompiledPackage:
         for a in read:
             if a.type == "params":
                 inputs.append(self._parameters(options))
-            elif a.type == "region":
-                region = options.pop(a.name, "chest")
-                inputs.append(self._region(region, options.pop("clamped", True)))
+            elif a.type == IMPACT:
+                assert region is not None
+                inputs.append(region)
             else:
                 inputs.append(self._rows(a, values[a.name]))
         if options:
