@@ -15,6 +15,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .ipopt import Bounds, Found, Instance, impact_forces, minimise
 from .nlp import Program
+from .objectives.objective import Indices
 
 NEAR = 0.98
 """Share of the worst force from which on an impact is carried from the start."""
@@ -63,7 +64,7 @@ def _shares(program: Program, instance: Instance, postures: Array, v: Array) -> 
     return np.array([force.max() for force in forces]) / instance.units
 
 
-def _some(instance: Instance, carried: Array) -> Instance:
+def _some(instance: Instance, carried: Indices) -> Instance:
     """Return the NLP with some of its impacts."""
     shape, places = instance.shape, [int(i) for i in carried]
     own = [shape.scenarios[i] for i in places]

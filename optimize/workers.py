@@ -51,7 +51,7 @@ def workers(jobs: int, given: Executor | None = None) -> Iterator[Executor]:
         yield given
         return
     context = _Context()
-    pool = ProcessPoolExecutor(min(jobs, _cores()), context, initializer=_prepare_worker)
+    pool = ProcessPoolExecutor(min(jobs, cores()), context, initializer=_prepare_worker)
     try:
         yield pool
     except BaseException as error:
@@ -65,7 +65,7 @@ def workers(jobs: int, given: Executor | None = None) -> Iterator[Executor]:
 
 def awake(pool: Executor, jobs: int) -> None:
     """Let worker processes start and load what they need while this one prepares their jobs."""
-    for _ in range(min(jobs, _cores())):
+    for _ in range(min(jobs, cores())):
         pool.submit(_load)
 
 
@@ -89,7 +89,7 @@ def as_completed(jobs: Iterable[Future[Result]]) -> Iterator[Future[Result]]:
             continue
 
 
-def _cores() -> int:
+def cores() -> int:
     """Number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
