@@ -23,7 +23,7 @@ from .repair import accurate_springs
 from .solve import Mode, Outcome, Start, better, solve
 from .study import Study
 from .timing import Timing
-from .workers import as_completed, awake, workers
+from .workers import as_completed, awake, cores, workers, works_elsewhere
 
 MODES: tuple[Mode, ...] = ("table", "free")
 
@@ -159,9 +159,9 @@ def design(
     modes = applicable(study, modes)
     require_reachable(study, modes)
     outcomes: dict[tuple[str, Mode], Outcome] = {}
-    with workers(len(study.poses), executor) as pool:
+    with workers(min(len(study.poses), cores()), executor) as pool:
         awake(pool, len(study.poses))
-        problem = prepare(study)
+        problem = prepare(study, elsewhere=works_elsewhere(executor))
         poses = problem.poses
         for mode in modes:
             starts = [_start(study, p, mode, outcomes.get((p.pose.name, "table"))) for p in poses]

@@ -18,6 +18,7 @@ from rich.progress import (
     TaskID,
     TextColumn,
     TimeElapsedColumn,
+    TimeRemainingColumn,
 )
 
 PATIENCE = 2.0
@@ -81,7 +82,14 @@ def progress_bar() -> Progress:
     console = Console(stderr=True)
     if not console.is_terminal:
         return _Lines(console)
-    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    columns = (
+        "{task.description}",
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        "left",
+        TimeRemainingColumn(),
+    )
     return Progress(*columns, console=console)
 
 

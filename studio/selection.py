@@ -92,7 +92,7 @@ MANY = 100
 """Configurations beyond which all are looked at at once, by the program of a design: the same
 model, to 0.1 %, in a thousandth of the time. The best are simulated again."""
 
-AGAIN = 10
+AGAIN = 3
 """Configurations of least force that are simulated, each for itself."""
 
 
