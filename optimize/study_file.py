@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -164,7 +165,7 @@ class StudyFile(_Section):
     @model_validator(mode="after")
     def _poses_are_named_once(self) -> StudyFile:
         names = [pose.name for pose in self.poses]
-        repeated = {name for name in names if names.count(name) > 1}
+        repeated = {name for name, count in Counter(names).items() if count > 1}
         if repeated:
             raise ValueError(f"poses: named more than once: {', '.join(sorted(repeated))}")
         if self.task.pose_of not in names:
