@@ -12,10 +12,12 @@ PYTEST ?=
 ROBOTS := $(notdir $(wildcard generated/*))
 # of make fuzz, a build: some 20 minutes for a robot with seven joints
 EXECUTIONS ?= 10000000
+# of make adversarial, random cases of each robot and build
+N ?= 10000
 # faults that make mutants puts into the sources, one at a time
 SAMPLE ?= 200
 
-.PHONY: demo install test coverage mutants lint format bench bench-c fuzz generated clean
+.PHONY: demo install test coverage mutants lint format bench bench-c fuzz adversarial generated clean
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
@@ -59,6 +61,10 @@ bench-c: $(VENV)/installed-test $(OTHERS)/installed
 # libFuzzer on every package, float and double; needs clang
 fuzz: $(VENV)/installed-test
 	FUZZ_EXECUTIONS=$(EXECUTIONS) $(BIN)/pytest -n 2 --slow tests/codegen/test_verification.py -k fuzzer $(PYTEST)
+
+# safe speeds of five robots, float and double, against the tests' own integrator: some 20 ms a case
+adversarial: $(VENV)/installed-test
+	$(BIN)/python tests/adversarial.py --count $(N)
 
 generated: $(VENV)/installed
 	for robot in $(ROBOTS); do \

@@ -21,7 +21,7 @@ from .defaults import Payload, defaults_of, frozen_parameters
 from .description import CFunction
 from .files import replace_package, require_place, sha256
 from .functions import coordinates_of, functions_of, symbols_of
-from .impact_source import impact_source
+from .impact_source import GOLDEN_IMPACTS, NOT_MEASURED, impact_source
 from .inputs import parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .poses import checked_poses
@@ -165,9 +165,14 @@ def package_of(
     floating: bool = False,
     poses: Mapping[str, Sequence[float]] | None = None,
     points: Mapping[str, str] | None = None,
+    verified: bool = True,
     on_step: OnStep = unseen,
 ) -> Package:
-    """Return all that a package's files show, as ``generate_package`` takes it."""
+    """Return all that a package's files show, as ``generate_package`` takes it.
+
+    ``verified`` packages have golden results and measured errors, which takes most of the time;
+    the C is the same without.
+    """
     frame = robot.frame(tip or robot.tip or "").name
     if gravity is None:
         gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
@@ -179,17 +184,19 @@ def package_of(
     defaults = defaults_of(robot, parameters, drives_, payload)
     parameters = frozen_parameters(defaults, freeze)
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
-    measured = draw_samples(robot, parameters, MEASURED_SAMPLES, seed=2)
+    measured = draw_samples(
+        robot, parameters, MEASURED_SAMPLES if verified else GOLDEN_CASES, seed=2
+    )
     on_step("derivation", 0, 1)
     symbols = symbols_of(robot, frame, gravity, parameters)
     functions = functions_of(symbols, chain_order, floating=floating)
-    golden = _regular(functions, golden, frame)
-    tables = {function.name: golden_results(function, golden) for function in functions}
+    golden = _regular(functions, golden, frame) if verified else golden
     sources = []
     inputs = as_columns(measured)
     for done, function in enumerate(functions):
         on_step(function.name, done, len(functions) + 1)
-        record = _record(prefix, function, inputs)
+        name = f"{prefix}_{function.name}"
+        record = _record(name, function, inputs) if verified else NOT_MEASURED
         sources.append(CSource(prefix, robot.n, parameters, function, record))
     configuration = None
     if has_configuration(robot):
@@ -206,10 +213,15 @@ def package_of(
         defaults=tuple(d for d in defaults if d.parameter in parameters),
         functions=tuple(sources),
         samples=tuple(golden),
-        tables=tables,
+        tables={f.name: golden_results(f, golden) if verified else () for f in functions},
         configuration=configuration,
         floating=floating,
-        impact=impact_source(prefix, symbols, {TIP: frame, **checked_points(robot, points or {})}),
+        impact=impact_source(
+            prefix,
+            symbols,
+            {TIP: frame, **checked_points(robot, points or {})},
+            golden=GOLDEN_IMPACTS if verified else 0,
+        ),
         poses=checked,
     )
     if package.poses and not package.impact:
@@ -261,10 +273,10 @@ def _regular(functions: Sequence[CFunction], samples: Sequence[Sample], tip: str
     return [samples[i] for i in np.flatnonzero(regular)[:GOLDEN_CASES]]
 
 
-def _record(prefix: str, function: CFunction, inputs: Inputs) -> FunctionRecord:
+def _record(name: str, function: CFunction, inputs: Inputs) -> FunctionRecord:
     found = accuracy(function, inputs)
     return FunctionRecord(
-        name=f"{prefix}_{function.name}",
+        name=name,
         flops=function.flops,
         sines_and_cosines=function.sines_and_cosines,
         double_error=found.double,

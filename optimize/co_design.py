@@ -23,7 +23,7 @@ from .repair import accurate_springs
 from .solve import Mode, Outcome, Start, better, solve
 from .study import Study
 from .timing import Timing
-from .workers import as_completed, workers
+from .workers import as_completed, awake, workers
 
 MODES: tuple[Mode, ...] = ("table", "free")
 
@@ -158,10 +158,11 @@ def design(
     """
     modes = applicable(study, modes)
     require_reachable(study, modes)
-    problem = prepare(study)
-    poses = problem.poses
     outcomes: dict[tuple[str, Mode], Outcome] = {}
-    with workers(len(poses), executor) as pool:
+    with workers(len(study.poses), executor) as pool:
+        awake(pool, len(study.poses))
+        problem = prepare(study)
+        poses = problem.poses
         for mode in modes:
             starts = [_start(study, p, mode, outcomes.get((p.pose.name, "table"))) for p in poses]
             for outcome in _run(problem, starts, pool):
@@ -268,13 +269,12 @@ def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None
     """Begin with the stiffest and with the softest springs, which lead to different local optima.
 
     Where springs were sought for the posture as given, a free one begins with these, so that
-    freedom does not end in a worse optimum, and with equal joints that are just accurate. If all
-    fail, the task's own posture is the last resort.
+    freedom does not end in a worse optimum; who lags behind begins again. If all fail, the task's
+    own posture is the last resort.
     """
     springs = [study.upper, study.lower]
     if table is not None:
-        equal = np.full(study.robot.n, float(np.median(study.nominal)))
-        springs = [table.springs, accurate_springs(study, candidate.q, equal)]
+        springs = [table.springs]
     points = tuple((candidate.q, each) for each in springs)
     fallbacks = ((study.task_pose.q, study.upper),) if mode == "free" else ()
     return Start(candidate.pose.name, mode, points, fallbacks)

@@ -125,6 +125,7 @@ def robust_design(
             f"'{study.objective.kind}' looks at every impact at once, and {len(scenarios)} are "
             f"more than {MOST_AT_ONCE}; choose 'worst_force' or fewer scenarios",
         )
+    _require_lengths(study, scenarios)
     require_reachable(study, scenarios.poses, free=free)
     timing, parts = scenario_timing(study, scenarios), sought_parts(study)
     impacts = tuple(
@@ -142,6 +143,14 @@ def robust_design(
             on_progress or (lambda *_: None),
         )
         return _exchanged(setting, free)
+
+
+def _require_lengths(study: Study, scenarios: Scenarios) -> None:
+    """Raise InvalidValue if the objective does not fit the scenarios, before anything is built."""
+    if study.objective.all_scenarios:
+        numbers = np.arange(len(scenarios)) // len(scenarios.motors)
+        own = study.objective.own(numbers, np.ones(numbers.size), np.ones(numbers.size)).start
+        study.objective.value(own, numbers, np.ones(numbers.size))
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,6 +182,8 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     if study.catalogue:
         choice, state = _bought(setting, state)
     springs, others = limits.parted(state.at.v)
+    if choice is not None:  # their logarithms lose a digit
+        springs = choice.springs
     _require_thick_cover(setting, state.worst, equipped(study, ca.DM(springs), others))
     worth = worth_of(study, state.worst.force / state.worst.share * state.unit)
     return RobustDesign(

@@ -12,6 +12,7 @@ from concurrent import futures
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from importlib import import_module
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any, TypeVar
 
@@ -60,6 +61,17 @@ def workers(jobs: int, given: Executor | None = None) -> Iterator[Executor]:
         raise
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def awake(pool: Executor, jobs: int) -> None:
+    """Let worker processes start and load what they need while this one prepares their jobs."""
+    for _ in range(min(jobs, _cores())):
+        pool.submit(_load)
+
+
+def _load() -> None:
+    """Import what searches need, in a worker process."""
+    import_module(".solve", __package__)
 
 
 def as_completed(jobs: Iterable[Future[Result]]) -> Iterator[Future[Result]]:

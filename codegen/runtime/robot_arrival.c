@@ -188,17 +188,12 @@ static void weigh(robot_impact *impact)
     const robot_real body = impact->gives_way ? ROBOT_R(1.0)/impact->region->effective_mass : ROBOT_R(0.0);
     robot_real mobility = ROBOT_R(0.0);
 #if ROBOT_STRUCTURED
-    robot_real found[3];
-    impact->status = robot_mobilities(&impact->arrival, impact->p, found);
-    mobility = found[0];
-    impact->together = found[1] + body;
-    impact->rotors = found[2];
+    impact->status = robot_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == ROBOT_OK; ++k) {
         impact->status = modes_of(impact, k);
         mobility = ROBOT_FMAX(mobility, mobility_of(&impact->phase[k].modes));
     }
-    impact->together = ROBOT_R(0.0);
     impact->rotors = ROBOT_R(0.0);
     const bool held = !ROBOT_ELASTIC && impact->last == ROBOT_LED && impact->motors == ROBOT_MOTORS_DRIVEN;
     if (!(mobility > ROBOT_LEAST_MOBILITY) && !held) {

@@ -88,7 +88,6 @@ typedef struct {
     int motors;
     bool gives_way;
     robot_real mobility; /* of the contact, 1/kg */
-    robot_real together; /* of links and rotors as one, and of the body, 1/kg */
     robot_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
     robot_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
     robot_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
@@ -135,6 +134,12 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
 /* Prepares what comes after the motors' release, once it is asked for. */
 void robot_impact_let_go(robot_impact *impact);
 
+/*
+ * Twice the energy that an impact with loose motors can take, for 1 m/s: at most r'(M + B)r for joint
+ * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
+ */
+robot_real robot_twice_energy(const robot_impact *impact);
+
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 robot_real robot_bound(const robot_impact *impact);
 
@@ -164,11 +169,11 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
 int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real carried[ROBOT_N]);
 
-/*
- * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
- * 1/kg; 0 or a status.
- */
-int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_real found[3]);
+/* Mobility of the contact point with links alone, and with rotors alone, 1/kg; 0 or a status. */
+int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_real *links,
+    robot_real *rotors);
+/* The same with links and rotors as one; 0 if their mass is not positive definite. */
+robot_real robot_together(const robot_arrival *arrival, const robot_params *p);
 
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase *phase);

@@ -14,7 +14,7 @@ import numpy as np
 from softimpact.optimize import Study, load_study
 from softimpact.robots import built_in_robots
 from softimpact.simulate.trajectory import Trajectory
-from softimpact.symbolic import Drives, InvalidValue, Robot, drives, load_robot
+from softimpact.symbolic import Drives, InvalidValue, Robot, arm_of, drives, load_robot
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
@@ -106,13 +106,14 @@ def opened(what: str) -> Opened:
 
 def of_model(model: str) -> Opened:
     """Return a robot in a posture in which it moves well."""
-    robot = load_robot(model)
-    if robot.tip is None:
-        known = ", ".join(list(robot.frames)[:8])
+    whole = load_robot(model)
+    if whole.tip is None:
+        known = ", ".join(list(whole.frames)[:8])
         raise InvalidValue(
             "model",
-            f"'{robot.name}' names no end of its arm; write a study with robot.tip, one of {known}",
+            f"'{whole.name}' names no end of its arm; write a study with robot.tip, one of {known}",
         )
+    robot = arm_of(whole).robot
     q, direction = first_posture(robot)
     stiff = drives(robot, joint_stiffness=NOMINAL)
     return Opened(robot.name, robot, stiff, q, np.array(direction), postures={"first": q})

@@ -188,17 +188,12 @@ static void weigh(panda_impact *impact)
     const panda_real body = impact->gives_way ? PANDA_R(1.0)/impact->region->effective_mass : PANDA_R(0.0);
     panda_real mobility = PANDA_R(0.0);
 #if PANDA_STRUCTURED
-    panda_real found[3];
-    impact->status = panda_mobilities(&impact->arrival, impact->p, found);
-    mobility = found[0];
-    impact->together = found[1] + body;
-    impact->rotors = found[2];
+    impact->status = panda_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == PANDA_OK; ++k) {
         impact->status = modes_of(impact, k);
         mobility = PANDA_FMAX(mobility, mobility_of(&impact->phase[k].modes));
     }
-    impact->together = PANDA_R(0.0);
     impact->rotors = PANDA_R(0.0);
     const bool held = !PANDA_ELASTIC && impact->last == PANDA_LED && impact->motors == PANDA_MOTORS_DRIVEN;
     if (!(mobility > PANDA_LEAST_MOBILITY) && !held) {

@@ -188,17 +188,12 @@ static void weigh(rmin_impact *impact)
     const rmin_real body = impact->gives_way ? RMIN_R(1.0)/impact->region->effective_mass : RMIN_R(0.0);
     rmin_real mobility = RMIN_R(0.0);
 #if RMIN_STRUCTURED
-    rmin_real found[3];
-    impact->status = rmin_mobilities(&impact->arrival, impact->p, found);
-    mobility = found[0];
-    impact->together = found[1] + body;
-    impact->rotors = found[2];
+    impact->status = rmin_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == RMIN_OK; ++k) {
         impact->status = modes_of(impact, k);
         mobility = RMIN_FMAX(mobility, mobility_of(&impact->phase[k].modes));
     }
-    impact->together = RMIN_R(0.0);
     impact->rotors = RMIN_R(0.0);
     const bool held = !RMIN_ELASTIC && impact->last == RMIN_LED && impact->motors == RMIN_MOTORS_DRIVEN;
     if (!(mobility > RMIN_LEAST_MOBILITY) && !held) {

@@ -88,7 +88,6 @@ typedef struct {
     int motors;
     bool gives_way;
     rmin_real mobility; /* of the contact, 1/kg */
-    rmin_real together; /* of links and rotors as one, and of the body, 1/kg */
     rmin_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
     rmin_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
     rmin_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
@@ -135,6 +134,12 @@ int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int mot
 /* Prepares what comes after the motors' release, once it is asked for. */
 void rmin_impact_let_go(rmin_impact *impact);
 
+/*
+ * Twice the energy that an impact with loose motors can take, for 1 m/s: at most r'(M + B)r for joint
+ * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
+ */
+rmin_real rmin_twice_energy(const rmin_impact *impact);
+
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 rmin_real rmin_bound(const rmin_impact *impact);
 
@@ -164,11 +169,11 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
 int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real carried[RMIN_N]);
 
-/*
- * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
- * 1/kg; 0 or a status.
- */
-int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real found[3]);
+/* Mobility of the contact point with links alone, and with rotors alone, 1/kg; 0 or a status. */
+int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real *links,
+    rmin_real *rotors);
+/* The same with links and rotors as one; 0 if their mass is not positive definite. */
+rmin_real rmin_together(const rmin_arrival *arrival, const rmin_params *p);
 
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *phase);

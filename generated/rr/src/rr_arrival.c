@@ -188,17 +188,12 @@ static void weigh(rr_impact *impact)
     const rr_real body = impact->gives_way ? RR_R(1.0)/impact->region->effective_mass : RR_R(0.0);
     rr_real mobility = RR_R(0.0);
 #if RR_STRUCTURED
-    rr_real found[3];
-    impact->status = rr_mobilities(&impact->arrival, impact->p, found);
-    mobility = found[0];
-    impact->together = found[1] + body;
-    impact->rotors = found[2];
+    impact->status = rr_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == RR_OK; ++k) {
         impact->status = modes_of(impact, k);
         mobility = RR_FMAX(mobility, mobility_of(&impact->phase[k].modes));
     }
-    impact->together = RR_R(0.0);
     impact->rotors = RR_R(0.0);
     const bool held = !RR_ELASTIC && impact->last == RR_LED && impact->motors == RR_MOTORS_DRIVEN;
     if (!(mobility > RR_LEAST_MOBILITY) && !held) {

@@ -88,7 +88,6 @@ typedef struct {
     int motors;
     bool gives_way;
     rr_real mobility; /* of the contact, 1/kg */
-    rr_real together; /* of links and rotors as one, and of the body, 1/kg */
     rr_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
     rr_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
     rr_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
@@ -135,6 +134,12 @@ int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
 /* Prepares what comes after the motors' release, once it is asked for. */
 void rr_impact_let_go(rr_impact *impact);
 
+/*
+ * Twice the energy that an impact with loose motors can take, for 1 m/s: at most r'(M + B)r for joint
+ * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
+ */
+rr_real rr_twice_energy(const rr_impact *impact);
+
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 rr_real rr_bound(const rr_impact *impact);
 
@@ -164,11 +169,11 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
 int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real carried[RR_N]);
 
-/*
- * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
- * 1/kg; 0 or a status.
- */
-int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real found[3]);
+/* Mobility of the contact point with links alone, and with rotors alone, 1/kg; 0 or a status. */
+int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real *links,
+    rr_real *rotors);
+/* The same with links and rotors as one; 0 if their mass is not positive definite. */
+rr_real rr_together(const rr_arrival *arrival, const rr_params *p);
 
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase);

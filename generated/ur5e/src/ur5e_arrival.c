@@ -188,17 +188,12 @@ static void weigh(ur5e_impact *impact)
     const ur5e_real body = impact->gives_way ? UR5E_R(1.0)/impact->region->effective_mass : UR5E_R(0.0);
     ur5e_real mobility = UR5E_R(0.0);
 #if UR5E_STRUCTURED
-    ur5e_real found[3];
-    impact->status = ur5e_mobilities(&impact->arrival, impact->p, found);
-    mobility = found[0];
-    impact->together = found[1] + body;
-    impact->rotors = found[2];
+    impact->status = ur5e_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == UR5E_OK; ++k) {
         impact->status = modes_of(impact, k);
         mobility = UR5E_FMAX(mobility, mobility_of(&impact->phase[k].modes));
     }
-    impact->together = UR5E_R(0.0);
     impact->rotors = UR5E_R(0.0);
     const bool held = !UR5E_ELASTIC && impact->last == UR5E_LED && impact->motors == UR5E_MOTORS_DRIVEN;
     if (!(mobility > UR5E_LEAST_MOBILITY) && !held) {

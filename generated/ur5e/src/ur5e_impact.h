@@ -88,7 +88,6 @@ typedef struct {
     int motors;
     bool gives_way;
     ur5e_real mobility; /* of the contact, 1/kg */
-    ur5e_real together; /* of links and rotors as one, and of the body, 1/kg */
     ur5e_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
     ur5e_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
     ur5e_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
@@ -135,6 +134,12 @@ int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int mot
 /* Prepares what comes after the motors' release, once it is asked for. */
 void ur5e_impact_let_go(ur5e_impact *impact);
 
+/*
+ * Twice the energy that an impact with loose motors can take, for 1 m/s: at most r'(M + B)r for joint
+ * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
+ */
+ur5e_real ur5e_twice_energy(const ur5e_impact *impact);
+
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 ur5e_real ur5e_bound(const ur5e_impact *impact);
 
@@ -164,11 +169,11 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
 int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real carried[UR5E_N]);
 
-/*
- * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
- * 1/kg; 0 or a status.
- */
-int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real found[3]);
+/* Mobility of the contact point with links alone, and with rotors alone, 1/kg; 0 or a status. */
+int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real *links,
+    ur5e_real *rotors);
+/* The same with links and rotors as one; 0 if their mass is not positive definite. */
+ur5e_real ur5e_together(const ur5e_arrival *arrival, const ur5e_params *p);
 
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *phase);

@@ -70,16 +70,16 @@ export function writeNumbers(place, found, band, unknown) {
     return;
   }
   const { masses: m, keeping, two_body: formula } = found;
-  const ok = (status, value, digits) => (status === 0 ? shown(value, digits) : "–");
+  const ok = (status, value, unit = "") => (status === 0 ? `${shown(value)} ${unit}` : "–");
   const rotors = unknown ? "rotors unknown" : "";
   const cards = [
     ["Peak, free to driven", found.ends?.every((e) => e.ok) ? `${found.ends.map((e) => e.force.toFixed(0)).join(" – ")} N` : "–", "largest force of all contacts"],
-    ["Band of the peak", band ? `${band.low.toFixed(0)} – ${band.high.toFixed(0)} N` : "…", "95 of 100 cases"],
+    ["Band of the peak", band ? `${band.low.toFixed(0)} – ${band.high.toFixed(0)} N` : found.failed ? "–" : "…", "95 of 100 cases"],
     ["Two-body formula", formula.status === 0 ? `${formula.force.toFixed(0)} N` : "–", `ISO/TS 15066; safe ${shown(formula.speed)} m/s`],
     ["Limit of the peak", `${found.region.force_limit.toFixed(0)} N`, found.region.clamped ? `${found.region.quasi_static_limit.toFixed(0)} N from 0.5 s on` : "the body can give way"],
-    ["m<sub>c</sub>, mass felt", `${ok(m.mass_status, m.m_c)} kg`, "at the contact point"],
+    ["m<sub>c</sub>, mass felt", ok(m.mass_status, m.m_c, "kg"), "at the contact point"],
     ["k<sub>r</sub>, stiffness", m.reduced_status === 0 ? `${shown(m.k_r / 1000)} kN/m` : "–", "behind it"],
-    ["m<sub>a</sub>, motors' mass", unknown ? "–" : `${ok(m.reduced_status, m.m_a)} kg`, rotors || "behind the springs"],
+    ["m<sub>a</sub>, motors' mass", unknown ? "–" : ok(m.reduced_status, m.m_a, "kg"), rotors || "behind the springs"],
     ["GIAF", unknown ? "–" : ok(m.giaf_status, m.giaf), rotors || "1: rotors do not count"],
     ["GIAF along the arrow", unknown ? "–" : ok(m.directional_status, m.directional_giaf), rotors || "share that is not rotors"],
     ["Margin", keeping && found.about.permitted ? `${shown(keeping.speed / found.speed, 3)} ×` : "–", "safe speed over speed"],

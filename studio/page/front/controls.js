@@ -186,7 +186,7 @@ function motorParts(content) {
     slider(name, label, { low: 0, high, step: high / 1000, read: (s) => (s.motors === "servo" ? s[name][0] : undefined), write: (k) => ({ [name]: all(content, k) }) });
   return [
     choices("They", [["bracket", "free or driven", "The worse of both ends: what to take where nobody knows"], ["free", "are free"], ["driven", "drive on"], ["servo", "servo"]], { read: (s) => s.motors, write: (motors) => ({ motors }) }),
-    slider("reaction", "Released after, ms", { low: 0, high: 200, step: 1, read: (s) => (s.reaction_time === null || s.motors === "free" ? undefined : 1e3 * s.reaction_time), write: (ms) => ({ reaction_time: ms / 1e3 }) }),
+    slider("reaction", "Reaction, ms", { title: "From first touch until motors are released", low: 0, high: 200, step: 1, read: (s) => (s.reaction_time === null || s.motors === "free" ? undefined : 1e3 * s.reaction_time), write: (ms) => ({ reaction_time: ms / 1e3 }) }),
     check("never", "never released", { read: (s) => s.reaction_time === null, write: (on) => ({ reaction_time: on ? null : 0.02 }) }),
     servo("position_gain", "K<sub>p</sub>, N·m/rad", 1e4),
     servo("damping_gain", "K<sub>d</sub>, N·m·s/rad", 300),

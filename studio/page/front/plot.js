@@ -39,12 +39,13 @@ export function plotForce(svg, found, state, looks, band, at) {
   parts.push(tag("text", { x: box.right, y: box.bottom + 28, "text-anchor": "end", class: "tick" }, "time since first touch, ms"));
   if (band) {
     parts.push(tag("rect", { x: box.left, width: box.right - box.left, y: y(Math.min(band.high, high)), height: y(band.low) - y(Math.min(band.high, high)), fill: looks.band }));
-    parts.push(tag("text", { x: box.right - 4, y: y(Math.min(band.high, high)) - 4, "text-anchor": "end", class: "tick" }, "peak in 95 of 100 cases"));
+    const under = showLimit && Math.abs(y(band.low) - 10 - y(limit)) < 16 ? 13 : -5;
+    parts.push(tag("text", { x: box.right - 4, y: y(band.low) + under, "text-anchor": "end", class: "tick" }, "peak in 95 of 100 cases"));
   }
   const released = 1e3 * (state.reaction_time ?? Infinity);
   if (released > 0 && released < long && ends.some((end) => end.kind !== "free")) {
     parts.push(tag("line", { x1: x(released), x2: x(released), y1: box.top, y2: box.bottom, stroke: looks.soft, "stroke-dasharray": "2 4" }));
-    parts.push(tag("text", { x: x(released) + 5, y: box.bottom - 6, class: "tick" }, "motors released"));
+    parts.push(tag("text", { x: x(released), y: box.top - 6, "text-anchor": "middle", class: "tick" }, "motors released"));
   }
   if (showLimit) parts.push(limitLine(box, y(limit), looks, `limit ${limit.toFixed(0)} N`));
   if (state.clamped && long > 499 && pressed < high) parts.push(limitLine(box, y(pressed), looks, `from 500 ms on ${pressed.toFixed(0)} N`));
@@ -59,7 +60,7 @@ export function plotForce(svg, found, state, looks, band, at) {
 function limitLine(box, at, looks, words) {
   return (
     tag("line", { x1: box.left, x2: box.right, y1: at, y2: at, stroke: looks.limit, "stroke-width": 1.4, "stroke-dasharray": "6 4" }) +
-    tag("text", { x: box.left + 5, y: at - 5, "font-weight": 600 }, words)
+    tag("text", { x: box.right - 4, y: at - 5, "text-anchor": "end", "font-weight": 600 }, words)
   );
 }
 
