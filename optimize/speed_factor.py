@@ -20,8 +20,9 @@ from softimpact.symbolic.dynamics.equations_of_motion import mass_matrix
 from softimpact.symbolic.dynamics.kinematics import contact_point_jacobian
 from softimpact.symbolic.impact.motors import refuse_held
 from softimpact.symbolic.matrices import Factorisation
+from softimpact.toolchain import c_compiler
 
-from .compiled import c_compiler, compiled_functions
+from .compiled import compiled_functions
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .impact_program import known_rotors
 from .motor_laws import MotorLaws
@@ -120,8 +121,8 @@ def _arrival(model: ImpactModel, point: str) -> ca.Function:
     velocity = ca.mtimes(J, rate)
     direction = velocity / ca.sqrt(ca.dot(velocity, velocity) + SLOW**2)
     mobility = Factorisation(mass_matrix(model.robot, q)).solve(ca.SX.eye(n))
-    wanted = [ca.densify(mobility), ca.densify(ca.mtimes(direction.T, J))]
-    return ca.Function("arrival", [q, rate], wanted)
+    row = ca.SX(ca.densify(ca.mtimes(direction.T, J)))
+    return ca.Function("arrival", [q, rate], [ca.SX(ca.densify(mobility)), row])
 
 
 def _forces(
