@@ -100,7 +100,7 @@ def test_what_it_does_not_know_is_refused(model: ImpactModel) -> None:
 
 
 def example() -> ModuleType:
-    path = Path(__file__).resolve().parents[2] / "examples" / "time_optimal.py"
+    path = Path(__file__).resolve().parents[2] / "examples" / "03_time_optimal.py"
     spec = importlib.util.spec_from_file_location("time_optimal", path)
     assert spec is not None
     assert spec.loader is not None

@@ -4,7 +4,7 @@
 The Panda swings from one posture to another. Ipopt chooses angles, velocities and the time between
 the knots; at each knot neither the hand nor the forearm may exceed the chest's limits.
 
-python examples/time_optimal.py [FILE.csv]
+python examples/03_time_optimal.py [FILE.csv]
 """
 
 from __future__ import annotations
