@@ -18,7 +18,7 @@ N ?= 10000
 SAMPLE ?= 200
 
 .PHONY: demo install test coverage mutants lint format bench bench-c bench-opt fuzz adversarial \
-	generated clean
+	generated docs clean
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
@@ -77,6 +77,10 @@ generated: $(VENV)/installed
 		$(BIN)/softimpact generate $$robot --out generated/$$robot $${study:+--poses $$study} || exit 1; \
 	done
 
+# the site, build/site/html/index.html; needs no network once its tools are installed
+docs: $(VENV)/installed-docs
+	$(BIN)/python docs/site/build.py
+
 clean:
 	rm -rf $(VENV) $(OTHERS) build dist results
 
@@ -89,6 +93,10 @@ $(VENV)/installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 
 $(VENV)/installed-test: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(INSTALL) --editable '.[test]'
+	touch $@ $(VENV)/installed
+
+$(VENV)/installed-docs: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(INSTALL) --editable '.[docs]'
 	touch $@ $(VENV)/installed
 
 # other generators want other versions of what we use
