@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -27,6 +27,7 @@ from softimpact.symbolic import (
     impact_model,
     limits_of,
     load_robot,
+    lock_joints,
     unit_direction,
 )
 from softimpact.symbolic.impact.drives import PerJoint, require_rotors
@@ -305,7 +306,7 @@ def robot_of_study(section: RobotSection, source: Path) -> Robot:
         tip = section.tip if section.tip is not None else robot.tip
         if tip is None:
             raise UnknownName("frame (none is named)", "", robot.frames)
-        chain = chain_to(robot, tip)
+        chain = _locked(chain_to(robot, tip), section.lock)
         if chain.n == 0:
             raise InvalidValue("tip", f"frame '{tip}' is fixed to the base; name one that moves")
     with _naming(source, "robot", "model"):
@@ -315,11 +316,21 @@ def robot_of_study(section: RobotSection, source: Path) -> Robot:
     return chain
 
 
+def _locked(chain: Robot, lock: Mapping[str, float]) -> Robot:
+    for name in lock:
+        if name not in chain.joint_names:
+            raise UnknownName("joint (robot.lock)", name, chain.joint_names)
+    return lock_joints(chain, lock)
+
+
 def _require_open(chain: Robot) -> None:
     if chain.loops:
         names = ", ".join(f"'{loop.name}'" for loop in chain.loops)
         raise InvalidValue(
-            "model", f"'{chain.name}' has a loop ({names}); a study needs an open chain to the tip"
+            "model",
+            f"'{chain.name}' has joints that are tied together ({names}); a study needs an open "
+            "chain to the tip: hold joints still by robot.lock, or take analyze, simulate, "
+            "program and generate, which follow them",
         )
 
 

@@ -15,8 +15,10 @@ from pydantic import BaseModel, ValidationError
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.errors import did_you_mean
 
+from .poses import candidates
 from .study import build_study, robot_of_study
 from .study_file import RobotSection, StudyFile, read_toml
+from .timing import require_time_steps
 
 ROUNDS = 100
 """Most problems that are looked for one behind the other."""
@@ -82,6 +84,8 @@ def study_problems(path: str | Path) -> list[Problem]:
             break
     if not any(problem.field.startswith("robot") for problem in found):
         found += [Problem(*_shown(fault, order, text)) for fault in _of_robot(content, source)]
+    if not found:
+        found = [Problem(*_shown(fault, order, text)) for fault in _of_search(content, source)]
     return sorted(dict.fromkeys(found), key=lambda problem: problem.line or 0)
 
 
@@ -99,6 +103,16 @@ def _faults(content: dict[str, Any], source: Path) -> list[Fault]:
     except InvalidValue as error:
         field = error.field.removeprefix(f"{source}: ")
         return [(_place(content, field), error.reason)]
+    return []
+
+
+def _of_search(content: dict[str, Any], source: Path) -> list[Fault]:
+    """Look at what a study that can be built asks of the search: its poses and its time steps."""
+    try:
+        study = build_study(StudyFile.model_validate(deepcopy(content)), source)
+        require_time_steps(study, [pose.q for pose in candidates(study)])
+    except InvalidValue as error:
+        return [(_place(content, error.field.removeprefix(f"{source}: ")), error.reason)]
     return []
 
 

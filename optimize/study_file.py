@@ -28,6 +28,7 @@ class RobotSection(_Section):
     model: str
     tip: str | None = None
     hold_base: bool = False
+    lock: dict[str, Finite] = Field(default_factory=dict)
     rotor_inertia: str | Finite | list[Finite] | None = None
     position_gain: Finite | list[Finite] | None = None
     computed_torque_gain: Finite | None = None

@@ -126,7 +126,7 @@ def test_bad_study(study: Path, old: str, new: str, reason: str) -> None:
 @pytest.mark.parametrize(
     ("robot", "reason"),
     [
-        ("rmin", "has a loop ('end_point'); a study needs an open chain"),
+        ("rmin", "has joints that are tied together ('end_point'); a study needs an open chain"),
         ("rr", "joint 'q2' has a spring of its own; give the rigid arm"),
     ],
 )
