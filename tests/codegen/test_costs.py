@@ -97,7 +97,7 @@ def test_a_safe_speed_costs_what_the_design_allows(package: Callable[[str], Gene
 def test_no_input_exceeds_the_stated_bound_on_time(
     package: Callable[[str], Generated], tmp_path: Path
 ) -> None:
-    """Inputs that use up the budget, of the widest ranges that the adversarial search draws from."""
+    """Inputs that use up the budget, from where the adversarial search draws its own."""
     tool("qemu-system-arm")
     tool("arm-none-eabi-gcc")
     generated = package("panda")

@@ -166,7 +166,7 @@ int panda_impact_prepare(const panda_region *region, const panda_params *p, int 
     }
     const panda_real size =
         force > PANDA_R(0.0) ? force : panda_two_body_force(region, impact->mobility, -force);
-    impact->scale = PANDA_R(0.4)*size;
+    impact->scale = PANDA_R(0.2)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const panda_real damped = region->damping*PANDA_SQRT(impact->mobility/region->stiffness);
     impact->smooth = PANDA_R(1.0)/(PANDA_R(1.0) + PANDA_R(4.0)*damped);

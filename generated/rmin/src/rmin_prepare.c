@@ -166,7 +166,7 @@ int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int mot
     }
     const rmin_real size =
         force > RMIN_R(0.0) ? force : rmin_two_body_force(region, impact->mobility, -force);
-    impact->scale = RMIN_R(0.4)*size;
+    impact->scale = RMIN_R(0.2)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rmin_real damped = region->damping*RMIN_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RMIN_R(1.0)/(RMIN_R(1.0) + RMIN_R(4.0)*damped);

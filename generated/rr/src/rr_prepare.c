@@ -166,7 +166,7 @@ int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
     }
     const rr_real size =
         force > RR_R(0.0) ? force : rr_two_body_force(region, impact->mobility, -force);
-    impact->scale = RR_R(0.4)*size;
+    impact->scale = RR_R(0.2)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rr_real damped = region->damping*RR_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RR_R(1.0)/(RR_R(1.0) + RR_R(4.0)*damped);

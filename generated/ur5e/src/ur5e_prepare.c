@@ -166,7 +166,7 @@ int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int mot
     }
     const ur5e_real size =
         force > UR5E_R(0.0) ? force : ur5e_two_body_force(region, impact->mobility, -force);
-    impact->scale = UR5E_R(0.4)*size;
+    impact->scale = UR5E_R(0.2)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const ur5e_real damped = region->damping*UR5E_SQRT(impact->mobility/region->stiffness);
     impact->smooth = UR5E_R(1.0)/(UR5E_R(1.0) + UR5E_R(4.0)*damped);
