@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from softimpact.optimize import Study, load_study
-from softimpact.robots import built_in_robots
+from softimpact.robots import built_in_robots, study_path
 from softimpact.simulate.trajectory import Trajectory
 from softimpact.symbolic import (
     Contact,
@@ -138,7 +138,7 @@ def opened(what: str, arm: TypedArm | None = None) -> Opened:
     """
     path = Path(what)
     is_folder = what not in built_in_robots() and path.is_dir()
-    if not is_folder and path.suffix != ".toml":
+    if not is_folder and study_path(what).suffix != ".toml":
         return of_model(arm or TypedArm(what))
     if arm is not None:
         raise InvalidValue("tip", "and the like are a model's; studies and results have theirs")
