@@ -142,8 +142,9 @@ class ImpactModel(ByContent):
         F = self.moving(law)
         stiffness, damping = self.generalised_stiffness(q), self.generalised_damping(q)
         jacobian = self.contact_jacobian(q, direction)
+        driven = self.robot.actuated if law in PRESCRIBED else ()
+        require_rotors(self.drives, self.robot.joint_names, driven)
         if law not in PRESCRIBED:
-            require_rotors(self.drives, self.robot.joint_names)
             return LinearModel(self.generalised_mass(q), stiffness, jacobian, damping)
         if damping is not None:
             damping = damping[F, F]
