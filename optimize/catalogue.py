@@ -27,6 +27,7 @@ class Bought:
     Attributes:
         at: the machine with them.
         worst: over all scenarios with them.
+        springs: joint stiffness, length n [N·m/rad].
         ideal: springs of any stiffness, length n [N·m/rad].
         loss: share of the objective that the catalogue costs against these.
         tried: combinations evaluated.
@@ -34,6 +35,7 @@ class Bought:
 
     at: Hardening
     worst: Worst
+    springs: Array
     ideal: Array
     loss: float
     tried: int
@@ -85,8 +87,10 @@ def bought(setting: Setting, decisive: Setting, at: Hardening, ideal: Worst) -> 
     worst, _ = setting.worst(found)
     value, free = worst.value, ideal.value
     loss = free / value - 1 if study.objective.more_is_better else value / free - 1
-    springs, _ = limits.parted(at.v)
-    return Bought(replace(found, factors=worst.factors), worst, springs, loss, len(seen))
+    (springs, _), (own, _) = limits.parted(at.v), limits.parted(found.v)
+    catalogue = np.array(study.catalogue)
+    own = catalogue[abs(np.log(own[:, None] / catalogue)).argmin(axis=1)]
+    return Bought(replace(found, factors=worst.factors), worst, own, springs, loss, len(seen))
 
 
 def _entries(study: Study) -> list[Array]:

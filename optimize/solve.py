@@ -9,7 +9,8 @@ from typing import Literal
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .ipopt import FEASIBLE, IN_TURN, NONE, Bounds, Instance, minimise
+from .deciding import minimise_deciding
+from .ipopt import FEASIBLE, IN_TURN, NONE, Bounds, Instance
 from .nlp import Program
 
 Mode = Literal["table", "free"]
@@ -113,7 +114,7 @@ def _attempt(
     program: Program, start: Start, q: Array, springs: Array, bounds: Bounds, instance: Instance
 ) -> Outcome:
     free = start.mode == "free"
-    found = minimise(program, instance, bounds, q[None, :], springs, free=free)
+    found = minimise_deciding(program, instance, bounds, q[None, :], springs, free=free)
     return Outcome(
         name=start.name,
         mode=start.mode,

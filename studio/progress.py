@@ -18,7 +18,10 @@ from rich.progress import (
     TaskID,
     TextColumn,
     TimeElapsedColumn,
+    TimeRemainingColumn,
 )
+
+from softimpact.toolchain import c_compiler
 
 PATIENCE = 2.0
 """Time after which a terminal shows that a command is at work [s]."""
@@ -81,14 +84,19 @@ def progress_bar() -> Progress:
     console = Console(stderr=True)
     if not console.is_terminal:
         return _Lines(console)
-    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    columns = (
+        "{task.description}",
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        "left",
+        TimeRemainingColumn(),
+    )
     return Progress(*columns, console=console)
 
 
 def optimiser_bar() -> Progress:
     """Return the bar of an optimiser, and say first if it has no C compiler."""
-    from softimpact.optimize.compiled import c_compiler
-
     bar = progress_bar()
     if c_compiler() is None:
         bar.console.print(

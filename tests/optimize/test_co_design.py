@@ -70,7 +70,7 @@ def test_every_search_is_solved_and_feasible(found: Design) -> None:
         assert [outcome.name for outcome in outcomes] == list(POSES)
         for outcome in outcomes:
             assert outcome.solved, outcome.status
-            assert outcome.attempts == 2
+            assert outcome.attempts >= {"table": 2, "free": 1}[mode]
             assert outcome.iterations > 2
             assert_feasible(found.study, outcome)
 
@@ -218,7 +218,7 @@ def test_nothing_solved(tmp_path: Path) -> None:
     assert len(failure.outcomes) == 4
     for outcome in failure.outcomes:
         assert not outcome.solved
-        assert outcome.attempts == {"table": 2, "free": 3}[outcome.mode]
+        assert outcome.attempts == {"table": 2, "free": 2}[outcome.mode]
         peak = simulated_peak(study, outcome.q, outcome.springs)
         assert outcome.force == pytest.approx(peak, rel=1e-3)
     feasible = [outcome for outcome in failure.outcomes if outcome.violation <= solving.FEASIBLE]

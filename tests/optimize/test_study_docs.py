@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from pydantic import BaseModel
 
-from softimpact.optimize import load_study
+from softimpact.optimize import bounds, load_study, objectives, variables
+from softimpact.optimize.bounds import Bound
+from softimpact.optimize.members import kinds_in
+from softimpact.optimize.objectives import Objective
 from softimpact.optimize.study_file import (
     AccuracySection,
     HardwareSection,
@@ -23,6 +28,7 @@ from softimpact.optimize.study_file import (
     StudyFile,
     TaskSection,
 )
+from softimpact.optimize.variables import Variable
 from softimpact.symbolic.body.regions import REGIONS
 
 PAGE = Path(__file__).parents[2] / "docs/study-files.md"
@@ -82,8 +88,30 @@ def test_every_field_is_explained(title: str) -> None:
 
 def test_no_section_is_left_out() -> None:
     named = {*(title.strip("[]") for title in SECTIONS), *rows(section("Top level"))}
+    named |= {"bounds", "objective"}  # see below
     assert named == set(StudyFile.model_fields)
 
 
 def test_regions_are_all_named() -> None:
     assert re.findall(r"`(\w+)`", rows(section("[impact]"))["region"])[1:] == list(REGIONS)
+
+
+@pytest.mark.parametrize(
+    ("package", "base", "title", "pattern"),
+    [
+        (bounds, Bound, "[bounds]", r"^\| `\[bounds\.(\w+)\]` \|.*$"),
+        (variables, Variable, "[hardware]", r"^\| `\[hardware\.(\w+)\]` \|.*$"),
+        (objectives, Objective, "[objective]", r"^\| `\"(\w+)\"` \|.*$"),
+    ],
+)
+def test_every_bound_variable_and_objective_is_explained(
+    package: ModuleType, base: type, title: str, pattern: str
+) -> None:
+    kinds = kinds_in(package, base)
+    explained = {row[1]: row[0] for row in re.finditer(pattern, section(title), re.M)}
+    given_elsewhere = {"deflection", "joint_stiffness"}
+    assert set(explained) == set(kinds) - given_elsewhere
+    for kind, row in explained.items():
+        for field in dataclasses.fields(kinds[kind]):
+            if field.name not in ("lower", "upper"):
+                assert f"`{field.name}`" in row, (kind, field.name)

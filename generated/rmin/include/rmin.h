@@ -110,7 +110,7 @@ static inline int rmin_default_params(rmin_params *p)
  * from the model's own. The nearer it is, the fewer steps this takes: at most 64 moves of the motors
  * by 0.125 rad each, with at most 12 Newton steps each; else the status is RMIN_NO_EQUILIBRIUM.
  * 423 operations, 12 sines and cosines a Newton step.
- * Error: 1e-12 in double, 8e-07 in float.
+ * Error: 1e-12 in double, 7e-07 in float.
  */
 int rmin_configuration(const rmin_real motors[2], const rmin_real start[6], rmin_real q[6]);
 

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A search that carries only the impacts that decide it, and looks at the others when it ends.
+
+Where it is not known what motors do, an impact has two ends of which one is nearly always the
+worse; the derivatives of the other are most of its price.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from softimpact.symbolic.robot.rigid import Array
+
+from .ipopt import Bounds, Found, Instance, impact_forces, minimise
+from .nlp import Program
+from .objectives.objective import Indices
+
+NEAR = 0.98
+"""Share of the worst force from which on an impact is carried from the start."""
+
+EXCEEDS = 1e-4
+"""Share by which an impact that is left out may exceed the worst: forces are no better known."""
+
+
+def minimise_deciding(
+    program: Program,
+    instance: Instance,
+    bounds: Bounds,
+    postures: Array,
+    springs: Array,
+    others: Array | None = None,
+    *,
+    free: bool,
+) -> Found:
+    """Return what ``minimise`` does, the largest of all forces made small.
+
+    Impacts are carried that are near the worst where the search starts, and those that turn out to
+    be worse where it ends; from there it goes on.
+    """
+    v = bounds.vector(springs, others)
+    shares = _shares(program, instance, postures, v)
+    carried = np.flatnonzero(shares >= NEAR * shares.max())
+    iterations = 0
+    while True:
+        some = _some(instance, carried)
+        found = minimise(program, some, bounds, postures, springs, others, free=free)
+        iterations += found.iterations
+        v = bounds.vector(found.springs, found.others)
+        shares = _shares(program, instance, found.postures, v)
+        worse = np.flatnonzero(shares > found.worst * (1 + EXCEEDS))
+        fresh = np.setdiff1d(worse, carried)
+        shares[carried] = found.shares
+        found = replace(found, shares=shares, iterations=iterations)
+        if not fresh.size:
+            return found
+        carried = np.union1d(carried, fresh)
+        postures, springs, others = found.postures, found.springs, found.others
+
+
+def _shares(program: Program, instance: Instance, postures: Array, v: Array) -> Array:
+    forces = impact_forces(program, instance, postures, v)
+    return np.array([force.max() for force in forces]) / instance.units
+
+
+def _some(instance: Instance, carried: Indices) -> Instance:
+    """Return the NLP with some of its impacts."""
+    shape, places = instance.shape, [int(i) for i in carried]
+    own = [shape.scenarios[i] for i in places]
+    numbered = {which: k for k, which in enumerate(dict.fromkeys(own))}
+    return Instance(
+        replace(
+            shape,
+            impacts=tuple(shape.impacts[i] for i in places),
+            scenarios=tuple(numbered[which] for which in own),
+        ),
+        instance.tasks,
+        instance.impacts[places],
+        instance.units[places],
+    )
