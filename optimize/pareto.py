@@ -30,7 +30,7 @@ from .stiffest import Stiffest, stiffest
 from .study import Study
 from .sweep import Level, sweep
 from .timing import Timing
-from .workers import workers
+from .workers import cores, workers, works_elsewhere
 
 RIGID = 1e-12
 """Deflection [m] that counts as none."""
@@ -126,10 +126,10 @@ def pareto_fronts(
         SolverFailure: no search with a free posture was solved.
     """
     _require_deflection(study)
-    problem = prepare(study)
+    problem = prepare(study, elsewhere=works_elsewhere(executor))
     ends = {pose.pose.name: stiffest(study, pose.q, "table") for pose in problem.poses}
     accurate = _most_accurate(problem, ends)
-    with workers(max(len(ends), study.levels.points), executor) as pool:
+    with workers(min(max(len(ends), study.levels.points), cores()), executor) as pool:
         searches = Searches(problem, pool, on_progress or (lambda *_: None))
         soft = softest_design(searches, ends)
         levels = _levels(searches, accurate, ends[study.task_pose.name], soft)

@@ -39,7 +39,7 @@ from .study import Study, transient_limit
 from .timing import Timing, scenario_timing
 from .tip_pose import tip_pose
 from .variables.cover import Cover
-from .workers import as_completed, workers
+from .workers import as_completed, cores, workers, works_elsewhere
 
 ROUNDS = 40
 """Most exchanges."""
@@ -132,10 +132,18 @@ def robust_design(
     require_reachable(study, scenarios.poses, free=free)
     timing, parts = scenario_timing(study, scenarios), sought_parts(study)
     impacts = tuple(
-        impact_program(study.model, timing.nodes, timing.substeps, point, parts, compiled=True)
+        impact_program(
+            study.model,
+            timing.nodes,
+            timing.substeps,
+            point,
+            parts,
+            compiled=True,
+            elsewhere=works_elsewhere(executor),
+        )
         for point in scenarios.points
     )
-    with workers(max(2, len(scenarios) // PIECE), executor) as pool:
+    with workers(min(max(2, len(scenarios) // PIECE), cores()), executor) as pool:
         setting = Setting(
             study,
             scenarios,

@@ -34,6 +34,7 @@ from softimpact.symbolic import (
 from softimpact.symbolic.impact.drives import PerJoint, require_rotors
 from softimpact.symbolic.robot.rigid import Array
 
+from .approach import singular_postures
 from .bounds import Bound, Deflection
 from .hardware import Motion
 from .objectives import Objective, WorstForce
@@ -263,9 +264,10 @@ def build_study(file: StudyFile, source: Path) -> Study:
     with _naming(source, "objective", "kind"):
         objective = asked_objective(file.objective)
         require_fit(objective, bounds)
-    for pose in poses:
-        with _naming(source, "impact", f"direction at pose '{pose.name}'"):
-            approach_velocity(model, pose.q, direction)
+    stuck = singular_postures(model, np.array([pose.q for pose in poses]), direction)
+    for i in stuck[:1]:
+        with _naming(source, "impact", f"direction at pose '{poses[i].name}'"):
+            approach_velocity(model, poses[i].q, direction)
     return Study(
         title=file.title or source.stem,
         source=source,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -12,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from softimpact.robots import built_in_studies
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.errors import did_you_mean
 from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, Reaction
 
@@ -55,7 +57,7 @@ class MotorsSection(_Section):
     reaction_time: Annotated[float, Field(ge=0)] = REACTION_TIME
     reaction: Reaction = "release"
     stopping_time: Positive = STOPPING_TIME
-    horizon: Positive = 0.5
+    horizon: Positive = QUASI_STATIC_FROM
 
 
 class HardwareSection(_Section):
@@ -163,7 +165,7 @@ class StudyFile(_Section):
     @model_validator(mode="after")
     def _poses_are_named_once(self) -> StudyFile:
         names = [pose.name for pose in self.poses]
-        repeated = {name for name in names if names.count(name) > 1}
+        repeated = {name for name, count in Counter(names).items() if count > 1}
         if repeated:
             raise ValueError(f"poses: named more than once: {', '.join(sorted(repeated))}")
         if self.task.pose_of not in names:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Time simulation of impacts: full nonlinear, linearised, chain, two masses, one mass."""
 
-from .approach import Approach
+from .arrival import Approach
 from .assessment import Assessment, assess_impact
 from .assessments import Assessments, assess_impacts
 from .bracket import bracket

@@ -18,7 +18,7 @@ from softimpact.symbolic.impact.two_body import TwoBody, moving_mass, two_body
 from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Approach, arrival_of
+from .arrival import Approach, arrival_of
 from .band import ImpactBand, impact_band
 from .bracket import bracket
 from .controller import Controller

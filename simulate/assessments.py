@@ -15,7 +15,7 @@ from softimpact.symbolic import Contact, ImpactModel, InvalidValue, unit_directi
 from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Approach
+from .arrival import Approach
 from .assessment import Assessment, assess_impact
 
 

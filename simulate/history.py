@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from softimpact.symbolic import InvalidValue, Motors, UnknownName
+from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
@@ -16,8 +17,8 @@ Fidelity = Literal["one_mass", "two_mass", "chain", "linearised", "full"]
 PeakDefinition = Literal["peak", "first_contact", "first_peak"]
 """Maximum over all contacts, maximum until separation, or first local maximum (MSM's)."""
 
-HORIZON = 0.5
-"""How long the transient limit counts after first touch [s] (ISO/TS 15066, 5.5.4)."""
+HORIZON = QUASI_STATIC_FROM
+"""How long forces count by default: as long as the transient limit does [s]."""
 
 PRESSED_UNTIL = 0.6
 """Until when the force is followed that a clamped body still bears after ``HORIZON`` [s]."""

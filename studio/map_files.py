@@ -27,6 +27,7 @@ def map_record(found: SafetyMap) -> dict[str, Any]:
     return {
         "generator": GENERATOR,
         "versions": versions(),
+        "arm": found.arm,
         "robot": robot.name,
         "robot_digest": robot.digest(),
         "joints": robot.joint_names,

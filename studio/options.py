@@ -204,3 +204,18 @@ Report = Annotated[
         "--report", metavar="FILE", help="Write a report: one HTML page that opens offline."
     ),
 ]
+
+Workers = Annotated[
+    int | None,
+    typer.Option("--workers", metavar="N", help="Processes that search; default one a core."),
+]
+Dask = Annotated[
+    str | None,
+    typer.Option(
+        "--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster whose workers search."
+    ),
+]
+Resume = Annotated[
+    bool,
+    typer.Option("--resume", help="Go on where an earlier run of this study was ended."),
+]

@@ -191,7 +191,8 @@ def _time_figure(results: Results, name: str) -> Figure:
         axes.set_xlim(0, 1e3 * max(t.time[-1] for t in models.values()))
     for axes in panels[len(traces) :]:
         axes.remove()
-    figure.supxlabel("time since first touch [ms]", fontsize=9)
+    for axes in figure.axes[-3:]:  # one label of the figure would lie under its legend
+        axes.set_xlabel("time since first touch [ms]")
     figure.supylabel("contact force [N]", fontsize=9)
     handles = [_key(rung, MODEL_COLOURS[rung]) for rung in COMPARED]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))

@@ -58,7 +58,8 @@ def ladder_figure(results: Results, region: str = "head") -> Figure:
         axes.set_ylim(bottom=0)
     for drawn, rung in zip(figure.axes[0].lines, LINES, strict=True):
         drawn.set_label(LADDER[rung].title)
-    figure.supxlabel("joint stiffness $k_s$ [N·m/rad]", fontsize=9)
+    for axes in figure.axes[-columns:]:  # one label of the figure would lie under its legend
+        axes.set_xlabel("joint stiffness $k_s$ [N·m/rad]")
     figure.supylabel(f"largest force of the first contact, {region} [N]", fontsize=9)
     figure.legend(
         handles=figure.axes[0].lines, loc="outside lower center", ncols=min(columns + 1, 3)
