@@ -123,13 +123,14 @@ def generate(
     robot = whole_robot(model, tip) if floating else loaded_arm(typed).robot
     print_warnings([*robot.warnings, *_left_out(robot)])
     given = TypedDrives(joint_stiffness, rotor_inertia, position_gain, None, gear_ratio)
+    known = drives_of(robot, given)
     write = partial(
         generate_package,
         robot,
         out,
         real=number,
         name=name,
-        drives_=drives_of(robot, given),
+        drives_=known,
         gravity=None if gravity is None else gravity_of(gravity),
         chain_order=order,
         floating=floating,
@@ -148,6 +149,8 @@ def generate(
             progress.update(task, description=what, completed=done, total=of)
 
         manifest = write(on_step=show)
+    if joint_stiffness is not None and not all(known.elastic):
+        print_warnings(["rigid joints have no default stiffness: joint_stiffness must be set"])
     if name is not None and name != manifest.name:
         print_warnings([f"'{name}' cannot begin C names; they begin with '{manifest.name}'"])
     if json:

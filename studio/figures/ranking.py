@@ -63,6 +63,9 @@ def _message(report: DesignReport) -> str:
     """Return where the poses' forces lie before and after."""
     before = [pose.result.force_before for pose in report.poses]
     after = [pose.best.force for pose in report.poses]
+    if len(before) == 1:
+        name = report.poses[0].result.candidate.pose.name
+        return f"Peak force of {name}: {before[0]:.1f} N before, {after[0]:.1f} N after the design"
     return (
         f"Peak force of {len(before)} poses: {min(before):.0f} to {max(before):.0f} N before, "
         f"{min(after):.0f} to {max(after):.0f} N after the design"
@@ -74,7 +77,7 @@ def _range(report: DesignReport) -> tuple[float, float]:
     forces = [pose.result.force_before for pose in report.poses]
     forces += [o.force for mode in MARKERS for o in _outcomes(report, mode) if o and o.solved]
     low, high = min(forces), max(forces)
-    span = max(high - low, 0.01 * high)
+    span = max(high - low, (0.01 if len(report.poses) > 1 else 0.5) * high)
     if low - span <= report.limit <= high + span:
         low, high = min(low, report.limit), max(high, report.limit)
     return low - 0.06 * span, high + 0.06 * span
