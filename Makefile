@@ -17,7 +17,8 @@ N ?= 10000
 # faults that make mutants puts into the sources, one at a time
 SAMPLE ?= 200
 
-.PHONY: demo install test coverage mutants lint format bench bench-c fuzz adversarial generated clean
+.PHONY: demo install test coverage mutants lint format bench bench-c bench-opt fuzz adversarial \
+	generated docs clean
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
@@ -58,6 +59,10 @@ bench-c: $(VENV)/installed-test $(OTHERS)/installed
 	$(MAKE) generated
 	$(BIN)/python benchmarks/cost/run.py --others $(OTHERS)/bin/python --out docs/benchmarks.md
 
+# one robust design by us and by general optimisers, some ten minutes
+bench-opt: $(VENV)/installed-test
+	$(BIN)/python benchmarks/design/run.py --budget 2000 --out docs/benchmarks-design.md
+
 # libFuzzer on every package, float and double; needs clang
 fuzz: $(VENV)/installed-test
 	FUZZ_EXECUTIONS=$(EXECUTIONS) $(BIN)/pytest -n 2 --slow tests/codegen/test_verification.py -k fuzzer $(PYTEST)
@@ -72,6 +77,10 @@ generated: $(VENV)/installed
 		$(BIN)/softimpact generate $$robot --out generated/$$robot $${study:+--poses $$study} || exit 1; \
 	done
 
+# the site, build/site/html/index.html; needs no network once its tools are installed
+docs: $(VENV)/installed-docs
+	$(BIN)/python docs/site/build.py
+
 clean:
 	rm -rf $(VENV) $(OTHERS) build dist results
 
@@ -84,6 +93,10 @@ $(VENV)/installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 
 $(VENV)/installed-test: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(INSTALL) --editable '.[test]'
+	touch $@ $(VENV)/installed
+
+$(VENV)/installed-docs: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(INSTALL) --editable '.[docs]'
 	touch $@ $(VENV)/installed
 
 # other generators want other versions of what we use

@@ -9,11 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from softimpact.simulate.program import Danger
+from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.record import plain
 
 from .figures.program import program_figure
 from .figures.style import save
-from .output import plain, write_json
+from .output import write_json
 from .program_record import ProgramResult
+from .program_run import Question
 from .program_table import ProgramTable
 from .results_folder import RESULTS
 
@@ -28,9 +31,24 @@ def write_program(found: ProgramResult, folder: Path) -> None:
     write_json(folder / RESULTS, found.record)
     save(program_figure(table, found.record["robot"]), folder / "program.png")
     _write_csv(folder / "program.csv", (*MOMENT, "peak", "iso_factor"), _samples(table))
+    constraint = _constraint(found.question)
+    if constraint is not None:
+        constraint.save(str(folder / "speed_factor.casadi"))
     if dangers:
         rows = (row for part in dangers for danger in part for row in _points(table, danger))
         _write_csv(folder / "points.csv", POINTS, rows)
+
+
+def _constraint(question: Question) -> Any:
+    """Return (q, q̇) -> factor for all bodies, wherever they are; None where there is none."""
+    from softimpact.optimize.speed_factor import Watch, speed_factor
+
+    watched = [Watch(question.points, body.contact, body.limits) for body in question.bodies]
+    kinds, horizon = list(question.ends.values()), question.horizon
+    try:
+        return speed_factor(question.model, watched, kinds, horizon=horizon, compiled=False)
+    except InvalidValue:
+        return None
 
 
 def _samples(table: ProgramTable) -> Iterator[dict[str, Any]]:

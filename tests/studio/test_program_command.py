@@ -74,7 +74,13 @@ def test_worst_moments(result: tuple[Found, Path]) -> None:
 def test_files(result: tuple[Found, Path]) -> None:
     found, out = result
     names = {path.name for path in out.iterdir()}
-    assert names == {"results.json", "program.csv", "points.csv", "program.png"}
+    assert names == {
+        "results.json",
+        "program.csv",
+        "points.csv",
+        "program.png",
+        "speed_factor.casadi",
+    }
     with (out / "program.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [float(row["factor"]) for row in rows] == pytest.approx(found["factor"])

@@ -23,7 +23,7 @@ pub const PANDA_CANDIDATES: usize = 24;
 pub const PANDA_VERSION: &str = "0.2.0";
 pub const PANDA_MODEL_DIGEST: &str = "4d55b88b1dbb963dbf3ba6052077da0bf8d34700e10b93eac36c486e0b89b1d5";
 /// What structs and functions look like, in this number type.
-pub const PANDA_LAYOUT: c_uint = 0x7cc603b0 + core::mem::size_of::<panda_real>() as c_uint;
+pub const PANDA_LAYOUT: c_uint = 0x9a696a0 + core::mem::size_of::<panda_real>() as c_uint;
 
 pub const PANDA_OK: c_int = 0;
 pub const PANDA_NULL_POINTER: c_int = 1;
@@ -223,6 +223,19 @@ pub struct panda_speed_factor_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct panda_speed_factor_over_t {
+    /// of all joint velocities, 0 to 1
+    pub factor: panda_real,
+    /// of the table that needs it, -1 if none moves
+    pub entry: c_int,
+    /// m/s; that its point may have
+    pub speed: panda_real,
+    /// N; largest at that speed
+    pub force: panda_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct panda_selection_t {
     /// row of the pose with the least peak force; the first of equals
     pub best: c_int,
@@ -262,8 +275,11 @@ extern "C" {
     pub fn panda_joint_impulse(q: *const panda_real, n: *const panda_real, speed: panda_real, restitution: panda_real, other_mobility: panda_real, p: *const panda_params, out: *mut panda_joint_impulse_t) -> c_int;
     pub fn panda_body_region(part: c_int, clamped: c_int, region: *mut panda_region) -> c_int;
     pub fn panda_peak_force(q: *const panda_real, n: *const panda_real, speed: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_peak_force_t) -> c_int;
+    pub fn panda_peak_force_at(q: *const panda_real, point: c_int, n: *const panda_real, speed: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_peak_force_t) -> c_int;
     pub fn panda_safe_speed(q: *const panda_real, n: *const panda_real, limit: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_safe_speed_t) -> c_int;
+    pub fn panda_safe_speed_at(q: *const panda_real, point: c_int, n: *const panda_real, limit: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_safe_speed_t) -> c_int;
     pub fn panda_speed_factor(q: *const panda_real, dq: *const panda_real, limit: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_speed_factor_t) -> c_int;
+    pub fn panda_speed_factor_over(q: *const panda_real, dq: *const panda_real, points: *const c_int, regions: *const panda_region, limits: *const panda_real, count: c_int, p: *const panda_params, out: *mut panda_speed_factor_over_t) -> c_int;
     pub fn panda_select_configuration(poses: *const [panda_real; 7], count: c_int, allowed: *const c_uchar, n: *const panda_real, speed: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_selection_t) -> c_int;
 }
 

@@ -206,9 +206,23 @@ inline result<rmin_peak_force_t> peak_force(
     return found;
 }
 
+/* The same of another contact point, a rmin_point. */
+inline result<rmin_peak_force_t> peak_force_at(
+    const vector<6> &q,
+    int point,
+    const vector<3> &n,
+    real speed,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_peak_force_t> found;
+    found.status = rmin_peak_force_at(q.data(), point, n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
 /* Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the
  * speed
- * that is returned is 0.25 to 2 % below the limit, or jumps over it with little more speed.
+ * that is returned is 0.5 to 2 % below the limit, or jumps over it with little more speed.
  * limit: N, > 0. RMIN_BOUNDED: the speed is safe, but slower ones only were looked at, or none. */
 inline result<rmin_safe_speed_t> safe_speed(
     const vector<6> &q,
@@ -219,6 +233,20 @@ inline result<rmin_safe_speed_t> safe_speed(
 {
     result<rmin_safe_speed_t> found;
     found.status = rmin_safe_speed(q.data(), n.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
+/* The same of another contact point, a rmin_point. */
+inline result<rmin_safe_speed_t> safe_speed_at(
+    const vector<6> &q,
+    int point,
+    const vector<3> &n,
+    real limit,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_safe_speed_t> found;
+    found.status = rmin_safe_speed_at(q.data(), point, n.data(), limit, &region, &p, &found.value);
     return found;
 }
 

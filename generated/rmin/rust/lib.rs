@@ -22,7 +22,7 @@ pub const RMIN_POINTS: usize = 1;
 pub const RMIN_VERSION: &str = "0.2.0";
 pub const RMIN_MODEL_DIGEST: &str = "9aef78915461144e8c584f0d2e2b92eeefff44bc17b988d6df56b13ba4a63606";
 /// What structs and functions look like, in this number type.
-pub const RMIN_LAYOUT: c_uint = 0xbcf200a0 + core::mem::size_of::<rmin_real>() as c_uint;
+pub const RMIN_LAYOUT: c_uint = 0xfff911b0 + core::mem::size_of::<rmin_real>() as c_uint;
 
 pub const RMIN_OK: c_int = 0;
 pub const RMIN_NULL_POINTER: c_int = 1;
@@ -149,6 +149,19 @@ pub struct rmin_speed_factor_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rmin_speed_factor_over_t {
+    /// of all joint velocities, 0 to 1
+    pub factor: rmin_real,
+    /// of the table that needs it, -1 if none moves
+    pub entry: c_int,
+    /// m/s; that its point may have
+    pub speed: rmin_real,
+    /// N; largest at that speed
+    pub force: rmin_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct rmin_selection_t {
     /// row of the pose with the least peak force; the first of equals
     pub best: c_int,
@@ -178,8 +191,11 @@ extern "C" {
     pub fn rmin_chain(q: *const rmin_real, n: *const rmin_real, p: *const rmin_params, out: *mut rmin_chain_t) -> c_int;
     pub fn rmin_body_region(part: c_int, clamped: c_int, region: *mut rmin_region) -> c_int;
     pub fn rmin_peak_force(q: *const rmin_real, n: *const rmin_real, speed: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_peak_force_t) -> c_int;
+    pub fn rmin_peak_force_at(q: *const rmin_real, point: c_int, n: *const rmin_real, speed: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_peak_force_t) -> c_int;
     pub fn rmin_safe_speed(q: *const rmin_real, n: *const rmin_real, limit: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_safe_speed_t) -> c_int;
+    pub fn rmin_safe_speed_at(q: *const rmin_real, point: c_int, n: *const rmin_real, limit: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_safe_speed_t) -> c_int;
     pub fn rmin_speed_factor(q: *const rmin_real, dq: *const rmin_real, limit: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_speed_factor_t) -> c_int;
+    pub fn rmin_speed_factor_over(q: *const rmin_real, dq: *const rmin_real, points: *const c_int, regions: *const rmin_region, limits: *const rmin_real, count: c_int, p: *const rmin_params, out: *mut rmin_speed_factor_over_t) -> c_int;
     pub fn rmin_select_configuration(poses: *const [rmin_real; 6], count: c_int, allowed: *const c_uchar, n: *const rmin_real, speed: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_selection_t) -> c_int;
 }
 

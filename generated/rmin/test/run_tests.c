@@ -550,7 +550,7 @@ static void test_configuration(void)
             expect(rmin_configuration(motors, q, q) == RMIN_OK, name, "status from its own result");
         }
     }
-    const double bound = BOUND(1e-12, 8e-07);
+    const double bound = BOUND(1e-12, 7e-07);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 

@@ -22,7 +22,7 @@ pub const RR_POINTS: usize = 1;
 pub const RR_VERSION: &str = "0.2.0";
 pub const RR_MODEL_DIGEST: &str = "daba4e0e37a07503c013166f12b00244bb892e0fa7403efb8b19103c492fe0d6";
 /// What structs and functions look like, in this number type.
-pub const RR_LAYOUT: c_uint = 0xbaef0be0 + core::mem::size_of::<rr_real>() as c_uint;
+pub const RR_LAYOUT: c_uint = 0x4bc5fce0 + core::mem::size_of::<rr_real>() as c_uint;
 
 pub const RR_OK: c_int = 0;
 pub const RR_NULL_POINTER: c_int = 1;
@@ -162,6 +162,19 @@ pub struct rr_speed_factor_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rr_speed_factor_over_t {
+    /// of all joint velocities, 0 to 1
+    pub factor: rr_real,
+    /// of the table that needs it, -1 if none moves
+    pub entry: c_int,
+    /// m/s; that its point may have
+    pub speed: rr_real,
+    /// N; largest at that speed
+    pub force: rr_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct rr_selection_t {
     /// row of the pose with the least peak force; the first of equals
     pub best: c_int,
@@ -191,8 +204,11 @@ extern "C" {
     pub fn rr_joint_impulse(q: *const rr_real, n: *const rr_real, speed: rr_real, restitution: rr_real, other_mobility: rr_real, p: *const rr_params, out: *mut rr_joint_impulse_t) -> c_int;
     pub fn rr_body_region(part: c_int, clamped: c_int, region: *mut rr_region) -> c_int;
     pub fn rr_peak_force(q: *const rr_real, n: *const rr_real, speed: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_peak_force_t) -> c_int;
+    pub fn rr_peak_force_at(q: *const rr_real, point: c_int, n: *const rr_real, speed: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_peak_force_t) -> c_int;
     pub fn rr_safe_speed(q: *const rr_real, n: *const rr_real, limit: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_safe_speed_t) -> c_int;
+    pub fn rr_safe_speed_at(q: *const rr_real, point: c_int, n: *const rr_real, limit: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_safe_speed_t) -> c_int;
     pub fn rr_speed_factor(q: *const rr_real, dq: *const rr_real, limit: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_speed_factor_t) -> c_int;
+    pub fn rr_speed_factor_over(q: *const rr_real, dq: *const rr_real, points: *const c_int, regions: *const rr_region, limits: *const rr_real, count: c_int, p: *const rr_params, out: *mut rr_speed_factor_over_t) -> c_int;
     pub fn rr_select_configuration(poses: *const [rr_real; 4], count: c_int, allowed: *const c_uchar, n: *const rr_real, speed: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_selection_t) -> c_int;
 }
 

@@ -22,7 +22,7 @@ pub const UR5E_POINTS: usize = 1;
 pub const UR5E_VERSION: &str = "0.2.0";
 pub const UR5E_MODEL_DIGEST: &str = "40f477935b27b5347d857cf794de085d62bc0c098f5702fa8094214d1cb3bf35";
 /// What structs and functions look like, in this number type.
-pub const UR5E_LAYOUT: c_uint = 0xc0e25320 + core::mem::size_of::<ur5e_real>() as c_uint;
+pub const UR5E_LAYOUT: c_uint = 0x9c243d50 + core::mem::size_of::<ur5e_real>() as c_uint;
 
 pub const UR5E_OK: c_int = 0;
 pub const UR5E_NULL_POINTER: c_int = 1;
@@ -222,6 +222,19 @@ pub struct ur5e_speed_factor_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ur5e_speed_factor_over_t {
+    /// of all joint velocities, 0 to 1
+    pub factor: ur5e_real,
+    /// of the table that needs it, -1 if none moves
+    pub entry: c_int,
+    /// m/s; that its point may have
+    pub speed: ur5e_real,
+    /// N; largest at that speed
+    pub force: ur5e_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ur5e_selection_t {
     /// row of the pose with the least peak force; the first of equals
     pub best: c_int,
@@ -260,8 +273,11 @@ extern "C" {
     pub fn ur5e_joint_impulse(q: *const ur5e_real, n: *const ur5e_real, speed: ur5e_real, restitution: ur5e_real, other_mobility: ur5e_real, p: *const ur5e_params, out: *mut ur5e_joint_impulse_t) -> c_int;
     pub fn ur5e_body_region(part: c_int, clamped: c_int, region: *mut ur5e_region) -> c_int;
     pub fn ur5e_peak_force(q: *const ur5e_real, n: *const ur5e_real, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_peak_force_t) -> c_int;
+    pub fn ur5e_peak_force_at(q: *const ur5e_real, point: c_int, n: *const ur5e_real, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_peak_force_t) -> c_int;
     pub fn ur5e_safe_speed(q: *const ur5e_real, n: *const ur5e_real, limit: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_safe_speed_t) -> c_int;
+    pub fn ur5e_safe_speed_at(q: *const ur5e_real, point: c_int, n: *const ur5e_real, limit: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_safe_speed_t) -> c_int;
     pub fn ur5e_speed_factor(q: *const ur5e_real, dq: *const ur5e_real, limit: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_speed_factor_t) -> c_int;
+    pub fn ur5e_speed_factor_over(q: *const ur5e_real, dq: *const ur5e_real, points: *const c_int, regions: *const ur5e_region, limits: *const ur5e_real, count: c_int, p: *const ur5e_params, out: *mut ur5e_speed_factor_over_t) -> c_int;
     pub fn ur5e_select_configuration(poses: *const [ur5e_real; 6], count: c_int, allowed: *const c_uchar, n: *const ur5e_real, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_selection_t) -> c_int;
 }
 
