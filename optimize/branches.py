@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import casadi as ca
@@ -99,9 +99,16 @@ def _postures_at(model: ImpactModel, task: Array) -> Array:
     return np.asarray(q[held])
 
 
-def branches(problem: Problem) -> list[Branch]:
-    """Return each piece of the self-motion with its best posture before any search."""
+def branches(problem: Problem, max_deflection: float | None = None) -> list[Branch]:
+    """Return each piece of the self-motion with its best posture before any search.
+
+    Args:
+        problem: the study made ready.
+        max_deflection: bound that the springs just keep [m]; default the study's.
+    """
     study = problem.study
+    if max_deflection is not None:
+        study = replace(study, max_deflection=max_deflection)
     impact, rows = problem.program.impacts[0], study_impacts(study, problem.timing.step)
     equal = np.full(study.robot.n, float(np.median(study.nominal)))
     found = []
