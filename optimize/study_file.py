@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections import Counter
 from pathlib import Path
@@ -202,7 +203,9 @@ def read_toml(source: Path) -> dict[str, Any]:
 
 def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
     first = error.errors()[0]
-    field = ".".join(str(part) for part in first["loc"])
+    # of a table that may have two forms, pydantic names the form, too
+    parts = [str(part) for part in first["loc"] if not re.search(r"Section|\[", str(part))]
+    field = ".".join(parts)
     more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
     where = f"{source}: {field}" if field else str(source)
     return InvalidValue(where, f"{first['msg'].removeprefix('Value error, ')}{more}")
