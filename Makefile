@@ -12,10 +12,13 @@ PYTEST ?=
 ROBOTS := $(notdir $(wildcard generated/*))
 # of make fuzz, a build: some 20 minutes for a robot with seven joints
 EXECUTIONS ?= 10000000
+# of make adversarial, random cases of each robot and build
+N ?= 10000
 # faults that make mutants puts into the sources, one at a time
 SAMPLE ?= 200
 
-.PHONY: demo install test coverage mutants lint format bench bench-c bench-opt fuzz generated clean
+.PHONY: demo install test coverage mutants lint format bench bench-c bench-opt fuzz adversarial \
+	generated docs clean
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
@@ -64,11 +67,19 @@ bench-opt: $(VENV)/installed-test
 fuzz: $(VENV)/installed-test
 	FUZZ_EXECUTIONS=$(EXECUTIONS) $(BIN)/pytest -n 2 --slow tests/codegen/test_verification.py -k fuzzer $(PYTEST)
 
+# safe speeds of five robots, float and double, against the tests' own integrator: some 20 ms a case
+adversarial: $(VENV)/installed-test
+	$(BIN)/python tests/adversarial.py --count $(N)
+
 generated: $(VENV)/installed
 	for robot in $(ROBOTS); do \
 		study=$$(ls robots/studies/$${robot}_*.toml 2>/dev/null); \
 		$(BIN)/softimpact generate $$robot --out generated/$$robot $${study:+--poses $$study} || exit 1; \
 	done
+
+# the site, build/site/html/index.html; needs no network once its tools are installed
+docs: $(VENV)/installed-docs
+	$(BIN)/python docs/site/build.py
 
 clean:
 	rm -rf $(VENV) $(OTHERS) build dist results
@@ -82,6 +93,10 @@ $(VENV)/installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 
 $(VENV)/installed-test: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(INSTALL) --editable '.[test]'
+	touch $@ $(VENV)/installed
+
+$(VENV)/installed-docs: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(INSTALL) --editable '.[docs]'
 	touch $@ $(VENV)/installed
 
 # other generators want other versions of what we use

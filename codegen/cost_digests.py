@@ -37,6 +37,11 @@ def cost_digests(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
     return {stem: package.digest(stem) for stem in package.sources}
 
 
+def needed_sources(prefix: str, files: Mapping[str, str], stem: str) -> set[str]:
+    """Return the stems of a source and of those that it needs."""
+    return _Texts(prefix, {p: COMMENT.sub("", text) for p, text in files.items()}).closure(stem)
+
+
 @dataclass(frozen=True)
 class _Texts:
     """A package's files without comments."""

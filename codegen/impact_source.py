@@ -7,9 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from softimpact.symbolic import Robot, closed_chain
+from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
+from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import directions_of_motion
+from .directions import directions_of_motion
 from .functions import Symbols, has_potential, links_of
 from .functions.guards import fastest_arrival, heaviest
 from .impacts import Impact, draw_impacts, reference_force
@@ -23,14 +25,15 @@ GOLDEN_IMPACTS = 12
 ACCURACY = 2e-3
 """Bound stated of the error of peak forces, in double and in float."""
 
-HORIZON = 0.5
+HORIZON = QUASI_STATIC_FROM
 """Default time in which forces count [s]: what a transient limit is stated for."""
 
-REACTION_TIME = 0.02
-"""Default time until motors are released [s]."""
-
-STEPS = 8000
+STEPS = 800
 """Default budget of steps of a call."""
+
+
+NOT_MEASURED = FunctionRecord("", 0, 0, 0.0, 0.0, 0.0)
+"""Record of a function whose errors nobody asks for, or only in what is made of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +86,9 @@ class ImpactSource:
         return [p for p in self.parameters if p.frozen is not None and p.name in read]
 
 
-def impact_source(prefix: str, symbols: Symbols, points: Mapping[str, str]) -> ImpactSource | None:
+def impact_source(
+    prefix: str, symbols: Symbols, points: Mapping[str, str], golden: int = GOLDEN_IMPACTS
+) -> ImpactSource | None:
     """Return the impacts of a robot.
 
     None where there are none: if the contact point's directions of motion depend on the
@@ -93,6 +98,8 @@ def impact_source(prefix: str, symbols: Symbols, points: Mapping[str, str]) -> I
         prefix: of the C names.
         symbols: of the robot's package.
         points: frames of the contact points by name, the package's tip first.
+        golden: how many golden impacts there should be; with none of them nobody looks whether
+            the robot arrives anywhere.
     """
     robot, parameters = symbols.robot, symbols.parameters
     directions = directions_of_motion(symbols.model)
@@ -102,14 +109,14 @@ def impact_source(prefix: str, symbols: Symbols, points: Mapping[str, str]) -> I
         return None
     links = links_of(symbols, tuple(points.values()))
     fastest, heavy = fastest_arrival(symbols.model), heaviest(robot)
-    golden = []
-    for impact in draw_impacts(robot, parameters, directions, 4 * GOLDEN_IMPACTS, seed=3):
+    found = []
+    for impact in draw_impacts(robot, parameters, directions, 4 * golden, seed=3):
         force = reference_force(symbols, links, impact, directions, fastest, heavy)
         if force is not None:
-            golden.append((impact, float(f"{force:.6g}")))
-        if len(golden) == GOLDEN_IMPACTS:
+            found.append((impact, float(f"{force:.6g}")))
+        if len(found) == golden:
             break
-    if not golden:
+    if golden and not found:
         return None
     record = ImpactRecord(
         points=tuple(points),
@@ -122,17 +129,12 @@ def impact_source(prefix: str, symbols: Symbols, points: Mapping[str, str]) -> I
     return ImpactSource(
         robot=robot,
         parameters=tuple(parameters),
-        links=CSource(prefix, robot.n, parameters, links, _no_record(links.name)),
+        links=CSource(prefix, robot.n, parameters, links, NOT_MEASURED),
         points=points,
         directions=directions,
         potential=has_potential(symbols),
         fastest=fastest,
         heaviest=heavy,
         record=record,
-        golden=tuple(golden),
+        golden=tuple(found),
     )
-
-
-def _no_record(name: str) -> FunctionRecord:
-    """Return the record of a function whose errors only count in what is made of it."""
-    return FunctionRecord(name, 0, 0, 0.0, 0.0, 0.0)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 
@@ -21,9 +20,10 @@ from .defaults import Payload, defaults_of, frozen_parameters
 from .description import CFunction
 from .files import replace_package, require_place, sha256
 from .functions import coordinates_of, functions_of, symbols_of
-from .impact_source import impact_source
+from .impact_source import GOLDEN_IMPACTS, NOT_MEASURED, impact_source
 from .inputs import parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
+from .names import c_name
 from .poses import checked_poses
 from .render import MEASURED_SAMPLES, Package, render
 from .replay import replay
@@ -44,17 +44,6 @@ GOLDEN_CASES = 12
 
 CHAIN_ORDER = 3
 """Masses of the chain unless another number is asked for, or the robot has fewer coordinates."""
-
-TAKEN = frozenset((
-    "assert", "complex", "ctype", "errno", "fenv", "float", "inttypes", "iso646", "limits",
-    "locale", "math", "setjmp", "signal", "stdalign", "stdarg", "stdatomic", "stdbit", "stdbool",
-    "stdckdint", "stddef", "stdint", "stdio", "stdlib", "stdnoreturn", "string", "tgmath",
-    "threads", "time", "uchar", "wchar", "wctype",
-    "arm",
-    "all", "clean", "edit_cache", "help", "install", "package", "rebuild_cache", "test",
-))  # fmt: skip
-"""Names that a package cannot have: headers of C, what DSP libraries use (``arm_status``), then
-targets of CMake."""
 
 
 def unseen(what: str, done: int, of: int) -> None:
@@ -165,31 +154,39 @@ def package_of(
     floating: bool = False,
     poses: Mapping[str, Sequence[float]] | None = None,
     points: Mapping[str, str] | None = None,
+    verified: bool = True,
     on_step: OnStep = unseen,
 ) -> Package:
-    """Return all that a package's files show, as ``generate_package`` takes it."""
+    """Return all that a package's files show, as ``generate_package`` takes it.
+
+    ``verified`` packages have golden results and measured errors, which takes most of the time;
+    the C is the same without.
+    """
     frame = robot.frame(tip or robot.tip or "").name
     if gravity is None:
         gravity = STANDARD_GRAVITY if robot.loops else WEIGHTLESS
     _check(robot, real, gravity, chain_order, floating)
     chain_order = chain_order or min(CHAIN_ORDER, longest_chain(robot))
     checked = checked_poses(robot, poses or {})
+    watched = {TIP: frame, **checked_points(robot, points or {})}
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot, payload=payload is not None)
     defaults = defaults_of(robot, parameters, drives_, payload)
     parameters = frozen_parameters(defaults, freeze)
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
-    measured = draw_samples(robot, parameters, MEASURED_SAMPLES, seed=2)
+    measured = draw_samples(
+        robot, parameters, MEASURED_SAMPLES if verified else GOLDEN_CASES, seed=2
+    )
     on_step("derivation", 0, 1)
     symbols = symbols_of(robot, frame, gravity, parameters)
     functions = functions_of(symbols, chain_order, floating=floating)
-    golden = _regular(functions, golden, frame)
-    tables = {function.name: golden_results(function, golden) for function in functions}
+    golden = _regular(functions, golden, frame) if verified else golden
     sources = []
     inputs = as_columns(measured)
     for done, function in enumerate(functions):
         on_step(function.name, done, len(functions) + 1)
-        record = _record(prefix, function, inputs)
+        name = f"{prefix}_{function.name}"
+        record = _record(name, function, inputs) if verified else NOT_MEASURED
         sources.append(CSource(prefix, robot.n, parameters, function, record))
     configuration = None
     if has_configuration(robot):
@@ -206,10 +203,15 @@ def package_of(
         defaults=tuple(d for d in defaults if d.parameter in parameters),
         functions=tuple(sources),
         samples=tuple(golden),
-        tables=tables,
+        tables={f.name: golden_results(f, golden) if verified else () for f in functions},
         configuration=configuration,
         floating=floating,
-        impact=impact_source(prefix, symbols, {TIP: frame, **checked_points(robot, points or {})}),
+        impact=impact_source(
+            prefix,
+            symbols,
+            watched,
+            golden=GOLDEN_IMPACTS if verified else 0,
+        ),
         poses=checked,
     )
     if package.poses and not package.impact:
@@ -219,19 +221,16 @@ def package_of(
 
 def checked_points(robot: Robot, points: Mapping[str, str]) -> dict[str, str]:
     """Return contact points by name; raises InvalidValue, FrameNotFound."""
+    seen = {TIP}
     for name, frame in points.items():
-        if not name.isidentifier() or not name.isascii() or name == TIP:
+        if not name.isidentifier() or not name.isascii():
             raise InvalidValue("points", f"'{name}' is no name of a contact point in C")
+        if name.lower() in seen:
+            raise InvalidValue("points", f"'{name}' is the name of two contact points in C")
+        seen.add(name.lower())
         if robot.frame(frame).joint < 0:
             raise InvalidValue("points", f"frame '{frame}' is fixed to the base and never moves")
     return dict(points)
-
-
-def c_name(name: str) -> str:
-    """Return a C identifier in lower case for a robot's name, fit for a header and for CMake."""
-    words = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
-    usable = words[:1].isalpha() and words not in TAKEN
-    return words if usable else f"robot_{words}".rstrip("_")
 
 
 def _check(
@@ -261,10 +260,10 @@ def _regular(functions: Sequence[CFunction], samples: Sequence[Sample], tip: str
     return [samples[i] for i in np.flatnonzero(regular)[:GOLDEN_CASES]]
 
 
-def _record(prefix: str, function: CFunction, inputs: Inputs) -> FunctionRecord:
+def _record(name: str, function: CFunction, inputs: Inputs) -> FunctionRecord:
     found = accuracy(function, inputs)
     return FunctionRecord(
-        name=f"{prefix}_{function.name}",
+        name=name,
         flops=function.flops,
         sines_and_cosines=function.sines_and_cosines,
         double_error=found.double,

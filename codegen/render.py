@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import jinja2
 
@@ -15,6 +16,7 @@ from softimpact.symbolic import REGIONS, JointKind, Robot, closed_chain
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 
 from . import sine
+from .bindings import bindings
 from .configuration_source import ConfigurationSource
 from .costs import Costs, stored_costs
 from .defaults import Default
@@ -137,59 +139,65 @@ def _environment() -> jinja2.Environment:
 
 def render(package: Package) -> tuple[dict[str, str], Costs | None]:
     """Return the text of every file but the manifest by its path, and what was measured of it."""
-    environment = _environment()
+    name, show = package.prefix, Templates(package)
+    rendered = sources(package, show)
+    for path in ("test/golden.h", "test/golden.c", "test/run_tests.c", "fuzz/fuzz.c", "LICENSE"):
+        rendered[path] = show(Path(path).name)
+    rendered |= bindings(interface_of(rendered[f"include/{name}.h"], name), show)
+    compiled = sorted(path for path in rendered if path.startswith("src/") and path.endswith(".c"))
+    rendered["CMakeLists.txt"] = show("CMakeLists.txt", sources=compiled)
+    costs = stored_costs(name, rendered)
+    rendered["README.md"] = show("README.md", costs=costs)
+    return dict(sorted(rendered.items())), costs
+
+
+def sources(package: Package, show: Templates) -> dict[str, str]:
+    """Return the text of every header and source that a program needs, by its path."""
     name = package.prefix
-    context = {
-        "package": package,
-        "name": name,
-        "NAME": name.upper(),
-        "robot": package.robot,
-        "n": package.robot.n,
-        "version": softimpact.__version__,
-        "scalars": SCALARS,
-        "sine": sine,
-        "regions": list(REGIONS.values()),
-        "hertz_stiffness": HERTZ_STIFFNESS,
-        "measured": MEASURED_SAMPLES,
-        "layout": 0,
-    }
-    header = environment.get_template("header.h.jinja")
-    context["layout"] = interface_of(header.render(context), name).fingerprint()
     files = {
-        f"include/{name}.h": "header.h",
-        f"include/{name}_config.h": "config.h",
-        f"src/{name}_internal.h": "internal.h",
-        f"src/{name}_common.c": "common.c",
-        f"src/{name}_sines.c": "sines.c",
-        "test/golden.h": "golden.h",
-        "test/golden.c": "golden.c",
-        "test/run_tests.c": "run_tests.c",
-        "fuzz/fuzz.c": "fuzz.c",
-        "LICENSE": "LICENSE",
+        f"include/{name}.h": show("header.h"),
+        f"include/{name}_config.h": show("config.h"),
+        f"src/{name}_internal.h": show("internal.h"),
+        f"src/{name}_common.c": show("common.c"),
+        f"src/{name}_sines.c": show("sines.c"),
     }
-    if package.impact:
-        for part in ("model.c", "candidates.c")[: 2 if package.poses else 1]:
-            files[f"src/{name}_{part}"] = part
-    rendered = {
-        path: environment.get_template(f"{template}.jinja").render(context)
-        for path, template in files.items()
-    }
-    function = environment.get_template("function.c.jinja")
     internal = [package.impact.links] if package.impact else []
     for source in [*package.functions, *internal]:
-        rendered[f"src/{source.name}.c"] = function.render(context, f=source)
+        files[f"src/{source.name}.c"] = show("function.c", f=source)
     if package.impact:
-        rendered |= runtime(name)
+        files[f"src/{name}_model.c"] = show("model.c")
+        files |= runtime(name)
+    if package.poses:
+        files[f"src/{name}_candidates.c"] = show("candidates.c")
     if package.configuration:
-        solver = environment.get_template("configuration.c.jinja")
-        rendered[f"src/{name}_configuration.c"] = solver.render(context, c=package.configuration)
-    sources = sorted(path for path in rendered if path.startswith("src/") and path.endswith(".c"))
-    cmake = environment.get_template("CMakeLists.txt.jinja")
-    rendered["CMakeLists.txt"] = cmake.render(context, sources=sources)
-    costs = stored_costs(name, rendered)
-    readme = environment.get_template("README.md.jinja")
-    rendered["README.md"] = readme.render(context, costs=costs)
-    return dict(sorted(rendered.items())), costs
+        files[f"src/{name}_configuration.c"] = show("configuration.c", c=package.configuration)
+    return files
+
+
+class Templates:
+    """A package's templates, which are shown by the name of what they make."""
+
+    def __init__(self, package: Package) -> None:
+        name = package.prefix
+        self.context: dict[str, Any] = {
+            "package": package,
+            "name": name,
+            "NAME": name.upper(),
+            "robot": package.robot,
+            "n": package.robot.n,
+            "version": softimpact.__version__,
+            "scalars": SCALARS,
+            "sine": sine,
+            "regions": list(REGIONS.values()),
+            "hertz_stiffness": HERTZ_STIFFNESS,
+            "measured": MEASURED_SAMPLES,
+            "layout": 0,
+        }
+        self.context["layout"] = interface_of(self("header.h"), name).fingerprint()
+
+    def __call__(self, template: str, **more: Any) -> str:
+        """Return the text of a template."""
+        return _environment().get_template(f"{template}.jinja").render(self.context, **more)
 
 
 def runtime(name: str) -> dict[str, str]:

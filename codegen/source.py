@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import casadi as ca
 
@@ -68,10 +69,13 @@ class CSource:
     @property
     def checks(self) -> list[str]:
         """Calls that return the status of each number it reads beside q and n."""
-        return [
-            *(self._check(p, f"p->{p.name}") for p in self.function.parameters),
-            *(self._check(p, p.name) for p in self.function.scalars),
-        ]
+        scalars = [self._check(p, p.name) for p in self.function.scalars]
+        return [*self.parameter_checks, *scalars]
+
+    @property
+    def parameter_checks(self) -> list[str]:
+        """The same for parameters only."""
+        return [self._check(p, f"p->{p.name}") for p in self.function.parameters]
 
     def _check(self, p: Parameter, name: str) -> str:
         return f"{self.prefix}_{p.range.check}({'' if p.shape else '&'}{name}, {p.size})"
@@ -110,21 +114,27 @@ class CSource:
         """Declaration of an output as a member of a struct or as a local variable."""
         return f"{self.prefix}_real {output.name}{_brackets(output)}"
 
-    @cached_property
-    def statements(self) -> Statements:
-        """The computation."""
-        n = self.joints
-        inputs = [
-            [f"q[{i}]" for i in range(n)],
+    @property
+    def places(self) -> list[list[str]]:
+        """Where each entry of q, the unit vector, the parameters and the scalars stands."""
+        return [
+            [f"q[{i}]" for i in range(self.joints)],
             [f"u[{i}]" for i in range(3)],
             *([f"p->{place}" for place in p.places] for p in self.parameters),
             *(p.places for p in SCALARS),
         ]
+
+    angles: ClassVar[int | None] = Q
+    """Among them what joints' angles are, whose sines are computed at once."""
+
+    @cached_property
+    def statements(self) -> Statements:
+        """The computation."""
         names = [
             *([self._local(output, place) for place in output.places] for output in self.outputs),
             *([f"guard{i + 1}"] for i in range(len(self.function.guards))),
         ]
-        return print_graph(self.function.graph, inputs, names, self.prefix, angles=Q)
+        return print_graph(self.function.graph, self.places, names, self.prefix, self.angles)
 
     @property
     def outputs(self) -> tuple[Output, ...]:

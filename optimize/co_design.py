@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.symbolic import InvalidValue, Motors
+from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
@@ -110,7 +111,7 @@ class Answers:
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class Design(Record):
     """Results of a study.
 
     Attributes:
@@ -126,6 +127,8 @@ class Design:
         branches: pieces of the self-motion that were searched; 0 where there is none.
     """
 
+    UNSHOWN = ("study", "timing")
+
     study: Study
     poses: tuple[PoseResult, ...]
     winner: Outcome
@@ -135,6 +138,25 @@ class Design:
     compiled: bool
     optima: tuple[Optimum, ...] = ()
     branches: int = 0
+
+    def rows(self) -> list[Row]:
+        """Return a line for each search: the pose it began with, posture, springs and force."""
+        names = self.study.robot.joint_names
+        return [
+            {
+                "pose": found.name,
+                "mode": mode,
+                "force": found.force,
+                "force_before": pose.force_before,
+                "deflection": largest_deflection(self.study, found.q, found.springs),
+                "solved": found.solved,
+                **{f"q_{name}": float(x) for name, x in zip(names, found.q, strict=True)},
+                **{f"k_{name}": float(k) for name, k in zip(names, found.springs, strict=True)},
+            }
+            for pose in self.poses
+            for mode, found in (("table", pose.table), ("free", pose.free))
+            if found is not None
+        ]
 
     def outcomes(self, mode: Mode) -> list[Outcome]:
         """Return the outcomes of a mode, in the study's order."""

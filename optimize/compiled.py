@@ -11,8 +11,6 @@ import hashlib
 import logging
 import os
 import platform
-import shlex
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -20,45 +18,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import casadi as ca
-from platformdirs import user_cache_path
+
+from softimpact.toolchain import Command, cache_folder
 
 LOGGER = logging.getLogger(__name__)
 
-Command = tuple[str, ...]
-"""Words of a command line."""
-
-WELL_KNOWN = [["cc"], ["gcc"], ["clang"]]
-
 FLAGS = ("-O2", "-fPIC", "-shared", "-fno-math-errno")
-
-
-def c_compiler() -> Command | None:
-    """Return the C compiler: $CC, or the first of cc, gcc and clang; None if there is none.
-
-    $CC may be a command of several words, such as ``ccache gcc``.
-    """
-    named = os.environ.get("CC")
-    commands = [[named], shlex.split(named, posix=os.name != "nt")] if named else WELL_KNOWN
-    for first, *others in filter(None, commands):
-        found = shutil.which(first)
-        if found:
-            return (found, *others)
-    return None
-
-
-def cache_folder() -> Path | None:
-    """Return the folder of compiled functions: $SOFTIMPACT_CACHE, or the user's cache.
-
-    None for a user without a home.
-    """
-    named = os.environ.get("SOFTIMPACT_CACHE")
-    if named:
-        return Path(named)
-    try:
-        found = user_cache_path("softimpact", appauthor=False)
-    except RuntimeError:
-        return None
-    return found if found.is_absolute() else None  # older versions of platformdirs return ~
 
 
 def compiled_functions(functions: Sequence[ca.Function], compiler: Command | None) -> Path | None:
@@ -98,7 +63,7 @@ def _compile(
     key = hashlib.sha256(source.read_bytes())
     key.update(" ".join([*compiler, *FLAGS, sys.platform, platform.machine()]).encode())
     library = folder / f"impact_{key.hexdigest()[:24]}.so"
-    if library.exists():
+    if library.exists() and _loads(library):
         LOGGER.info("take compiled impacts from %s", library)
     else:
         LOGGER.info("compile impacts with %s into %s", compiler[0], library)
@@ -110,3 +75,12 @@ def _compile(
         ctypes.CDLL(str(built))  # raises OSError for code of another machine
         built.replace(library)
     return library
+
+
+def _loads(library: Path) -> bool:
+    """Return whether a library in the cache is whole, and of this machine."""
+    try:
+        ctypes.CDLL(str(library))
+    except OSError:
+        return False
+    return True

@@ -27,8 +27,9 @@ from softimpact.symbolic import (
 )
 from softimpact.symbolic.matrices import Factorisation
 from softimpact.symbolic.robot.rigid import Array
+from softimpact.toolchain import c_compiler, cache_folder
 
-from .compiled import c_compiler, cache_folder, compiled_functions
+from .compiled import compiled_functions
 from .hardware import Hardware, Machine
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .motor_laws import MotorLaws

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .evaluation import largest_deflection
@@ -56,7 +57,7 @@ class Reference:
 
 
 @dataclass(frozen=True, eq=False)
-class Pareto:
+class Pareto(Record):
     """Fronts of a study.
 
     Attributes:
@@ -69,6 +70,8 @@ class Pareto:
         timing: of the impacts simulated.
         compiled: whether the NLP ran as machine code.
     """
+
+    UNSHOWN = ("study", "timing")
 
     study: Study
     levels: Array
@@ -83,6 +86,21 @@ class Pareto:
     def task(self) -> Front:
         """The front of the task's pose."""
         return self.held[self.study.task_pose.name]
+
+    def rows(self) -> list[Row]:
+        """Return a line for each point of the fronts."""
+        fronts = {"free": self.free, "given": self.given, **self.held}
+        return [
+            {
+                "front": name,
+                "bound": point.bound,
+                "deflection": point.deflection,
+                "force": point.force,
+                "from": point.outcome.name,
+            }
+            for name, front in fronts.items()
+            for point in front.points
+        ]
 
     @property
     def searches(self) -> int:

@@ -17,6 +17,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.record import Record
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
@@ -54,7 +55,7 @@ MOST_AT_ONCE = 300
 
 
 @dataclass(frozen=True, eq=False)
-class RobustDesign:
+class RobustDesign(Record):
     """One machine for all scenarios, and what the answer means.
 
     Attributes:
@@ -78,6 +79,8 @@ class RobustDesign:
         bought: the springs of the catalogue, and what they cost; None without one. ``springs`` are
             then these, and ``bound`` is that of springs of any stiffness.
     """
+
+    UNSHOWN = ("study", "scenarios", "timing")
 
     study: Study
     scenarios: Scenarios

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from softimpact.robots import study_path
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
@@ -27,6 +28,7 @@ from softimpact.symbolic import (
     impact_model,
     limits_of,
     load_robot,
+    lock_joints,
     unit_direction,
 )
 from softimpact.symbolic.impact.drives import PerJoint, require_rotors
@@ -210,14 +212,14 @@ def load_study(path: str | Path, overrides: dict[str, dict[str, Any]] | None = N
     """Read and check a study file.
 
     Args:
-        path: a TOML file.
+        path: a TOML file, or the name of a built-in study.
         overrides: values that replace the file's, by section and field, as a command line gives.
 
     Raises:
         InvalidValue: a field is missing, unknown, of the wrong type or out of range; names file
             and field.
     """
-    source = Path(path)
+    source = study_path(path)
     return build_study(read_study_file(source, overrides or {}), source)
 
 
@@ -307,7 +309,7 @@ def robot_of_study(section: RobotSection, source: Path) -> Robot:
         tip = section.tip if section.tip is not None else robot.tip
         if tip is None:
             raise UnknownName("frame (none is named)", "", robot.frames)
-        chain = chain_to(robot, tip)
+        chain = _locked(chain_to(robot, tip), section.lock)
         if chain.n == 0:
             raise InvalidValue("tip", f"frame '{tip}' is fixed to the base; name one that moves")
     with _naming(source, "robot", "model"):
@@ -317,11 +319,21 @@ def robot_of_study(section: RobotSection, source: Path) -> Robot:
     return chain
 
 
+def _locked(chain: Robot, lock: Mapping[str, float]) -> Robot:
+    for name in lock:
+        if name not in chain.joint_names:
+            raise UnknownName("joint (robot.lock)", name, chain.joint_names)
+    return lock_joints(chain, lock)
+
+
 def _require_open(chain: Robot) -> None:
     if chain.loops:
         names = ", ".join(f"'{loop.name}'" for loop in chain.loops)
         raise InvalidValue(
-            "model", f"'{chain.name}' has a loop ({names}); a study needs an open chain to the tip"
+            "model",
+            f"'{chain.name}' has joints that are tied together ({names}); a study needs an open "
+            "chain to the tip: hold joints still by robot.lock, or take analyze, simulate, "
+            "program and generate, which follow them",
         )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from softimpact.symbolic import InvalidValue
+from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
 from .impact_program import ImpactProgram, impact_numbers, impact_program, known_rotors
@@ -74,11 +74,21 @@ def impact_timing(study: Study, postures: Sequence[Array]) -> Timing:
     Raises:
         InvalidValue: the stiffest springs are so stiff that an impact needs too many steps.
     """
-    frequency = max(_largest_frequency(study, q, study.direction) for q in postures)
-    whole = _timing(study, study.horizon, frequency)
+    frequency, whole = _whole(study, postures)
     program = impact_program(study.model, whole.nodes, whole.substeps, compiled=False)
     latest = max(_latest_peak(study, program, q, whole) for q in postures)
     return _timing(study, min(max(SHORTEST, MARGIN * latest), study.horizon), frequency)
+
+
+def require_time_steps(study: Study, postures: Sequence[Array]) -> None:
+    """Raise InvalidValue if the stiffest springs are so stiff that impacts need too many steps."""
+    _whole(study, postures)
+
+
+def _whole(study: Study, postures: Sequence[Array]) -> tuple[float, Timing]:
+    """Return the largest frequency [rad/s], and the steps of an impact up to the horizon."""
+    frequency = _of_study(study, postures, study.direction)
+    return frequency, _timing(study, study.horizon, frequency)
 
 
 def scenario_timing(study: Study, scenarios: Scenarios) -> Timing:
@@ -88,7 +98,7 @@ def scenario_timing(study: Study, scenarios: Scenarios) -> Timing:
         InvalidValue: as ``impact_timing``; or a direction in which a pose cannot move.
     """
     n = scenarios.directions[0]
-    frequency = max(_largest_frequency(study, pose.q, n) for pose in scenarios.poses)
+    frequency = _of_study(study, [pose.q for pose in scenarios.poses], n)
     whole = _timing(study, study.horizon, frequency)
     programs = [
         impact_program(study.model, whole.nodes, whole.substeps, point, compiled=False)
@@ -102,6 +112,19 @@ def scenario_timing(study: Study, scenarios: Scenarios) -> Timing:
             x = np.concatenate([scenarios.poses[one.pose].q, np.log10(springs)])
             latest = max(latest, _end_of_peak(np.array(program["forces"](x, row)), whole))
     return _timing(study, min(max(SHORTEST, MARGIN * latest), study.horizon), frequency)
+
+
+def stiffest_in_time(model: ImpactModel, q: Array, direction: Array, horizon: float) -> float:
+    """Return the joint stiffness, alike in all joints, up to which impacts take few enough steps.
+
+    Args:
+        model: robot and rotors.
+        q: posture, length n.
+        direction: of the impact.
+        horizon: of the impacts [s].
+    """
+    frequency = _largest_frequency(model, np.ones(model.robot.n), q, direction)
+    return (MOST_STEPS * LARGEST_PHASE / horizon / frequency) ** 2
 
 
 def _timing(study: Study, duration: float, frequency: float) -> Timing:
@@ -118,9 +141,14 @@ def _timing(study: Study, duration: float, frequency: float) -> Timing:
     return Timing(duration, int(np.ceil(steps / substeps)), substeps)
 
 
-def _largest_frequency(study: Study, q: Array, direction: Array) -> float:
-    drives = replace(study.model.drives, rotors=known_rotors(study.model), springs=study.upper)
-    linear = replace(study.model, drives=drives).linear(q, direction)
+def _of_study(study: Study, postures: Sequence[Array], direction: Array) -> float:
+    return max(_largest_frequency(study.model, study.upper, q, direction) for q in postures)
+
+
+def _largest_frequency(model: ImpactModel, springs: Array, q: Array, direction: Array) -> float:
+    """Return the largest angular frequency of a robot with some springs [rad/s]."""
+    drives = replace(model.drives, rotors=known_rotors(model), springs=springs)
+    linear = replace(model, drives=drives).linear(q, direction)
     mass, stiffness = np.array(linear.mass.matrix), np.array(linear.stiffness)
     return float(np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(mass, stiffness))).max()))
 

@@ -52,9 +52,11 @@ def bracket(
     if isinstance(motors, Controller):
         return {"controller": motors}, []
     if unknown:
+        sets = ", ".join(model.robot.rotor_inertia_sets)
         line = (
             f"rotor inertia of joint {names} is unknown: motors are taken to keep their speed, "
             "without an end, as the worse case; give the rotor inertia"
+            f"{f' (the model has the sets {sets})' if sets else ''}"
         )
         return {"driven": replace(how, kind="driven", reaction_time=inf)}, [line]
     if kind is None:

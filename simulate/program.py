@@ -9,7 +9,7 @@ all limits, too.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -20,6 +20,7 @@ from softimpact.symbolic import (
     ImpactModel,
     InvalidValue,
     Motors,
+    frame_pose,
     require_closed_at,
 )
 from softimpact.symbolic.impact.two_body import moving_mass, two_body
@@ -28,7 +29,8 @@ from softimpact.symbolic.robot.rigid import Array
 from .history import HORIZON
 from .sampled import Samples
 from .sampled_speeds import safe_speeds
-from .trajectory import Trajectory, passes, time_at_speeds
+from .trajectory import Passes, Trajectory, passes, time_at_speeds
+from .zones import Somebody
 
 MOMENTS_APART = 0.05
 """Least share of a program's time between two of its worst moments."""
@@ -43,7 +45,8 @@ class Danger:
 
     Attributes:
         point: name of the frame that meets it.
-        region: name of what is met.
+        body: who is met.
+        number: which of the bodies that is, from 0.
         limit: that is reached first; ``transient force``, for example.
         motors: kind of motors at which it is.
         sample: of the program, length P.
@@ -57,7 +60,8 @@ class Danger:
     """
 
     point: str
-    region: str
+    body: Somebody
+    number: int
     limit: NDArray[np.str_]
     motors: NDArray[np.str_]
     sample: NDArray[np.intp]
@@ -68,6 +72,11 @@ class Danger:
     peak: Array
     share: Array
     two_body: float
+
+    @property
+    def region(self) -> str:
+        """Name of what is met."""
+        return self.body.contact.region.name
 
     @property
     def factor(self) -> Array:
@@ -99,9 +108,9 @@ class SafeProgram:
 
 def program_dangers(
     model: ImpactModel,
-    motion: Trajectory,
+    motion: Trajectory | Passes,
     points: Sequence[str],
-    bodies: Sequence[Contact],
+    bodies: Sequence[Contact | Somebody],
     ends: Mapping[str, Motors],
     *,
     horizon: float = HORIZON,
@@ -112,9 +121,9 @@ def program_dangers(
 
     Args:
         model: the whole arm; its own contact point does not matter.
-        motion: of its joints.
+        motion: of its joints, or some moments of one.
         points: frames that may meet a body.
-        bodies: what they may meet.
+        bodies: what they may meet, everywhere or in zones.
         ends: what the motors may do, by kind; the worst of them counts.
         horizon: up to which the largest force counts [s].
         payload: mass that the model holds, for the standard's formula [kg].
@@ -126,27 +135,33 @@ def program_dangers(
         LoopCannotClose: the motion opens a loop.
         FrameNotFound: the robot has no such point.
     """
+    met = motion if isinstance(motion, Passes) else passes(motion)
     if model.robot.loops:
-        for q in motion.q:
+        for q in met.q:
             require_closed_at(model.robot, q)
+    whom = [body if isinstance(body, Somebody) else Somebody(body) for body in bodies]
     found = []
     for point in points:
-        at = _at_point(model, motion, point)
-        for body in bodies:
-            formula = two_body(
-                body.region, body.clamped, moving_mass(model.robot) - payload, payload
-            )
-            found.append(
-                _danger(
-                    at,
-                    body,
-                    ends,
-                    horizon,
-                    float(formula.safe_speed(body.region.force_limit)),
-                    seen,
-                )
-            )
+        at = _at_point(model, met, point)
+        if not at.speed.size and isinstance(motion, Trajectory):
+            raise never_moves(point)
+        for number, body in enumerate(whom):
+            formula = formula_speed(model, body, payload)
+            rows = np.flatnonzero(body.may_be_met(at.time, at.place, at.speed * at.step))
+            found.append(_danger(at.taken(rows), body, number, ends, horizon, formula, seen))
     return found
+
+
+def formula_speed(model: ImpactModel, body: Somebody, payload: float) -> float:
+    """Return the speed that the standard's two-body formula allows a robot with a payload [m/s]."""
+    region = body.contact.region
+    formula = two_body(region, body.contact.clamped, moving_mass(model.robot) - payload, payload)
+    return float(formula.safe_speed(region.force_limit))
+
+
+def never_moves(point: str) -> InvalidValue:
+    """Return what is wrong with a point that a motion leaves where it is."""
+    return InvalidValue("points", f"'{point}' never moves in this motion; leave it out")
 
 
 def safe_program(motion: Trajectory, dangers: Sequence[Danger]) -> SafeProgram:
@@ -172,20 +187,36 @@ def safe_program(motion: Trajectory, dangers: Sequence[Danger]) -> SafeProgram:
 
 def worst_moments(motion: Trajectory, program: SafeProgram, count: int = 5) -> list[int]:
     """Return the worst samples, some way apart in time while there are others; worst first."""
-    severity = np.full(len(program.factor), -np.inf)
-    for k, worst in enumerate(program.worst):
-        if worst is not None:
-            danger, row = worst
-            slowed = program.factor[k] < 1
-            severity[k] = 2 - program.factor[k] if slowed else min(danger.share[row], 1.0)
-    order = [int(k) for k in np.argsort(-severity, kind="stable") if severity[k] > -np.inf]
-    apart = MOMENTS_APART * program.time_before
+    share = np.array(
+        [0.0 if worst is None else worst[0].share[worst[1]] for worst in program.worst]
+    )
+    moves = np.array([worst is not None for worst in program.worst])
+    return worst_of(motion.time, program.factor, np.where(moves, share, -np.inf), count)
+
+
+def worst_of(time: Array, factor: Array, share: Array, count: int = 5) -> list[int]:
+    """Return the worst of samples, some way apart in time while there are others; worst first.
+
+    Args:
+        time: of the samples [s].
+        factor: on their speeds.
+        share: of the limits that they use, of interest where the factor is one; −inf where nothing
+            moves.
+        count: how many are wanted.
+    """
+    severity = np.where(factor < 1, 2 - factor, np.minimum(share, 1.0))
+    severity[share == -np.inf] = -np.inf
+    order = np.argsort(-severity, kind="stable")
+    order = order[severity[order] > -np.inf]
+    apart = MOMENTS_APART * float(time[-1] - time[0])
     chosen: list[int] = []
-    for k in order:
-        if all(abs(motion.time[k] - motion.time[other]) > apart for other in chosen):
-            chosen.append(k)
-    more = [k for k in order if k not in chosen[:count]]
-    return sorted([*chosen[:count], *more][:count], key=order.index)
+    left = order
+    while left.size and len(chosen) < count:
+        chosen.append(int(left[0]))
+        left = left[abs(time[left] - time[chosen[-1]]) > apart]
+    more = order[~np.isin(order, chosen)][: count - len(chosen)].tolist()
+    rank = {int(k): place for place, k in enumerate(order[np.isin(order, [*chosen, *more])])}
+    return sorted([*chosen, *more], key=lambda k: rank[k])
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,30 +226,41 @@ class _AtPoint:
     model: ImpactModel
     point: str
     sample: NDArray[np.intp]
+    time: Array
+    step: Array
     speed: Array
+    place: Array
     samples: Samples
 
+    def taken(self, rows: NDArray[np.intp]) -> _AtPoint:
+        """Return some of them."""
+        if len(rows) == len(self.sample):
+            return self
+        some = {name: getattr(self, name)[rows] for name in ("sample", "time", "step", "speed")}
+        return replace(self, place=self.place[rows], samples=self.samples.taken(rows), **some)
 
-def _at_point(model: ImpactModel, motion: Trajectory, point: str) -> _AtPoint:
+
+def _at_point(model: ImpactModel, met: Passes, point: str) -> _AtPoint:
     own = ImpactModel(model.robot, model.robot.frame(point).name, model.drives, model.gravity)
-    met = passes(motion)
-    q, rate = motion.q[met.sample], met.velocity[:, list(own.independent)]
-    symbol = ca.SX.sym("q", q.shape[1])
-    jacobian = ca.Function("J", [symbol], [ca.densify(own.jacobian(symbol))]).map(len(q))
-    J = np.array(jacobian(q.T)).reshape(3, len(q), -1).transpose(1, 0, 2)
+    count, rate = len(met.q), met.velocity[:, list(own.independent)]
+    symbol = ca.SX.sym("q", met.q.shape[1])
+    place = frame_pose(own.robot, own.tip, symbol).position
+    wanted = [ca.densify(own.jacobian(symbol)), ca.densify(place)]
+    found = ca.Function("point", [symbol], wanted).map(count).call([met.q.T])
+    J = np.array(found[0]).reshape(3, count, -1).transpose(1, 0, 2)
     velocity = np.einsum("sij,sj->si", J, rate)
     speed = np.linalg.norm(velocity, axis=1)
     moves = np.flatnonzero(speed > STILL)
-    if not moves.size:
-        raise InvalidValue("points", f"'{point}' never moves in this motion; leave it out")
-    speed = speed[moves]
-    at = Samples(q[moves], velocity[moves] / speed[:, None], rate[moves] / speed[:, None])
-    return _AtPoint(own, point, met.sample[moves], np.asarray(speed), at)
+    some, speed = met.taken(moves), speed[moves]
+    at = Samples(some.q, velocity[moves] / speed[:, None], rate[moves] / speed[:, None])
+    places = np.array(found[1]).T[moves]
+    return _AtPoint(own, point, some.sample, some.time, some.step, np.asarray(speed), places, at)
 
 
 def _danger(
     at: _AtPoint,
-    body: Contact,
+    body: Somebody,
+    number: int,
     ends: Mapping[str, Motors],
     horizon: float,
     by_formula: float,
@@ -228,7 +270,9 @@ def _danger(
     safe, peak, share = np.full(count, np.inf), np.zeros(count), np.zeros(count)
     limit, motors = np.full(count, "", dtype="<U24"), np.full(count, "", dtype="<U8")
     for kind, end in ends.items():
-        found = safe_speeds(at.model, at.samples, at.speed, body, end, horizon, seen)
+        found = safe_speeds(
+            at.model, at.samples, at.speed, body.contact, end, horizon, body.limits, seen
+        )
         speed, name, used = found.safe, found.limit, found.share
         worse = (speed < safe) | ((speed == safe) & (used > share))
         limit[worse], motors[worse] = name[worse], kind
@@ -239,7 +283,8 @@ def _danger(
         )
     return Danger(
         point=at.point,
-        region=body.region.name,
+        body=body,
+        number=number,
         limit=limit,
         motors=motors,
         sample=at.sample,

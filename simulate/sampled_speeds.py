@@ -57,10 +57,15 @@ class _Shares:
     """How much of the limits impacts use."""
 
     def __init__(
-        self, model: ImpactModel, at: Samples, body: Contact, motors: Motors, horizon: float
+        self,
+        model: ImpactModel,
+        at: Samples,
+        body: Contact,
+        limits: Limits,
+        motors: Motors,
+        horizon: float,
     ) -> None:
-        self.impacts = SampledImpacts(model, at, body, motors, horizon)
-        self.limits: Limits = limits_of(body.region, body.clamped)
+        self.impacts, self.limits = SampledImpacts(model, at, body, motors, horizon), limits
 
     def __call__(self, speeds: Array) -> tuple[Array, NDArray[np.intp], Array]:
         """Return the larger share, whether it is the transient or the other one, and the peak."""
@@ -79,6 +84,7 @@ def safe_speeds(
     body: Contact,
     motors: Motors,
     horizon: float = HORIZON,
+    limits: Limits | None = None,
     seen: Callable[[int], None] = lambda count: None,
 ) -> SafeSpeeds:
     """Return how fast many impacts may be.
@@ -92,12 +98,16 @@ def safe_speeds(
         body: that they hit.
         motors: what they do.
         horizon: up to which the largest force counts [s].
+        limits: of the body; default what it may bear where nothing is known of the robot's shape.
         seen: called with the number of impacts that were looked at, every few thousand.
     """
     parts = []
+    limits = limits or limits_of(body.region, body.clamped)
     for first in range(0, max(len(at), 1), AT_ONCE):
         rows = np.arange(first, min(first + AT_ONCE, len(at)))
-        parts.append(_safe_speeds(model, at.taken(rows), speeds[rows], body, motors, horizon))
+        parts.append(
+            _safe_speeds(model, at.taken(rows), speeds[rows], body, limits, motors, horizon)
+        )
         seen(len(rows))
     return SafeSpeeds(
         *(
@@ -112,21 +122,21 @@ def _safe_speeds(
     at: Samples,
     speeds: Array,
     body: Contact,
+    limits: Limits,
     motors: Motors,
     horizon: float,
 ) -> SafeSpeeds:
-    limits = limits_of(body.region, body.clamped)
     pressing = "force" if limits.quasi_static is None else limits.quasi_static.quantity
     names = np.array([f"transient {limits.transient.quantity}", f"quasi-static {pressing}"])
-    share, which, peak = _Shares(model, at, body, motors, horizon)(speeds)
+    share, which, peak = _Shares(model, at, body, limits, motors, horizon)(speeds)
     safe = np.full(len(share), np.inf)
     rows = np.flatnonzero(share > 1 - MARGIN)
     if rows.size:
         tried = (speeds[rows] * (1 - MARGIN) / share[rows]) * np.array(SLOWER)[:, None]
         many = at.taken(np.tile(rows, len(SLOWER)))
-        shares, _, _ = _Shares(model, many, body, motors, horizon)(tried.ravel())
+        shares, _, _ = _Shares(model, many, body, limits, motors, horizon)(tried.ravel())
         known = np.vstack([share[rows], shares.reshape(tried.shape)])
-        one = _Shares(model, at.taken(rows), body, motors, horizon)
+        one = _Shares(model, at.taken(rows), body, limits, motors, horizon)
         safe[rows], which[rows] = _root(one, np.vstack([speeds[rows], tried]), known)
     return SafeSpeeds(safe, names[which], peak, share)
 

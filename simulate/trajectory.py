@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,8 +30,13 @@ class Trajectory:
     q: Array
 
 
-def trajectory(time: ArrayLike, q: ArrayLike) -> Trajectory:
+def trajectory(time: ArrayLike, q: ArrayLike, first: int = 0) -> Trajectory:
     """Return a checked motion.
+
+    Args:
+        time: of the samples [s].
+        q: joint angles, S×n [rad, m].
+        first: number of the first sample, for messages.
 
     Raises:
         InvalidValue: fewer than two samples, times that do not rise, numbers that are not finite,
@@ -43,12 +49,14 @@ def trajectory(time: ArrayLike, q: ArrayLike) -> Trajectory:
         raise InvalidValue("motion", f"has {len(t)} samples, but speeds need two at least")
     bad = ~np.isfinite(t) | ~np.isfinite(angles).all(axis=1)
     if bad.any():
-        raise InvalidValue("motion", f"sample {int(np.argmax(bad)) + 1} holds no finite number")
+        raise InvalidValue(
+            "motion", f"sample {first + int(np.argmax(bad)) + 1} holds no finite number"
+        )
     back = np.flatnonzero(np.diff(t) <= 0)
     if back.size:
         k = int(back[0])
         raise InvalidValue(
-            "t", f"must rise, but goes from {t[k]:g} to {t[k + 1]:g} s at sample {k + 2}"
+            "t", f"must rise, but goes from {t[k]:g} to {t[k + 1]:g} s at sample {first + k + 2}"
         )
     return Trajectory(t, angles)
 
@@ -59,16 +67,32 @@ class Passes:
 
     Attributes:
         sample: index of the sample, length P.
+        time: of it [s].
+        q: joint angles there, P×n [rad, m].
         velocity: of the joints there, P×n [rad/s, m/s].
+        step: time to the farther one of the samples beside it [s].
     """
 
     sample: NDArray[np.intp]
+    time: Array
+    q: Array
     velocity: Array
+    step: Array
+
+    def taken(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Passes:
+        """Return some of them."""
+        return Passes(*(values[rows] for values in vars(self).values()))
 
 
-def passes(of: Trajectory) -> Passes:
-    """Return the velocities with which a motion passes its samples, by central differences."""
-    each = np.diff(of.q, axis=0) / np.diff(of.time)[:, None]
+def passes(of: Trajectory, first: int = 0) -> Passes:
+    """Return the velocities with which a motion passes its samples, by central differences.
+
+    Args:
+        of: the motion.
+        first: number of its first sample.
+    """
+    span = np.diff(of.time)
+    each = np.diff(of.q, axis=0) / span[:, None]
     before, after = np.vstack([each[:1], each]), np.vstack([each, each[-1:]])
     smooth = np.gradient(of.q, of.time, axis=0)
     larger = np.maximum(np.linalg.norm(before, axis=1), np.linalg.norm(after, axis=1))
@@ -77,7 +101,34 @@ def passes(of: Trajectory) -> Passes:
     sample = np.concatenate([straight, corner, corner])
     velocity = np.vstack([smooth[straight], before[corner], after[corner]])
     order = np.argsort(sample, kind="stable")
-    return Passes(sample[order], velocity[order])
+    at = sample[order]
+    step = np.maximum(np.append(0.0, span), np.append(span, 0.0))
+    return Passes(at + first, of.time[at], of.q[at], velocity[order], step[at])
+
+
+def passes_of_parts(parts: Iterable[Trajectory]) -> Iterator[Passes]:
+    """Yield the passes of a motion that comes in parts, as ``passes`` of the whole has them.
+
+    Args:
+        parts: consecutive, of any length, unchecked.
+
+    Raises:
+        InvalidValue: as ``trajectory``, over all parts.
+    """
+    held, first, begun = Trajectory(np.zeros(0), np.zeros((0, 0))), 0, False
+    for part in parts:
+        if len(held.time) > 2:
+            found = passes(trajectory(held.time, held.q, first), first)
+            last = first + len(held.time) - 1
+            yield found.taken((found.sample < last) & ((found.sample > first) | ~np.bool_(begun)))
+            first, begun = last - 1, True
+            held = Trajectory(held.time[-2:], held.q[-2:])
+        held = Trajectory(
+            np.append(held.time, part.time),
+            np.vstack([held.q.reshape(-1, part.q.shape[1]), part.q]),
+        )
+    found = passes(trajectory(held.time, held.q, first), first)
+    yield found.taken((found.sample > first) | ~np.bool_(begun))
 
 
 def time_at_speeds(time: Array, factor: Array) -> float:

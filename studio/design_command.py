@@ -39,6 +39,7 @@ def design(
     speed: o.Speed = None,
     motors: o.StudyMotors = None,
     reaction_time: o.ReactionTime = None,
+    page: o.Report = None,
     workers: o.Workers = None,
     dask: o.Dask = None,
     resume: o.Resume = False,
@@ -63,7 +64,7 @@ def design(
     require_replaceable(folder, GENERATOR)
     how = Execution(workers, dask, resume)
     if problem.scenarios is not None:
-        _robust(problem, folder, how, json)
+        _robust(problem, folder, page, how, json)
         return
     modes = _modes(mode, problem)
     with failures_as_json(json), running(how, folder) as pool:
@@ -72,13 +73,17 @@ def design(
     record = as_record(report)
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(report, record, fresh)
+    if page is not None:
+        from .report.design_pages import write_design_report
+
+        write_design_report(report, page)
     if json:
         print_json({"out": folder, **record})
     else:
         _print(report, folder)
 
 
-def _robust(study: Study, folder: Path, how: Execution, json: bool) -> None:
+def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json: bool) -> None:
     """Design one machine for all scenarios."""
     from softimpact.codegen import generate_package
     from softimpact.optimize.robust import robust_design
@@ -106,6 +111,10 @@ def _robust(study: Study, folder: Path, how: Execution, json: bool) -> None:
         write_json(fresh / RESULTS, record)
         model = designed_model(found)
         generate_package(model.robot, fresh / "c", drives_=model.drives)
+    if page is not None:
+        from .report.design_pages import write_robust_report
+
+        write_robust_report(found, page)
     if json:
         print_json({"out": folder, **record})
         return

@@ -60,6 +60,12 @@ def print_design(report: DesignReport) -> None:
         say(line)
 
 
+def ranking_rows(report: DesignReport) -> tuple[list[str], list[list[Cell]]]:
+    """Return heads and rows of the ranking."""
+    heads = [column.replace("\n", " ") for column in COLUMNS]
+    return heads, [_row(pose) for pose in report.poses]
+
+
 def _row(pose: RankedPose) -> list[Cell]:
     result, figures = pose.result, pose.figures
     return [

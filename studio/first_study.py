@@ -8,12 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
+from softimpact.simulate.history import HORIZON
 from softimpact.symbolic import (
     Robot,
     SingularDirection,
     approach_velocity,
     arm_of,
     contact_point_jacobian,
+    drives,
     impact_model,
     load_robot,
 )
@@ -22,6 +24,12 @@ from softimpact.symbolic.robot.rigid import Array
 
 POSES_TRIED = 200
 """Random configurations of which the one that moves best in all directions is taken."""
+
+ROTOR = 0.1
+"""Reflected inertia that stands for one that nobody states [kg m²]."""
+
+MARGIN = 0.8
+"""Share of the stiffness that a design can bear in the first pose, for those that follow."""
 
 DIRECTIONS = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))
 
@@ -94,14 +102,37 @@ def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
         motors=_motors(arm.robot),
         joints=", ".join(arm.robot.joint_names),
         lower=NOMINAL / 50,
-        upper=NOMINAL * 10,
+        upper=_upper(arm.robot, q, direction),
         nominal=NOMINAL,
         limits="".join(
             f"#   {joint.name}: {joint.lower:g} to {joint.upper:g}\n" for joint in arm.robot.joints
         ),
         q=[round(float(x), 3) for x in q],
     )
-    return text, [*arm.robot.warnings, *arm.warnings]
+    return text, [*arm.robot.warnings, *arm.warnings, *_tied(arm.robot)]
+
+
+def _tied(robot: Robot) -> list[str]:
+    """Say what a study does not take, before somebody fills it in."""
+    if not robot.loops:
+        return []
+    names = ", ".join(f"'{loop.name}'" for loop in robot.loops)
+    return [
+        f"the arm has joints that are tied together ({names}), which studies do not follow: hold "
+        "some still by robot.lock"
+    ]
+
+
+def _upper(robot: Robot, q: Array, direction: tuple[float, ...]) -> float:
+    """Return springs as stiff as ten times the nominal ones, or as a design can bear."""
+    from softimpact.optimize.timing import stiffest_in_time
+
+    sets = [np.array(values) for values in robot.rotor_inertia_sets.values()]
+    lightest = np.min(sets, axis=0) if sets else np.full(robot.n, ROTOR)
+    rotors = np.where(robot.armature > 0, robot.armature, lightest)
+    model = impact_model(robot, drives_=drives(robot, NOMINAL, rotors))
+    most = MARGIN * stiffest_in_time(model, q, np.array(direction), HORIZON)
+    return float(f"{min(10 * NOMINAL, most):.1e}")
 
 
 def _unknown(robot: Robot) -> list[str]:
@@ -118,7 +149,7 @@ def _rotors(robot: Robot) -> str:
         lines += [
             f"# TODO: the model has no rotor inertia of {', '.join(unknown)};",
             "# give it, reflected to the joints, kg m²:",
-            f"# rotor_inertia = {[0.1] * robot.n}",
+            f"# rotor_inertia = {[ROTOR] * robot.n}",
         ]
     else:
         shown = ", ".join(f"{joint.armature:g}" for joint in robot.joints)

@@ -168,7 +168,7 @@ def early_word(joints: int) -> str:
 def _compiler() -> tuple[str, ...] | None:
     """Return the C compiler that a package's own test is run with; say so if there is none."""
     from softimpact.codegen.replay import works
-    from softimpact.optimize.compiled import c_compiler
+    from softimpact.toolchain import c_compiler
 
     found = c_compiler()
     if found is not None and works(found):

@@ -4,7 +4,11 @@
 from __future__ import annotations
 
 import csv
-import io
+import re
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +16,9 @@ import numpy as np
 from softimpact.simulate.trajectory import Trajectory, trajectory
 from softimpact.symbolic import Robot, SoftImpactError
 from softimpact.symbolic.robot.rigid import Array
+
+ROWS = 20_000
+"""Samples that are read at once."""
 
 DELIMITERS = ",;\t"
 """Any of these may part the columns."""
@@ -28,10 +35,94 @@ class MotionFileError(SoftImpactError):
         self.path, self.reason = path, reason
 
 
+@dataclass(frozen=True)
+class MotionTable:
+    """A CSV file of a motion whose first line was read.
+
+    Attributes:
+        path: of the file.
+        delimiter: between its columns.
+        columns: their names.
+        joints: names of the arm's joints, in its order.
+        idle: names of columns that do not count.
+    """
+
+    path: Path
+    delimiter: str
+    columns: tuple[str, ...]
+    joints: tuple[str, ...]
+    idle: tuple[str, ...]
+
+    def chunks(self, rows: int) -> Iterator[tuple[Trajectory, float]]:
+        """Yield the motion in parts of some samples, unchecked, and the share of it that was read.
+
+        Raises:
+            MotionFileError: something that is no table of numbers, or nothing at all.
+        """
+        size, seen, first = max(self.path.stat().st_size, 1), 0, 1
+        order = [self.columns.index(name) for name in self.joints]
+        with self.path.open(encoding="utf-8-sig", newline=None) as file:
+            _header(file)
+            while lines := self._lines(file, rows):
+                seen += sum(map(len, lines))
+                table = self._numbers(lines, first)
+                first += len(lines)
+                if len(table):
+                    yield (
+                        Trajectory(table[:, self.columns.index("t")], table[:, order]),
+                        min(seen / size, 1.0),
+                    )
+        if first == 1:
+            raise MotionFileError(self.path, "holds no samples below its first line")
+
+    def _lines(self, file: Iterator[str], rows: int) -> list[str]:
+        """Return some of the next lines, none at the end."""
+        try:
+            lines = list(islice(file, rows))
+        except UnicodeDecodeError:
+            raise MotionFileError(self.path, NO_TEXT) from None
+        return lines if any(line.strip() for line in lines) else []
+
+    def _numbers(self, lines: list[str], first: int) -> Array:
+        """Return a table; ``first`` is the number of its first line below the names."""
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", UserWarning)  # of comments only
+                table = np.loadtxt(lines, delimiter=self.delimiter, ndmin=2, comments="#")
+        except ValueError as error:
+            reason = str(error).split(";")[0].rstrip(".")
+            if self.delimiter != "," and re.search(r"'[-\d]*,\d*'", reason):
+                reason += "; decimals need a point, not a comma"
+            reason = re.sub(r"row (\d+)", lambda m: f"row {int(m[1]) + first - 1}", reason)
+            raise MotionFileError(self.path, f"below its first line: {reason}") from None
+        if table.size and table.shape[1] != len(self.columns):
+            names, numbers = len(self.columns), table.shape[1]
+            reason = f"has {names} names in its first line, but {numbers} numbers below"
+            raise MotionFileError(self.path, reason)
+        return np.asarray(table)
+
+
+def open_motion(path: Path, robot: Robot, also: tuple[str, ...] = ()) -> MotionTable:
+    """Read the first line of a motion; arguments and errors as ``read_motion``."""
+    try:
+        with path.open(encoding="utf-8-sig", newline=None) as file:
+            header = _header(file)
+    except UnicodeDecodeError:
+        raise MotionFileError(path, NO_TEXT) from None
+    delimiter = max(DELIMITERS, key=header.count)
+    columns = [name.strip() for name in next(csv.reader([header], delimiter=delimiter), [])]
+    _check_columns(path, columns, robot.joint_names, also)
+    idle = tuple(name for name in columns if name in also)
+    return MotionTable(path, delimiter, tuple(columns), robot.joint_names, idle)
+
+
+NO_TEXT = "is not a text file in UTF-8"
+
+
 def read_motion(
     path: Path, robot: Robot, also: tuple[str, ...] = ()
 ) -> tuple[Trajectory, list[str]]:
-    """Read a motion.
+    """Read a whole motion.
 
     Args:
         path: of a CSV file.
@@ -47,26 +138,22 @@ def read_motion(
         InvalidValue: times that do not rise, numbers that are not finite, or too few samples.
         OSError: there is no such file.
     """
-    text = _text(path)
-    header, _, body = text.partition("\n")
-    delimiter = max(DELIMITERS, key=header.count)
-    columns = [name.strip() for name in next(csv.reader([header], delimiter=delimiter), [])]
-    _check_columns(path, columns, robot.joint_names, also)
-    if not body.strip():
-        raise MotionFileError(path, "holds no samples below its first line")
-    table = _numbers(path, body, delimiter, len(columns))
-    order = [columns.index(name) for name in robot.joint_names]
-    found = trajectory(table[:, columns.index("t")], table[:, order])
-    idle = [name for name in columns if name in also]
-    warnings = [f"column '{name}' is of no joint of the arm and does not count" for name in idle]
-    return found, warnings + limits_left(path, found, robot)
+    table = open_motion(path, robot, also)
+    parts = [part for part, _ in table.chunks(ROWS)]
+    whole = trajectory(
+        np.concatenate([part.time for part in parts]), np.vstack([part.q for part in parts])
+    )
+    return whole, idle_columns(table.idle) + limits_left(path, whole.q, robot)
 
 
-def _text(path: Path) -> str:
-    try:
-        return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n").lstrip("\n")
-    except UnicodeDecodeError:
-        raise MotionFileError(path, "is not a text file in UTF-8") from None
+def idle_columns(names: tuple[str, ...]) -> list[str]:
+    """Return a line for each column that does not count."""
+    return [f"column '{name}' is of no joint of the arm and does not count" for name in names]
+
+
+def _header(file: Iterator[str]) -> str:
+    """Return the first line that holds something, and leave the file at the next."""
+    return next((line.strip("\n") for line in file if line.strip()), "")
 
 
 def _check_columns(
@@ -90,22 +177,16 @@ def _listed(names: list[str]) -> str:
     return ", ".join(f"'{name}'" for name in names)
 
 
-def _numbers(path: Path, body: str, delimiter: str, columns: int) -> Array:
-    try:
-        table = np.loadtxt(io.StringIO(body), delimiter=delimiter, ndmin=2, comments="#")
-    except ValueError as error:
-        reason = str(error).split(";")[0].rstrip(".")
-        raise MotionFileError(path, f"below its first line: {reason}") from None
-    if table.shape[1] != columns:
-        reason = f"has {columns} names in its first line, but {table.shape[1]} numbers below"
-        raise MotionFileError(path, reason)
-    return np.asarray(table)
+def limits_left(path: Path, q: Array, robot: Robot) -> list[str]:
+    """Return warnings about angles past their limits; raise MotionFileError if they are degrees.
 
-
-def limits_left(path: Path, found: Trajectory, robot: Robot) -> list[str]:
-    """Return warnings about angles past their limits; raise MotionFileError if they are degrees."""
+    Args:
+        path: of the file.
+        q: of the joints, S×n, or the least and the largest of them.
+        robot: whose joints they are.
+    """
     lower, upper = robot.limits
-    low, high = found.q.min(axis=0), found.q.max(axis=0)
+    low, high = q.min(axis=0), q.max(axis=0)
     past = (low < lower - BEYOND) | (high > upper + BEYOND)
     far = np.maximum(abs(low), abs(high)) > 4 * np.pi
     hinges = np.array([joint.kind.value == "hinge" for joint in robot.joints])

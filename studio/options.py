@@ -45,6 +45,23 @@ Direction = Annotated[
     str,
     typer.Option("--direction", metavar="LIST", help="Direction of the impact in the base's axes."),
 ]
+Tips = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--tip",
+        metavar="FRAME",
+        help="Contact frame, or BODY@x,y,z for any point of a body (m); default the model's own. "
+        "May be repeated.",
+    ),
+]
+Directions = Annotated[
+    list[str],
+    typer.Option(
+        "--direction",
+        metavar="LIST",
+        help="Direction of the impact in the base's axes; may be repeated.",
+    ),
+]
 JointStiffness = Annotated[
     str | None,
     typer.Option(
@@ -179,6 +196,12 @@ StudyMotors = Annotated[
     str | None,
     typer.Option(
         "--motors", metavar="KIND", help="free, servo or driven instead of the study's motors."
+    ),
+]
+Report = Annotated[
+    Path | None,
+    typer.Option(
+        "--report", metavar="FILE", help="Write a report: one HTML page that opens offline."
     ),
 ]
 

@@ -33,6 +33,7 @@ def pareto(
     points: Points = None,
     region: o.Region = None,
     speed: o.Speed = None,
+    page: o.Report = None,
     workers: o.Workers = None,
     dask: o.Dask = None,
     resume: o.Resume = False,
@@ -58,6 +59,10 @@ def pareto(
     record = as_record(report)
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(report, record, fresh)
+    if page is not None:
+        from .report.pareto_pages import write_pareto_report
+
+        write_pareto_report(report, page)
     if json:
         print_json({"out": folder, **record})
     else:

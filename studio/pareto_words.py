@@ -8,6 +8,7 @@ from itertools import pairwise
 from math import log
 
 from softimpact.optimize import ParetoPoint
+from softimpact.optimize.poses import leaves_a_choice
 
 from .design_report import limit_kind, peak_in_words
 from .output import Cell, shown
@@ -15,6 +16,12 @@ from .pareto_report import CheckedPoint, ParetoReport
 
 MM = 1e3
 """Millimetres in a metre."""
+
+UNMOVED = 1e-3
+"""Change of a joint's coordinate [rad, m] below which a posture is the same."""
+
+WORTH_SAYING = 5e-4
+"""Share of a force that is worth a sentence."""
 
 COLUMNS = (
     "deflection\nmm",
@@ -128,17 +135,30 @@ def _posture(report: ParetoReport) -> list[str]:
     free, task = report.fronts["free"], report.fronts["task"]
     if not task:
         return [f"Posture: held as in {name}, no accuracy of these is within reach."]
-    pairs = [(p, report.within("free", p.point.deflection)) for p in task]
-    most, at = max(
-        (1 - better.point.force / p.point.force, p.point.deflection)
-        for p, better in pairs
-        if better is not None
-    )
-    return [
-        f"Posture: freeing it saves up to {100 * max(most, 0.0):.1f} % of the force of {name} (at "
-        f"{MM * at:.3g} mm), and reaches {MM * free[0].point.deflection:.3g} mm; {name} reaches "
+    reached = (
+        f"and reaches {MM * free[0].point.deflection:.3g} mm; {name} reaches "
         f"{MM * task[0].point.deflection:.3g} mm."
+    )
+    if not leaves_a_choice(report.study):
+        return [f"Posture: the task leaves no other than that of {name}."]
+    pairs = [(p.point, report.within("free", p.point.deflection)) for p in task]
+    gains = [
+        (1 - better.point.force / point.force, point.deflection)
+        for point, better in pairs
+        if better is not None and _moved(point, better.point)
     ]
+    most, at = max(gains, default=(0.0, 0.0))
+    if most < WORTH_SAYING:
+        return [f"Posture: freeing it saves nothing of the force of {name}, {reached}"]
+    return [
+        f"Posture: freeing it saves up to {100 * most:.1f} % of the force of {name} (at "
+        f"{MM * at:.3g} mm), {reached}"
+    ]
+
+
+def _moved(held: ParetoPoint, free: ParetoPoint) -> bool:
+    """Whether a posture differs from the one held; else it has no part in what is saved."""
+    return float(abs(free.outcome.q - held.outcome.q).max()) > UNMOVED
 
 
 def _at_the_studys_bound(report: ParetoReport) -> list[str]:

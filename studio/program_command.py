@@ -10,7 +10,7 @@ import typer
 from typer.core import TyperCommand
 
 from . import options as o
-from .simulate_command import BODY, Clamped, Cover, Horizon
+from .simulate_command import BODY, Clamped, Cover, Horizon, Shape
 
 
 class SeveralValues(TyperCommand):
@@ -64,12 +64,29 @@ Points = Annotated[
     ),
 ]
 Regions = Annotated[
-    list[str],
+    list[str] | None,
     typer.Option(
         "--regions",
         metavar="NAME...",
-        help="Regions or areas of the body that they may hit.",
+        help="Regions or areas of the body that they may hit everywhere.",
         rich_help_panel=BODY,
+    ),
+]
+Zones = Annotated[
+    Path | None,
+    typer.Option(
+        "--zones",
+        metavar="FILE",
+        help="Regions that may be hit in boxes or spans of time only (TOML).",
+        rich_help_panel=BODY,
+    ),
+]
+Engine = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help="Who integrates impacts: c (generated and compiled, from 20,000 impacts on), python, "
+        "or auto.",
     ),
 ]
 Band = Annotated[
@@ -87,13 +104,15 @@ Out = Annotated[
 def program(
     motion: Motion,
     model: Robot,
-    regions: Regions,
+    regions: Regions = None,
+    zones: Zones = None,
     points: Points = None,
     end: o.End = None,
     lock: o.Lock = None,
     payload: o.Payload = None,
     tool: o.Tool = None,
     cover: Cover = None,
+    shape: Shape = None,
     clamped: Clamped = True,
     motors: o.Motors = None,
     reaction_time: o.ReactionTime = None,
@@ -107,7 +126,9 @@ def program(
     gear_ratio: o.GearRatio = None,
     gravity: o.Gravity = None,
     band: Band = False,
+    engine: Engine = "auto",
     out: Out = None,
+    report: o.Report = None,
     json: o.Json = False,
 ) -> None:
     """Find the factor by which to slow a motion down, so that no watched point can hurt."""
@@ -134,12 +155,15 @@ def program(
         ),
         motors=TypedMotors(motors, reaction_time, stopping_time),
         points=tuple(points or ()),
-        regions=tuple(name for text in regions for name in text.split(",") if name),
+        regions=tuple(name for text in regions or () for name in text.split(",") if name),
+        zones=zones,
         cover=cover,
+        shape=shape,
         clamped=clamped,
         horizon=horizon,
         gravity=gravity,
         band=band,
+        engine=engine,
     )
     found = run_program(motion, how)
     print_warnings(found.record["warnings"])
@@ -148,6 +172,10 @@ def program(
 
         with replaced_folder(out, GENERATOR) as fresh:
             write_program(found, fresh)
+    if report is not None:
+        from .report.program_report import write_program_report
+
+        write_program_report(found, report)
     if json:
         print_json({"out": out, **found.record})
     else:

@@ -10,13 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from softimpact.simulate.program import Danger, SafeProgram, worst_moments
-from softimpact.simulate.trajectory import Trajectory
-from softimpact.symbolic import ImpactModel, Motors
+from softimpact.simulate.zones import Somebody
 
-from .output import print_table, say
+from .output import Cell, print_table, say
+from .program_run import Question, SlowedProgram
 
 GENERATOR = "softimpact program"
+
+MANY = 100_000
+"""Samples from which on JSON leaves what is known of each to ``program.csv``."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,84 +26,72 @@ class ProgramResult:
     """A program that was looked at.
 
     Attributes:
-        motion: of the joints.
-        dangers: of each point and region.
-        safe: the program slowed down.
+        question: what may meet whom.
+        answer: by how much it must slow down.
         record: for machines.
     """
 
-    motion: Trajectory
-    dangers: Sequence[Danger]
-    safe: SafeProgram
+    question: Question
+    answer: SlowedProgram
     record: dict[str, Any]
 
 
 def program_record(
-    path: Path,
-    clamped: bool,
-    model: ImpactModel,
-    motion: Trajectory,
-    points: Sequence[str],
-    ends: dict[str, Motors],
-    horizon: float,
-    dangers: Sequence[Danger],
-    safe: SafeProgram,
-    warnings: list[str],
+    path: Path, question: Question, answer: SlowedProgram, warnings: list[str]
 ) -> dict[str, Any]:
     """Return everything that an answer depends on, and the answer."""
+    model, table = question.model, answer.table
     springs = np.array(model.drives.springs, dtype=float).ravel()
+    few = len(table) <= MANY
+    if not few:
+        line = f"{len(table):,} samples: what is known of each is in program.csv alone, see --out"
+        warnings = [*warnings, line]
     return {
         "generator": GENERATOR,
         "motion": path,
         "robot": model.robot.name,
         "joints": model.robot.joint_names,
-        "points": points,
-        "regions": [*dict.fromkeys(danger.region for danger in dangers)],
-        "clamped": clamped,
-        "motors": ends,
-        "horizon": horizon,
+        "points": question.points,
+        "regions": [*dict.fromkeys(table.names.regions)],
+        "clamped": question.bodies[0].contact.clamped,
+        "bodies": [_body(body) for body in question.bodies],
+        "motors": question.ends,
+        "horizon": question.horizon,
         "joint_stiffness": [
             float(k) if gives else None
             for k, gives in zip(springs, model.drives.elastic, strict=True)
         ],
         "rotor_inertia": model.drives.rotors,
-        "time": motion.time,
-        "factor": safe.factor,
+        "engine": answer.engine,
+        "samples": len(table),
+        "slowed": int((table.factor < 1).sum()),
+        "time": table.time if few else None,
+        "factor": table.factor if few else None,
         "binding": [
-            moment_of(motion, safe, k) if factor < 1 else None
-            for k, factor in enumerate(safe.factor)
-        ],
-        "time_before": safe.time_before,
-        "time_after": safe.time_after,
-        "worst": [
-            {**(moment_of(motion, safe, k) or {}), "q": motion.q[k]}
-            for k in worst_moments(motion, safe)
-        ],
-        "iso": {"factor": safe.two_body, "time_after": safe.time_by_formula},
+            table.moment(k) if factor < 1 else None for k, factor in enumerate(table.factor)
+        ]
+        if few
+        else None,
+        "time_before": table.time_before,
+        "time_after": table.time_after,
+        "worst": answer.worst,
+        "iso": {
+            "factor": table.iso_factor if few else None,
+            "time_after": table.time_by_formula,
+        },
         "warnings": warnings,
     }
 
 
-def moment_of(motion: Trajectory, safe: SafeProgram, sample: int) -> dict[str, Any] | None:
-    """Return what is worst at a sample, None where nothing moves."""
-    worst = safe.worst[sample]
-    if worst is None:
-        return None
-    danger, row = worst
+def _body(body: Somebody) -> dict[str, Any]:
+    limits = body.limits
     return {
-        "sample": sample,
-        "t": motion.time[sample],
-        "factor": safe.factor[sample],
-        "point": danger.point,
-        "region": danger.region,
-        "limit": str(danger.limit[row]),
-        "motors": str(danger.motors[row]),
-        "speed": danger.speed[row],
-        "direction": danger.direction[row],
-        "safe_speed": danger.safe_speed[row],
-        "peak": danger.peak[row],
-        "share_of_limit": danger.share[row],
-        "iso_safe_speed": danger.two_body,
+        "region": body.contact.region.name,
+        "clamped": body.contact.clamped,
+        "shape": body.shape,
+        "zones": [zone.name for zone in body.zones],
+        "transient": limits.transient,
+        "quasi_static": limits.quasi_static,
     }
 
 
@@ -110,26 +100,14 @@ COLUMNS = ("worst at", "factor", "point", "region", "limit", "motors", "m/s", "s
 
 def print_program(found: ProgramResult, out: Path | None) -> None:
     """Print what limits a program as a table."""
-    safe, record = found.safe, found.record
-    longer = safe.time_after / safe.time_before - 1
-    slowed = int((safe.factor < 1).sum())
+    record = found.record
     bands = {"band N": None} if any("band" in moment for moment in record["worst"]) else {}
     print_table(
-        f"{record['robot']}: {safe.time_before:.4g} s become {safe.time_after:.4g} s "
-        f"(+{100 * longer:.3g} %; by the two-body formula {safe.time_by_formula:.4g} s); "
-        f"{slowed} of {len(safe.factor)} samples slow down",
+        f"{record['robot']}: {in_a_sentence(record)}",
         (*COLUMNS, *bands),
         [
             (
-                f"{moment['t']:.4g} s",
-                moment["factor"],
-                moment["point"],
-                moment["region"],
-                moment["limit"],
-                moment["motors"],
-                moment["speed"],
-                moment["safe_speed"] if np.isfinite(moment["safe_speed"]) else None,
-                moment["peak"],
+                *moment_row(moment),
                 *(f"{moment['band'].low:.0f} to {moment['band'].high:.0f}" for _ in bands),
             )
             for moment in record["worst"]
@@ -137,3 +115,21 @@ def print_program(found: ProgramResult, out: Path | None) -> None:
     )
     if out is not None:
         say(f"wrote {out}")
+
+
+def in_a_sentence(record: dict[str, Any]) -> str:
+    """Return how long a program takes when it is slowed down."""
+    before, after = record["time_before"], record["time_after"]
+    formula = record["iso"]["time_after"]
+    return (
+        f"{before:.4g} s become {after:.4g} s (+{100 * (after / before - 1):.3g} %; by the "
+        f"two-body formula {formula:.4g} s); {record['slowed']} of {record['samples']} samples "
+        "slow down"
+    )
+
+
+def moment_row(moment: dict[str, Any]) -> Sequence[Cell]:
+    """Return a moment as a row below ``COLUMNS``."""
+    words = (moment[name] for name in ("point", "region", "limit", "motors"))
+    numbers = (moment[name] for name in ("speed", "safe_speed", "peak"))
+    return (f"{moment['t']:.4g} s", moment["factor"], *words, *numbers)

@@ -21,6 +21,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from softimpact.toolchain import c_compiler
+
 PATIENCE = 2.0
 """Time after which a terminal shows that a command is at work [s]."""
 
@@ -95,8 +97,6 @@ def progress_bar() -> Progress:
 
 def optimiser_bar() -> Progress:
     """Return the bar of an optimiser, and say first if it has no C compiler."""
-    from softimpact.optimize.compiled import c_compiler
-
     bar = progress_bar()
     if c_compiler() is None:
         bar.console.print(

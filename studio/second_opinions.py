@@ -12,6 +12,9 @@ from softimpact.symbolic import Robot, mass_matrix
 from softimpact.symbolic.robot.rigid import Array
 from softimpact.symbolic.robot.xml_file import root_tag, text_of
 
+MOST_JOINTS = 300
+"""Above, our symbolic mass matrix takes many seconds and gigabytes."""
+
 SEED = 1
 """Of the configuration at which mass matrices are compared."""
 
@@ -25,6 +28,8 @@ def second_opinions(robot: Robot, path: Path) -> dict[str, float | str]:
         robot: whole, as its file describes it.
         path: the file.
     """
+    if robot.n > MOST_JOINTS:
+        return dict.fromkeys(OPINIONS, f"not asked about more than {MOST_JOINTS} joints")
     q = np.random.default_rng(SEED).uniform(-0.5, 0.5, robot.n)
     ours = np.array(mass_matrix(robot, q))
     found: dict[str, float | str] = {}

@@ -18,6 +18,7 @@ def select(
     study: o.StudyFile,
     by: By = "peak_force",
     fidelity: o.Fidelity = "linearised",
+    report: o.Report = None,
     json: o.Json = False,
 ) -> None:
     """Rank the configurations of a study at its nominal joint stiffness."""
@@ -25,14 +26,18 @@ def select(
     from softimpact.simulate import Fidelity
 
     from .output import print_json
-    from .selection import Criterion, print_ranking, ranking, report
+    from .selection import Criterion, print_ranking, ranking, record
     from .values import one_of
 
     criterion: Criterion = one_of("criterion", by, Criterion)
     model: Fidelity = one_of("impact model", fidelity, Fidelity)
     problem = load_study(study)
     ranked = ranking(problem, criterion, model)
+    if report is not None:
+        from .report.pareto_pages import write_selection_report
+
+        write_selection_report(problem, criterion, ranked, report)
     if json:
-        print_json(report(problem, criterion, model, ranked))
+        print_json(record(problem, criterion, model, ranked))
     else:
         print_ranking(problem, criterion, ranked)

@@ -17,10 +17,18 @@ from softimpact.symbolic import InvalidValue, analyse, directional_giaf, giaf
 from softimpact.symbolic.robot.rigid import Array
 
 from .checks import simulated
-from .output import print_table
+from .output import Cell, print_table
 
 Criterion = Literal["peak_force", "m_c", "giaf", "directional_giaf"]
 """What to rank by: least force, least mass, or largest absorption factor."""
+
+NAMES: dict[Criterion, str] = {
+    "peak_force": "peak force",
+    "m_c": "reflected mass",
+    "giaf": "absorption factor",
+    "directional_giaf": "absorption factor along the impact",
+}
+"""What people call each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +147,7 @@ def _all_figures(study: Study) -> ca.Function:
     return ca.Function("figures", [q], [ca.vertcat(*found)], {"cse": True})
 
 
-def report(
+def record(
     study: Study, criterion: Criterion, fidelity: Fidelity, ranked: Sequence[PoseFigures]
 ) -> dict[str, Any]:
     """Return a ranking with what it rests on."""
@@ -165,22 +173,28 @@ def report(
 
 def print_ranking(study: Study, criterion: Criterion, ranked: Sequence[PoseFigures]) -> None:
     """Print a ranking as a table."""
-    limit = study.limit
+    limit = study.contact.region.force_limit
     print_table(
         f"{study.title}: by {criterion}; {study.contact.region.name}, {study.speed:g} m/s, "
         f"limit {limit:g} N",
-        ("rank", "pose", "m_c kg", "k_r kN/m", "m_a kg", "GIAF", "along n", "peak N"),
-        [
-            (
-                str(i + 1),
-                pose.name,
-                pose.m_c,
-                None if pose.k_r is None else 1e-3 * pose.k_r,
-                pose.m_a,
-                pose.giaf,
-                pose.directional_giaf,
-                pose.peak_force,
-            )
-            for i, pose in enumerate(ranked)
-        ],
+        *figures_table(ranked),
     )
+
+
+def figures_table(ranked: Sequence[PoseFigures]) -> tuple[Sequence[str], list[list[Cell]]]:
+    """Return heads and rows of a ranking."""
+    heads = ("rank", "pose", "m_c kg", "k_r kN/m", "m_a kg", "GIAF", "along n", "peak N")
+    rows: list[list[Cell]] = [
+        [
+            str(i + 1),
+            pose.name,
+            pose.m_c,
+            None if pose.k_r is None else 1e-3 * pose.k_r,
+            pose.m_a,
+            pose.giaf,
+            pose.directional_giaf,
+            pose.peak_force,
+        ]
+        for i, pose in enumerate(ranked)
+    ]
+    return heads, rows

@@ -16,8 +16,8 @@ MAY_IMPORT = {
     "symbolic": {"robots"},
     "codegen": {"symbolic"},
     "simulate": {"symbolic"},
-    "optimize": {"symbolic"},
-    "studio": {"robots", "symbolic", "codegen", "simulate", "optimize"},
+    "optimize": {"robots", "symbolic", "toolchain"},  # built-in studies by name
+    "studio": {"robots", "symbolic", "codegen", "simulate", "optimize", "batch", "toolchain"},
     "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }
 

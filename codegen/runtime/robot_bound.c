@@ -25,14 +25,18 @@ static robot_real while_driven(robot_real time, robot_real hold, robot_real damp
     return y*y;
 }
 
-/* r'(M + B) r, or what of it an impact can take. */
-static robot_real twice_energy(const robot_impact *impact)
+robot_real robot_twice_energy(const robot_impact *impact)
 {
     const robot_params *const p = impact->p;
     const robot_arrival *const arrival = &impact->arrival;
-    if (impact->together > ROBOT_R(0.0)) {
-        return ROBOT_R(1.0)/impact->together;
+#if ROBOT_STRUCTURED
+    const robot_real together = robot_together(arrival, p);
+    if (together > ROBOT_R(0.0)) {
+        const robot_real body =
+            impact->gives_way ? ROBOT_R(1.0)/impact->region->effective_mass : ROBOT_R(0.0);
+        return ROBOT_R(1.0)/(together + body);
     }
+#endif
     robot_real sum = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_N; ++i) {
         for (int j = 0; j < ROBOT_N; ++j) {
@@ -83,7 +87,7 @@ robot_real robot_bound(const robot_impact *impact)
         return ROBOT_R(0.0);
     }
     const robot_real hold = impact->hold;
-    const robot_real twice = twice_energy(impact);
+    const robot_real twice = robot_twice_energy(impact);
     if (impact->first == ROBOT_LOOSE) {
         return ROBOT_SQRT(twice*hold);
     }

@@ -173,22 +173,32 @@ static robot_real mobility_of(robot_matrix mass, const robot_real row[ROBOT_N])
     return sum;
 }
 
-int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_real found[3])
+int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_real *links,
+    robot_real *rotors)
 {
     robot_matrix mass;
-    robot_matrix together;
-    found[2] = ROBOT_R(0.0);
+    *rotors = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             mass[i][j] = arrival->links.M[i][j];
-            together[i][j] = mass[i][j];
         }
-        together[i][i] += ROBOT_ROTOR(p, i);
-        found[2] += arrival->row[i]*arrival->row[i]/ROBOT_ROTOR(p, i);
+        *rotors += arrival->row[i]*arrival->row[i]/ROBOT_ROTOR(p, i);
     }
     (void)p;
-    found[0] = mobility_of(mass, arrival->row);
-    found[1] = mobility_of(together, arrival->row);
-    return found[0] > ROBOT_LEAST_MOBILITY && found[1] > ROBOT_R(0.0) ? ROBOT_OK : ROBOT_SINGULAR;
+    *links = mobility_of(mass, arrival->row);
+    return *links > ROBOT_LEAST_MOBILITY ? ROBOT_OK : ROBOT_SINGULAR;
+}
+
+robot_real robot_together(const robot_arrival *arrival, const robot_params *p)
+{
+    robot_matrix mass;
+    for (int i = 0; i < ROBOT_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+        }
+        mass[i][i] += ROBOT_ROTOR(p, i);
+    }
+    (void)p;
+    return mobility_of(mass, arrival->row);
 }
 #endif

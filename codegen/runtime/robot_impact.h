@@ -66,7 +66,9 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
-    bool ready;
+    bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
+    bool has_body;
+    bool ready; /* steps are */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* no energy enters but by the motors' drift: see robot_settled.c */
     robot_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -85,10 +87,9 @@ typedef struct {
     robot_arrival arrival;
     const robot_region *region;
     const robot_params *p;
-    int motors;
+    int motors, led; /* what they do, and in the modes of the first phase */
     bool gives_way;
     robot_real mobility; /* of the contact, 1/kg */
-    robot_real together; /* of links and rotors as one, and of the body, 1/kg */
     robot_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
     robot_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
     robot_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
@@ -125,6 +126,13 @@ int robot_check_impact(const robot_region *region, const robot_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival);
 
+/* Checks and links of an impact of one of the contact points. */
+int robot_approach(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
+    const robot_region *region, const robot_params *p, robot_impact *impact);
+
+/* To be called as impact->arrival changes: no modes are known. */
+void robot_impact_forget(robot_impact *impact);
+
 /*
  * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about
  * a size (or, if that is negative, for a speed of its size).
@@ -134,6 +142,12 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
 
 /* Prepares what comes after the motors' release, once it is asked for. */
 void robot_impact_let_go(robot_impact *impact);
+
+/*
+ * Twice the energy that an impact with loose motors can take, for 1 m/s: at most r'(M + B)r for joint
+ * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
+ */
+robot_real robot_twice_energy(const robot_impact *impact);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 robot_real robot_bound(const robot_impact *impact);
@@ -164,11 +178,11 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
 int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real carried[ROBOT_N]);
 
-/*
- * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
- * 1/kg; 0 or a status.
- */
-int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_real found[3]);
+/* Mobility of the contact point with links alone, and with rotors alone, 1/kg; 0 or a status. */
+int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_real *links,
+    robot_real *rotors);
+/* The same with links and rotors as one; 0 if their mass is not positive definite. */
+robot_real robot_together(const robot_arrival *arrival, const robot_params *p);
 
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase *phase);

@@ -26,6 +26,7 @@ from .studio.factors_command import factors
 from .studio.generate_command import generate
 from .studio.init_command import init
 from .studio.inspect_command import inspect
+from .studio.map_command import safety_map
 from .studio.pareto_command import pareto
 from .studio.program_command import SeveralValues, program
 from .studio.robots_command import robots
@@ -47,11 +48,12 @@ app.command()(common(factors, "deriving"))
 app.command()(common(factors_study, "computing"))
 app.command()(common(simulate, "simulating"))
 app.command(cls=SeveralValues)(common(program))
+app.command("map")(common(safety_map))
 app.command()(common(select, "ranking"))
 app.command()(common(design))
 app.command()(common(pareto))
 app.command()(common(generate))
-app.command()(common(studio))
+app.command()(common(studio, "writing the page"))
 app.command()(common(reproduce))
 
 

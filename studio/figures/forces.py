@@ -53,10 +53,18 @@ def figure_of_forces(report: DesignReport) -> Figure:
     axes.set_ylim(0.0, 1.15 * max(report.limit, *(history.peak for history in histories)))
     axes.set_xlabel("time since first touch [ms]", fontsize=TEXT)
     axes.set_ylabel("contact force [N]", fontsize=TEXT)
-    axes.set_title(f"Contact force\n{setting(report)}", fontsize=TEXT + 1)
+    axes.set_title(f"{_message(report)}\n{setting(report)}", fontsize=TEXT + 1)
     tidy(axes)
     legend_below(figure, lines, columns=1)
     return figure
+
+
+def _message(report: DesignReport) -> str:
+    force, limit = report.winner_history.peak, report.limit
+    times = "keeps the limit" if force <= limit else f"is {force / limit:.2g} times the limit"
+    return (
+        f"The winner's {force:.0f} N {times}; the worst pose has {report.worst_history.peak:.0f} N"
+    )
 
 
 def until_apart(history: ImpactHistory) -> tuple[Array, Array]:

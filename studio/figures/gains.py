@@ -34,9 +34,21 @@ def figure_of_gains(report: DesignReport, gains: Gains) -> Figure:
     forces, speeds = figure.subplots(1, 2, width_ratios=(2, 1.2))
     limit = _draw_forces(forces, report, gains)
     asked = _draw_speeds(speeds, report)
-    figure.suptitle(f"What the design buys\n{setting(report)}", fontsize=TEXT + 1)
+    figure.suptitle(f"{_message(gains)}\n{setting(report)}", fontsize=TEXT + 1)
     legend_below(figure, [limit, asked], columns=2)
     return figure
+
+
+def _message(gains: Gains) -> str:
+    """Return what the design saves, and what of it the springs alone do."""
+    saved = 1 - gains.both / gains.before
+    if not saved > 0:
+        return "The design saves no force"
+    return (
+        f"The design saves {saved:.1%} of the force; springs alone "
+        f"{1 - gains.springs / gains.before:.1%}, posture alone "
+        f"{1 - gains.posture / gains.before:.1%}"
+    )
 
 
 def _draw_forces(axes: Any, report: DesignReport, gains: Gains) -> Any:

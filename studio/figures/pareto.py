@@ -75,7 +75,7 @@ def figure_of_fronts(report: ParetoReport) -> Figure:
         handles.append(_draw_limit(axes, report))
     axes.set_ylabel("least peak force [N]", fontsize=TEXT)
     below = "" if near else f"\n{limit_in_words(report)}: beyond the axis"
-    _finish(figure, report, handles, "Safety against accuracy", below)
+    _finish(figure, report, handles, _of_force(report), below)
     return figure
 
 
@@ -86,9 +86,24 @@ def figure_of_speeds(report: ParetoReport) -> Figure:
     handles = _draw_fronts(axes, report, lambda checked: checked.safe_speed)
     handles += _draw_reference(axes, report, report.reference_speed)
     axes.set_ylabel("speed at first touch that meets the limit [m/s]", fontsize=TEXT)
-    title = f"Speed against accuracy, {limit_in_words(report)}"
+    slow, fast = (report.fronts["free"][i].safe_speed for i in (0, -1))
+    title = (
+        f"The soft end may run at {fast:.2g} m/s, the accurate one at {slow:.2g} m/s\n"
+        f"{limit_in_words(report)}"
+    )
     _finish(figure, report, handles, title, "")
     return figure
+
+
+def _of_force(report: ParetoReport) -> str:
+    """Return what the softest design saves over the most accurate one."""
+    first, last = (report.fronts["free"][i].point for i in (0, -1))
+    if first is last:
+        return "Least peak force by accuracy"
+    return (
+        f"Giving way by {MM * last.deflection:.2g} instead of {MM * first.deflection:.2g} mm saves "
+        f"{1 - last.force / first.force:.0%} of the force"
+    )
 
 
 def _finish(

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from softimpact.simulate.program import SafeProgram
-from softimpact.simulate.trajectory import Trajectory
+from softimpact.studio.program_table import NOTHING, ProgramTable
+from softimpact.symbolic.robot.rigid import Array
 
 from .style import (
     BLACK,
@@ -22,59 +24,68 @@ from .style import (
     TEXT,
     VERMILLION,
     new_figure,
-    save,
     tidy,
 )
 
 COLOURS = (BLUE, ORANGE, GREEN, VERMILLION, PURPLE, SKY)
 MARKS = ("o", "s", "^", "D", "v", "P")
 
+DRAWN = 1500
+"""Most spans of a program; of each the lowest factor is drawn."""
 
-def program_figure(motion: Trajectory, safe: SafeProgram, robot: str, path: Path) -> Path:
+
+def program_figure(table: ProgramTable, robot: str) -> Figure:
     """Draw the speed factor over time, marked by the point and region that bind.
 
     Args:
-        motion: of the joints.
-        safe: the program slowed down.
+        table: the program slowed down.
         robot: its name.
-        path: of the PNG.
     """
-    binding = [
-        (worst[0].point, worst[0].region) if worst and factor < 1 else None
-        for worst, factor in zip(safe.worst, safe.factor, strict=True)
-    ]
-    pairs = [*dict.fromkeys(pair for pair in binding if pair)]
-    pairs.sort(key=lambda pair: -binding.count(pair))
+    rows, formula = _lowest(table)
+    binds = np.where(table.factor[rows] < 1, table.point[rows], NOTHING)
+    pairs = [(int(p), int(b)) for p, b in zip(binds, table.body[rows], strict=True) if p >= 0]
+    order = sorted(dict.fromkeys(pairs), key=lambda pair: -pairs.count(pair))
+    time, factor = table.time[rows], table.factor[rows]
     figure = new_figure(9, 4)
     axes = figure.subplots()
-    axes.plot(motion.time, safe.two_body, color=BLACK, linewidth=1.1, linestyle=(0, (1, 2)))
-    axes.plot(motion.time, safe.factor, color=LIGHT, linewidth=1.6)
-    for i, (point, region) in enumerate(pairs):
-        rows = np.array([pair == (point, region) for pair in binding])
+    dotted: dict[str, Any] = {"color": BLACK, "linewidth": 1.1, "linestyle": (0, (1, 2))}
+    axes.plot(time, formula, **dotted)
+    axes.plot(time, factor, color=LIGHT, linewidth=1.6)
+    for i, (point, body) in enumerate(order[: len(COLOURS)]):
+        own = (binds == point) & (table.body[rows] == body)
         axes.plot(
-            motion.time[rows],
-            safe.factor[rows],
-            MARKS[i % len(MARKS)],
-            color=COLOURS[i % len(COLOURS)],
+            time[own],
+            factor[own],
+            MARKS[i],
+            color=COLOURS[i],
             markersize=4,
-            label=f"{point} on {region}",
+            label=f"{table.names.points[point]} on {table.names.regions[body]}",
         )
-    axes.plot([], [], color=BLACK, linewidth=1.1, linestyle=(0, (1, 2)), label="two-body formula")
+    axes.plot([], [], **dotted, label="two-body formula")
     axes.set_ylim(0, 1.05)
-    axes.set_xlim(motion.time[0], motion.time[-1])
+    axes.set_xlim(table.time[0], table.time[-1])
     axes.set_xlabel("time in the program [s]", fontsize=SMALL)
-    axes.set_ylabel("factor on the speed that keeps all limits", fontsize=SMALL)
-    axes.legend(fontsize=SMALL, frameon=False, loc="lower right", bbox_to_anchor=(1, 1.0), ncols=3)
+    axes.set_ylabel("speed that keeps all limits,\nas a factor on the program's", fontsize=SMALL)
+    figure.legend(fontsize=SMALL, frameon=False, loc="outside lower center", ncols=4)
     tidy(axes)
-    figure.suptitle(_message(safe, robot), fontsize=TEXT + 1)
-    return save(figure, path)
+    figure.suptitle(_message(table, robot), fontsize=TEXT + 1)
+    return figure
 
 
-def _message(safe: SafeProgram, robot: str) -> str:
-    if not (safe.factor < 1).any():
-        return f"{robot}: the program keeps all limits at its own speed, {safe.time_before:.3g} s"
-    slow = float(safe.factor.min())
+def _lowest(table: ProgramTable) -> tuple[Array, Array]:
+    """Return the row with the lowest factor of each span, and the formula's lowest there."""
+    edges = np.unique(np.linspace(0, len(table), min(len(table), DRAWN) + 1).astype(int))
+    spans = [slice(a, b) for a, b in pairwise(edges)]
+    rows = [span.start + int(np.argmin(table.factor[span])) for span in spans]
+    formula = table.iso_factor
+    return np.array(rows), np.array([formula[span].min() for span in spans])
+
+
+def _message(table: ProgramTable, robot: str) -> str:
+    before = table.time_before
+    if not (table.factor < 1).any():
+        return f"{robot}: the program keeps all limits at its own speed, {before:.3g} s"
     return (
-        f"{robot}: {safe.time_before:.3g} s become {safe.time_after:.3g} s, "
-        f"as it must slow down to {slow:.0%} at worst"
+        f"{robot}: {before:.3g} s become {table.time_after:.3g} s, "
+        f"as it must slow down to {table.factor.min():.0%} at worst"
     )

@@ -51,12 +51,22 @@ def figure_of_ranking(report: DesignReport) -> Figure:
     axes.set_xlabel(_label(report, low, high), fontsize=TEXT)
     axes.set_ylabel("rank and pose", fontsize=TEXT)
     axes.set_title(
-        f"Peak force of {len(poses)} poses before and after the design\n{setting(report)}",
+        f"{_message(report)}\n{setting(report)}",
         fontsize=TEXT + 1,
     )
     tidy(axes, grid="x")
     legend_below(figure, handles, columns=2)
     return figure
+
+
+def _message(report: DesignReport) -> str:
+    """Return where the poses' forces lie before and after."""
+    before = [pose.result.force_before for pose in report.poses]
+    after = [pose.best.force for pose in report.poses]
+    return (
+        f"Peak force of {len(before)} poses: {min(before):.0f} to {max(before):.0f} N before, "
+        f"{min(after):.0f} to {max(after):.0f} N after the design"
+    )
 
 
 def _range(report: DesignReport) -> tuple[float, float]:

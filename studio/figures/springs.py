@@ -61,10 +61,23 @@ def figure_of_springs(report: DesignReport) -> Figure:
     axes.set_ylim(study.lower.min() / 1.5, study.upper.max() * 1.5)
     _name_joints(axes, report)
     axes.set_ylabel(f"joint stiffness $k_s$ [{_unit(report)}]", fontsize=TEXT)
-    axes.set_title(f"Joint stiffness of least peak force\n{setting(report)}", fontsize=TEXT + 1)
+    axes.set_title(f"{_message(report)}\n{setting(report)}", fontsize=TEXT + 1)
     tidy(axes, grid="y")
     legend_below(figure, handles, columns=2)
     return figure
+
+
+def _message(report: DesignReport) -> str:
+    """Return which joints' stiffness matters, and which does not."""
+    names, ranges = report.study.robot.joint_names, report.design.answers.indifferent
+    loose = [name for name, (low, high) in zip(names, ranges, strict=True) if high > LOOSE * low]
+    if not loose:
+        return "Joint stiffness of least peak force: every joint matters"
+    return f"Joint stiffness of least peak force: {len(loose)} of {len(names)} hardly matter"
+
+
+LOOSE = 10.0
+"""Ratio of the ends of a range that costs less than 0.5 % from which on a joint hardly matters."""
 
 
 def other_outcomes(report: DesignReport) -> list[Outcome]:

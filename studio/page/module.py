@@ -25,7 +25,7 @@ SHIM = Path(__file__).parent / "shim"
 HEADER = "robot_page.h"
 """Of the shim: what it adds to the package's header."""
 
-STEPS = f"src/{PREFIX}_contact.c", f"src/{PREFIX}_contact_steps.h"
+STEPS = f"src/{PREFIX}_run.c", f"src/{PREFIX}_run_steps.h"
 """The runtime's steps, and the name under which the shim includes them."""
 
 OPTIONAL = ("reduced_model", "giaf")
@@ -57,8 +57,8 @@ def sources_of(package: Package) -> dict[str, str]:
     """Return the package's sources with the shim's among them, by path."""
     rendered, _ = render(package)
     files = {p: text for p, text in rendered.items() if p.startswith(("src/", "include/"))}
-    contact, steps = STEPS
-    files[steps] = files.pop(contact)
+    run, steps = STEPS
+    files[steps] = files.pop(run)
     for path in sorted(SHIM.iterdir()):
         if path.name != HEADER:
             files[f"src/{_named(path.name)}"] = _named(path.read_text(encoding="utf-8"))

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import shlex
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,11 +13,12 @@ from matplotlib.figure import Figure
 from softimpact.simulate import Approach, simulate_impact
 
 from ..design_report import versions
-from ..figures.postures import stick_points
 from ..figures.style import BLUE, FAINT, LIMIT, ORANGE, SMALL, TEXT, new_figure, tidy
 from ..impact import Answer
 from ..output import shown
-from .page import ArmPicture, Page, Section, TableOfNumbers, write_page
+from .arms import ORIGIN, arm_picture
+from .page import ArmPicture, Hit, Page, Section, TableOfNumbers, write_page
+from .provenance import command
 
 KIND_WORDS = {
     "free": "motors free from first touch on",
@@ -51,7 +50,7 @@ def write_impact_report(answer: Answer, record: Mapping[str, Any], path: Path) -
                 caption="Contact force over time for what the motors may do, and the limits.",
                 tables=[_forces(record), _limits(record)],
             ),
-            Section("Where it is hit", arm=_arm(answer)),
+            Section("Where it is hit", arms=[_arm(answer)]),
             _trust(answer, record),
             Section("What it rests on", tables=[_joints(record), _numbers(record)]),
             Section(
@@ -60,7 +59,7 @@ def write_impact_report(answer: Answer, record: Mapping[str, Any], path: Path) -
                 lines=record["warnings"],
             ),
         ],
-        command=shlex.join(["softimpact", *sys.argv[1:]]),
+        command=command(),
         versions=versions(),
         digests={"robot": answer.scene.model.robot.digest()},
     )
@@ -131,20 +130,10 @@ def _answer(answer: Answer) -> str:
 
 
 def _arm(answer: Answer) -> ArmPicture:
-    model, q = answer.scene.model, answer.scene.q
-    robot = model.robot
-    deepest = max(range(robot.n), key=lambda i: len(robot.ancestors(i)))
-    ends = [f.name for f in robot.frames.values() if f.joint == deepest]
-    whole = model.tip if robot.frame(model.tip).joint == deepest or not ends else ends[-1]
-    arm, contact = (stick_points(robot, frame, [q])[0] for frame in (whole, model.tip))
-    share = answer.found.verdict.share
-    return ArmPicture(
-        points=np.round(arm.T, 4).tolist(),
-        contact=np.round(contact[:, -1], 4).tolist(),
-        direction=np.round(answer.scene.direction, 4).tolist(),
-        share=round(share, 4),
-        words=f"The arm as a stick figure, hit at {model.tip}; the arrow is the way it moves.",
-    )
+    model, scene = answer.scene.model, answer.scene
+    hit = Hit(ORIGIN, scene.direction, answer.found.verdict.share)
+    words = f"The arm as a stick figure, hit at {model.tip}; the arrow is the way it moves."
+    return arm_picture(model.robot, scene.q, {model.tip: hit}, words)
 
 
 def _forces(record: Mapping[str, Any]) -> TableOfNumbers:

@@ -8,10 +8,14 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import jinja2
 from markupsafe import Markup
 from matplotlib.figure import Figure
+
+from softimpact.symbolic.record import plain
+from softimpact.symbolic.robot.rigid import Array
 
 from ..output import Cell, shown
 
@@ -34,22 +38,35 @@ class TableOfNumbers:
 
 
 @dataclass(frozen=True)
+class Hit:
+    """Where an arm hits something.
+
+    Attributes:
+        place: of the contact point [m], length 3.
+        direction: in which it moves, length 3; None draws no arrow.
+        share: of the limit that the impact uses, which colours it.
+    """
+
+    place: Array
+    direction: Array | None
+    share: float
+
+
+@dataclass(frozen=True)
 class ArmPicture:
     """An arm that one can turn.
 
     Attributes:
         points: from the base to the end of the arm [m], k×3.
-        contact: where it is hit [m], length 3.
-        direction: in which the contact point moves, length 3.
-        share: of the limit that the impact uses, which colours the arrow.
+        hits: on the way, coloured by their share of the limit.
         words: what the picture shows, for who cannot see it.
+        faint: other postures, drawn behind.
     """
 
-    points: Sequence[Sequence[float]]
-    contact: Sequence[float]
-    direction: Sequence[float]
-    share: float
+    points: Array
+    hits: Sequence[Hit]
     words: str
+    faint: Sequence[Array] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +78,7 @@ class Section:
         words: paragraphs before the rest.
         figure: a picture, if any, and what it shows.
         caption: of the figure; also its words for who cannot see it.
-        arm: an arm to turn, if any.
+        arms: to turn.
         tables: after the figures.
         lines: a list at the end.
     """
@@ -70,7 +87,7 @@ class Section:
     words: Sequence[str] = ()
     figure: Figure | None = None
     caption: str = ""
-    arm: ArmPicture | None = None
+    arms: Sequence[ArmPicture] = ()
     tables: Sequence[TableOfNumbers] = ()
     lines: Sequence[str] = ()
 
@@ -109,10 +126,15 @@ def write_page(page: Page, path: Path) -> Path:
     )
     environment.filters["shown"] = shown
     environment.filters["svg"] = as_svg
-    environment.filters["data"] = lambda value: Markup(json.dumps(value).replace("<", "\\u003c"))
+    environment.filters["data"] = _as_data
     text = environment.get_template("report.html.jinja").render(page=page)
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def _as_data(value: Any) -> str:
+    """Return something as JSON, which the template escapes."""
+    return json.dumps(plain(value), ensure_ascii=False)
 
 
 def as_svg(figure: Figure) -> Markup:

@@ -14,6 +14,9 @@ from .rigid import Inertia, three_numbers
 from .robot import BASE, Robot
 from .welding import chain_to, lock_joints
 
+MOST_JOINTS = 100
+"""Joints of an arm: 80 take ten seconds to analyse, and the time grows with their cube."""
+
 
 @dataclass(frozen=True, eq=False)
 class Arm:
@@ -79,6 +82,12 @@ def arm_of(
     if chain.n == 0 or (contact.joint == BASE and way):
         raise InvalidValue(
             "tip", f"frame '{contact.name}' is fixed to the base; choose one that moves"
+        )
+    if chain.n > MOST_JOINTS:
+        raise InvalidValue(
+            "tip",
+            f"{chain.n} joints lie on the way to '{end}', but no more than {MOST_JOINTS} are "
+            "followed; lock some",
         )
     return Arm(replace(chain, tip=contact.name), end, tuple(warnings))
 

@@ -7,6 +7,7 @@ import contextlib
 import importlib
 import importlib.util
 import logging
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -128,9 +129,14 @@ def describe(path: Path) -> Description:
 
 
 def _expanded(path: Path) -> str:
-    """Return the URDF that a xacro file describes."""
+    """Return the URDF that a xacro file describes.
+
+    ``$(find PACKAGE)`` looks above the file, as xacrodoc does; files of visuals are left alone.
+    """
     try:
-        xacrodoc = importlib.import_module("xacrodoc")
+        importlib.import_module("xacrodoc")
+        packages = importlib.import_module("xacrodoc.packages")
+        xacro = importlib.import_module("xacro")
     except ImportError:
         raise ModelFileError(
             str(path),
@@ -138,10 +144,12 @@ def _expanded(path: Path) -> str:
             "'xacro FILE > robot.urdf'",
         ) from None
     try:
-        return str(xacrodoc.XacroDoc.from_file(str(path)).to_urdf_string())
+        packages.walk_up_from(str(path))
+        return str(xacro.process_file(str(path.resolve())).toxml())
     except Exception as error:  # whatever xacro's macros run into
         words = " ".join(str(error).split()) or type(error).__name__
-        raise ModelFileError(str(path), f"xacro does not expand: {words}") from None
+        said = re.sub(r"^(?:<class '[^']+'>: )?(.+) \1$", r"\1", words)  # xacro says it twice
+        raise ModelFileError(str(path), f"xacro does not expand: {said}") from None
 
 
 def model_path(model: str | Path) -> Path:

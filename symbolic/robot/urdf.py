@@ -136,7 +136,8 @@ class _Reader:
                     if name not in READ["dynamics"]:
                         unread[f"dynamics {name}"] += 1
         for name, count in unread.items():
-            self.warnings.append(f"'{name}' is not read ({count} times)")
+            often = f" ({count} times)" if count > 1 else ""
+            self.warnings.append(f"'{name}' is not read{often}")
         if self.root.all("transmission"):
             self.warnings.append("transmissions are not read: every joint counts as having a motor")
         if any(_holds(element, SPRINGS) for element in self.root.all("gazebo")):

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 import pytest
-from compiled_packages import tool
+from compiled_packages import run, tool
 
 from softimpact import batch
+from softimpact.batch import build
+from softimpact.codegen import wide_sine
 from softimpact.symbolic import InvalidValue, drives, impact_model, load_robot
 
 
@@ -18,7 +23,7 @@ def rr(tmp_path_factory: pytest.TempPathFactory) -> Iterator[batch.CompiledPacka
     """RR with its elbow watched, in two threads, in a cache of its own."""
     tool("gcc")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("SOFTIMPACT_CACHE", str(tmp_path_factory.mktemp("cache")))
         yield batch.compiled("rr", rotor_inertia=0.5, points={"elbow": "O3"}, threads=2)
 
 
@@ -73,14 +78,167 @@ def test_wrong_rows_and_names_are_said(rr: batch.CompiledPackage) -> None:
         rr.peak_force(poses(1), [1, 0, 0], 0.5, motors="held")
     with pytest.raises(InvalidValue, match="region"):
         rr.peak_force(poses(1), [1, 0, 0], 0.5, region="nose")
+    with pytest.raises(InvalidValue, match=r"stiffnes.*no field of region: stiffness"):
+        rr.peak_force(poses(1), [1, 0, 0], 0.5, region={"stiffnes": 1.0})
+    with pytest.raises(InvalidValue, match=r"speed.*is needed by peak_force"):
+        rr.peak_force(poses(1), [1, 0, 0])
+    with pytest.raises(InvalidValue, match=r"rotor_inertia.*needs"):
+        rr.reduced_model(poses(1), [1, 0, 0], rotor_inertia=[1.0, 2.0])
     with pytest.raises(AttributeError, match="no function 'osim'"):
         _ = rr.osim
+
+
+def test_regions_are_names_or_numbers(rr: batch.CompiledPackage) -> None:
+    q, n = poses(3), [1.0, 0.5, 0.0]
+    named = rr.peak_force(q, n, 0.5, region="chest", clamped=False, horizon=0.1)
+    numbers = {"stiffness": 25e3, "damping": 10.0, "effective_mass": 40.0, "hertz_stiffness": 19e6}
+    given = rr.peak_force(q, n, 0.5, region={**numbers, "clamped": 0}, horizon=0.1)
+    assert (given["force"] == named["force"]).all()
+    stiffer = {**numbers, "stiffness": [25e3, 50e3, 75e3]}
+    rows = rr.peak_force(q[:1], n, 0.5, region=stiffer, clamped=False, horizon=0.1)
+    assert rows["force"][0] == named["force"][0]
+    assert (np.diff(rows["force"]) > 0).all()
+    assert rr.status_text(9).startswith("the budget of steps is used up; the result is a bound")
+    assert {"peak_force", "chain", "mass_matrix"} <= set(dir(rr))
+
+
+def test_what_is_wrong_holds_no_numbers(rr: batch.CompiledPackage) -> None:
+    found = rr.speed_factor(poses(2), [[np.nan] * 4, [1.0, 0, 1.0, 0]], 100.0, horizon=0.1)
+    assert found["status"].tolist() == [2, 0]
+    assert found["point"][0] == -1
+    assert np.isnan(found["factor"][0])
+    assert np.isfinite(found["factor"][1])
 
 
 def test_without_a_compiler_it_says_what_else_there_is(
     rr: batch.CompiledPackage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(batch, "COMPILERS", ("no-such-compiler",))
-    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr(build, "c_compiler", lambda: None)
+    monkeypatch.setattr(build, "find_spec", lambda _: None)
     with pytest.raises(batch.NoCompiler, match=r"simulate one call at a time"):
-        batch._built(rr.package)
+        batch.compiled("rr")
+
+
+def test_a_broken_compiler_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = tmp_path / "broken-cc"
+    broken.write_text("#!/bin/sh\necho 'error: no licence' >&2; exit 1\n")
+    broken.chmod(0o755)
+    monkeypatch.setenv("CC", str(broken))
+    monkeypatch.setenv("SOFTIMPACT_CACHE", str(tmp_path / "cache"))
+    package = batch.compiled("rr")
+    with pytest.raises(batch.CompilerFailed, match=r"broken-cc failed \(error: no licence\)"):
+        package.reflected_mass(poses(1), [1, 0, 0])
+
+
+def test_a_second_process_takes_it_from_the_cache(
+    rr: batch.CompiledPackage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    q, n = poses(3), [1.0, 0.5, 0.0]
+    first = rr.reflected_mass(q, n)
+
+    def never(*_: object, **__: object) -> None:
+        raise AssertionError
+
+    monkeypatch.setattr(build, "_generate", never)
+    monkeypatch.setattr(build.Sources, "_compile", never)
+    again = batch.compiled("rr", rotor_inertia=0.5, points={"elbow": "O3"}, threads=1)
+    assert (again.reflected_mass(q, n)["m_c"] == first["m_c"]).all()
+    with pytest.raises(AssertionError):
+        batch.compiled("rr", rotor_inertia=0.6)
+
+
+def one_by_one(package: batch.CompiledPackage, name: str, *given: Any, **more: Any) -> batch.Arrays:
+    """Call a function with parameters of its own for each row, so that rows are not joined."""
+    count = len(given[0])
+    rotors = np.repeat([more.pop("rotor_inertia")], count, axis=0)
+    found: batch.Arrays = getattr(package, name)(*given, rotor_inertia=rotors, **more)
+    return found
+
+
+def difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return the largest difference of each row over its largest entry."""
+    a, b = a.reshape(len(a), -1), b.reshape(len(b), -1)
+    return np.asarray(np.nan_to_num(abs(a - b)).max(axis=1) / np.maximum(abs(b).max(axis=1), 1e-30))
+
+
+def agree(package: batch.CompiledPackage, name: str, given: tuple[Any, ...], rotors: Any) -> Any:
+    """Compare rows side by side with single ones; return differences of good rows and statuses."""
+    together = getattr(package, name)(*given, rotor_inertia=rotors)
+    alone = one_by_one(package, name, *given, rotor_inertia=rotors)
+    assert (together["status"] == alone["status"]).all(), name
+    fine = together["status"] == 0
+    assert all(np.isnan(together[key][~fine]).all() for key in together if key != "status")
+    worst = [difference(together[k][fine], alone[k][fine]) for k in together if k != "status"]
+    return np.max(worst, axis=0), set(together["status"].tolist())
+
+
+def test_rows_side_by_side_are_what_single_ones_are(rr: batch.CompiledPackage) -> None:
+    random = np.random.default_rng(3)
+    q = random.uniform(-7, 7, (1000, 4))
+    q[::7] *= 1e3
+    n = random.normal(size=(1000, 3)) * 10.0 ** random.uniform(-3, 3, (1000, 1))
+    n[:, 2] = 0
+    q[3, 1], q[5], n[6] = np.nan, 2e5, 0  # not a number, many turns, no direction
+    q[8, 2] = np.inf
+    rotors = [0.4, 0.3, 0.2, 0.1]
+    speeds = np.where(np.arange(1000) % 5 == 0, -1.0, 0.5)
+    for name, given, statuses in (
+        ("reduced_model", (q, n), {0, 2, 3}),
+        ("chain", (q, n), {0, 2, 3}),
+        ("generalised_mass_matrix", (q,), {0, 2}),
+        ("joint_impulse", (q, n, speeds, 0.5, 0.1), {0, 2, 3, 4}),
+    ):
+        differences, found = agree(rr, name, given, rotors)
+        assert np.quantile(differences, 0.98) < 1e-10, name  # some are ill-conditioned
+        assert statuses <= found
+    assert set(rr.reduced_model(q[:9], n[:9], rotor_inertia=-1.0)["status"]) == {2, 3, 4}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("real", ["double", "float"])
+def test_functions_of_the_panda_agree_side_by_side(real: Literal["double", "float"]) -> None:
+    tool("gcc")
+    panda = batch.compiled("panda", real=real, joint_stiffness=3e3)
+    random = np.random.default_rng(4)
+    q, n = random.uniform(-2.5, 2.5, (300, 7)), random.normal(size=(300, 3))
+    rotors = [0.6, 0.6, 0.5, 0.5, 0.2, 0.2, 0.2]
+    few = ("osim", "reduced_model")
+    for name, entry in panda.interface.entries.items():
+        names = [a.name for a in entry.arguments]
+        mapped = name in panda.functions and "region" not in names and "p" in names
+        if not mapped or (real == "float" and name not in few):
+            continue
+        given = [q, *[n] * ("n" in names), *[0.5, 0.3, 0.1] * ("restitution" in names)]
+        differences, found = agree(panda, name, tuple(given), rotors)
+        assert np.quantile(differences, 0.95) < (1e-8 if real == "double" else 2e-3), name
+        assert 0 in found
+
+
+SINES = """#include "batched_lanes.h"
+void sines(int count, const batched_real *x, batched_real *s, batched_real *c);
+void sines(int count, const batched_real *x, batched_real *s, batched_real *c)
+{
+    for (int i = 0; i < count; ++i) {
+        s[i] = lane_sine(x[i]);
+        c[i] = lane_cosine(x[i]);
+    }
+}
+"""
+
+
+def test_sines_side_by_side_are_right(rr: batch.CompiledPackage, tmp_path: Path) -> None:
+    (tmp_path / "sines.c").write_text(SINES)
+    include = [f"-I{rr.sources.folder / folder}" for folder in ("include", "src", "batch")]
+    run(tool("gcc"), *build.FLAGS, *include, tmp_path / "sines.c", "-o", tmp_path / "s.so", "-lm")
+    entry = ctypes.CDLL(str(tmp_path / "s.so")).sines
+    random = np.random.default_rng(5)
+    quarters = np.arange(-1000, 1001) * (np.pi / 2)
+    x = np.concatenate([random.uniform(-4, 4, 20_000), random.uniform(-1e5, 1e5, 20_000), quarters,
+                        10.0 ** random.uniform(-300, 0, 100), [0.0]])  # fmt: skip
+    s, c = np.empty_like(x), np.empty_like(x)
+    entry(len(x), *(ctypes.c_void_p(v.ctypes.data) for v in (x, s, c)))
+    wide = x.astype(np.longdouble)
+    assert abs(s - np.sin(wide)).max() < wide_sine.ERROR
+    assert abs(c - np.cos(wide)).max() < wide_sine.ERROR
+    small = abs(x) < 1e-3
+    assert (abs(s - np.sin(wide))[small] <= 3e-16 * abs(x[small])).all()

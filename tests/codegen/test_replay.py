@@ -15,8 +15,8 @@ from robot_files import many_joints
 from softimpact.codegen import FailedOwnTest, generate_package, package_of
 from softimpact.codegen.render import render
 from softimpact.codegen.replay import replay, works
-from softimpact.optimize.compiled import c_compiler
 from softimpact.symbolic import load_robot
+from softimpact.toolchain import c_compiler
 
 COMPILER = c_compiler() or ("cc",)
 

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 from studies import study_of
 
-from softimpact.optimize.compiled import c_compiler, cache_folder, compiled_functions
+from softimpact.optimize.compiled import compiled_functions
 from softimpact.optimize.impact_program import impact_numbers, impact_program
 from softimpact.symbolic import Motors
+from softimpact.toolchain import c_compiler, cache_folder
 
 COMPILER = c_compiler()
 needs_compiler = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
@@ -147,7 +148,8 @@ def test_a_cache_that_cannot_be_written_does_not_matter(
 
 TWIN = """
 import sys, casadi as ca
-from softimpact.optimize.compiled import c_compiler, compiled_functions
+from softimpact.optimize.compiled import compiled_functions
+from softimpact.toolchain import c_compiler
 x = ca.MX.sym("x", 2)
 function = ca.Function("parabola", [x], [ca.sumsqr(x - 1)])
 print("ready", flush=True)

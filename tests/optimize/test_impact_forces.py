@@ -16,7 +16,6 @@ import pytest
 from studies import study_of
 
 from softimpact.optimize import Study, candidates
-from softimpact.optimize.compiled import c_compiler
 from softimpact.optimize.impact_forces import (
     ContactParameters,
     ImpactDynamics,
@@ -36,6 +35,7 @@ from softimpact.symbolic import (
     with_load,
 )
 from softimpact.symbolic.robot.rigid import Array
+from softimpact.toolchain import c_compiler
 
 POSES = ("q1", "q9", "q18")
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -30,6 +31,7 @@ from softimpact.optimize.levels import even_bounds
 from softimpact.optimize.problem import peak_force
 from softimpact.optimize.self_motion import self_motion
 from softimpact.optimize.stiffest import stiffest
+from softimpact.optimize.sweep import sweep
 from softimpact.optimize.tip_pose import tip_pose
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import InvalidValue
@@ -118,6 +120,15 @@ def test_freedom_does_not_hurt(found: Pareto) -> None:
         for front in found.held.values():
             assert given <= force_within(front, level) * (1 + WORTH)
     assert found.free.points[0].deflection <= found.given.points[0].deflection
+
+
+def test_fronts_are_tables_and_figures(found: Pareto) -> None:
+    told = found.to_dict()
+    assert json.loads(json.dumps(told, allow_nan=False)) == told
+    points = [point for front in (found.free, found.given, *found.held.values())
+              for point in front.points]  # fmt: skip
+    assert [row["force"] for row in found.rows()] == [point.force for point in points]
+    assert len(found.plot().lines) == 2
 
 
 def test_levels_hold_the_ends_and_the_studys_bound(found: Pareto) -> None:
@@ -314,6 +325,26 @@ def test_an_arm_without_a_choice_of_posture(tmp_path: Path) -> None:
     springs = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
     grid = tried(study, result, [study.task_pose.q], springs)
     assert_no_better(result, result.free, grid)
+
+
+@pytest.mark.slow
+def test_a_missed_optimum_of_springs_is_no_gain_of_posture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What held searches miss is found from the springs of free ones."""
+    study = study_of(tmp_path, {"pareto": {"points": 2}}, ("q9",))
+    right = pareto_fronts(study, InProcess()).task
+
+    def missing(*arguments: Any) -> list[Outcome]:
+        return [replace(found, force=1.2 * found.force) for found in sweep(*arguments)]
+
+    monkeypatch.setattr("softimpact.optimize.pareto.sweep", missing)
+    found = pareto_fronts(study, InProcess())
+    for a, b in zip(found.free.outcomes, found.task.outcomes, strict=True):
+        if a is not None and b is not None and abs(a.q - b.q).max() < 1e-3:
+            assert a.force == pytest.approx(b.force, rel=1e-3)
+    for level in found.levels:
+        assert force_within(found.task, level) <= 1.01 * force_within(right, level)
 
 
 def test_nothing_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

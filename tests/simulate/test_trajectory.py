@@ -3,10 +3,18 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
-from softimpact.simulate.trajectory import passes, time_at_speeds, trajectory
+from softimpact.simulate.trajectory import (
+    Trajectory,
+    passes,
+    passes_of_parts,
+    time_at_speeds,
+    trajectory,
+)
 from softimpact.symbolic import InvalidValue
 
 
@@ -52,3 +60,23 @@ def test_slowing_down_takes_longer() -> None:
 def test_what_is_no_motion(t: list[float], q: list[list[float]], reason: str) -> None:
     with pytest.raises(InvalidValue, match=reason):
         trajectory(t, q)
+
+
+@pytest.mark.parametrize("sizes", [[50], [1] * 50, [2, 3, 1, 40, 4], [49, 1], [1, 49]])
+def test_parts_are_passed_as_the_whole_is(sizes: list[int]) -> None:
+    random = np.random.default_rng(3)
+    time, q = np.cumsum(random.uniform(0.1, 1, 50)), random.normal(size=(50, 3))
+    edges = np.cumsum([0, *sizes])
+    parts = [Trajectory(time[a:b], q[a:b]) for a, b in pairwise(edges)]
+    found = list(passes_of_parts(parts))
+    whole = passes(trajectory(time, q))
+    for name, right in vars(whole).items():
+        together = np.concatenate([getattr(part, name) for part in found])
+        np.testing.assert_array_equal(together, right)
+
+
+def test_parts_that_go_back_are_named_by_their_sample() -> None:
+    time = np.array([0, 1, 2, 3, 2.5, 4.0])
+    parts = [Trajectory(time[a : a + 2], np.zeros((2, 1))) for a in (0, 2, 4)]
+    with pytest.raises(InvalidValue, match=r"goes from 3 to 2\.5 s at sample 5"):
+        list(passes_of_parts(parts))

@@ -29,8 +29,9 @@ def printed(script: Path, folder: Path) -> list[str]:
     return done.stdout.splitlines()
 
 
+@pytest.mark.slow
 def test_analyze_panda(tmp_path: Path) -> None:
-    lines = printed(EXAMPLES / "analyze_panda.py", tmp_path)
+    lines = printed(EXAMPLES / "01_analyze_panda.py", tmp_path)
     assert [float(line.split()[1]) for line in lines] == [3e4, 1e4, 3e3]
     where = ("--q", "[0.2, 0.3, -0.4, -1.8, 0.1, 2.0, 0.5]", "--direction", "[0, 1, 0]")
     impact = ("--region", "chest", "--speed", 1, "--safe-speed")
@@ -43,7 +44,7 @@ def test_analyze_panda(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_pareto_panda(tmp_path: Path) -> None:
-    lines = printed(EXAMPLES / "pareto_panda.py", tmp_path)
+    lines = printed(EXAMPLES / "04_pareto_panda.py", tmp_path)
     numbers = [[float(number) for number in re.findall(r"\d+\.\d+", line)] for line in lines]
     *front, before = numbers
     deflections, forces = zip(*front, strict=True)

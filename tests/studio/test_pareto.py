@@ -7,6 +7,7 @@ import csv
 import json
 import re
 from dataclasses import replace
+from html import unescape
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ import pytest
 from command_line import refusal, run, run_json
 from matplotlib.image import imread
 from matplotlib.text import Text
+from pages import well_formed
 from studies import InProcess, changed, study_of, written
 
 from softimpact.optimize import Outcome, SolverFailure, pareto_fronts
@@ -28,6 +30,7 @@ from softimpact.studio.figures.pareto_designs import figure_of_designs
 from softimpact.studio.pareto_report import ParetoReport, pareto_report
 from softimpact.studio.pareto_schema import ParetoResults
 from softimpact.studio.pareto_words import in_words, markdown, rows
+from softimpact.studio.report.pareto_pages import write_pareto_report
 
 POSES = ("q9", "q18")
 HEAD: dict[str, dict[str, Any]] = {"impact": {"region": "head"}, "pareto": {"points": 3}}
@@ -91,6 +94,7 @@ def test_every_point_is_checked(results: tuple[Path, dict[str, Any]]) -> None:
             assert point["start"] in POSES
 
 
+@pytest.mark.slow
 def test_safe_speed_meets_the_limit_and_grows_with_deflection(
     results: tuple[Path, dict[str, Any]],
 ) -> None:
@@ -106,6 +110,7 @@ def test_safe_speed_meets_the_limit_and_grows_with_deflection(
         assert impact["peak_force"] == pytest.approx(record["limit"], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_the_table_of_numbers_is_that_of_the_record(
     results: tuple[Path, dict[str, Any]],
 ) -> None:
@@ -294,3 +299,12 @@ def test_bad_input_is_refused_before_the_search(tmp_path: Path) -> None:
 def test_fields_of_the_study(tmp_path: Path, fields: dict[str, Any], reason: str) -> None:
     study = written(tmp_path, changed({"pareto": fields}, ("q9",)))
     assert reason in refusal("pareto", study)
+
+
+@pytest.mark.slow
+def test_the_report_is_one_page_with_the_answer(report: ParetoReport, tmp_path: Path) -> None:
+    page = write_pareto_report(report, tmp_path / "pareto.html").read_text("utf-8")
+    assert well_formed(page)
+    assert "What does accuracy cost where panda hits the skull" in page
+    for line in in_words(report):
+        assert line in unescape(page)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import refusal, run
+from pages import well_formed
 
 from softimpact.symbolic import load_robot
 
@@ -73,7 +74,13 @@ def test_worst_moments(result: tuple[Found, Path]) -> None:
 def test_files(result: tuple[Found, Path]) -> None:
     found, out = result
     names = {path.name for path in out.iterdir()}
-    assert names == {"results.json", "program.csv", "points.csv", "program.png"}
+    assert names == {
+        "results.json",
+        "program.csv",
+        "points.csv",
+        "program.png",
+        "speed_factor.casadi",
+    }
     with (out / "program.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [float(row["factor"]) for row in rows] == pytest.approx(found["factor"])
@@ -100,15 +107,20 @@ def test_table(motion: Path) -> None:
     assert "band N" in outcome.out
 
 
-def test_points_by_default_are_the_end_and_some_along_the_arm(motion: Path) -> None:
-    from softimpact.simulate.trajectory import trajectory
+def test_points_by_default_are_the_end_and_some_along_the_arm() -> None:
     from softimpact.studio.program import default_points
 
-    table = np.loadtxt(motion, delimiter=",", skiprows=1)
-    points = default_points(PANDA, trajectory(table[:, 0], table[:, 1:]))
+    points = default_points(PANDA, REST)
     assert points[0] == "hand_tcp"
-    assert 2 <= len(points) <= 5
-    assert "link1" not in points
+    assert 2 <= len(points) <= 6
+
+
+def test_points_that_stay_where_they_are_are_not_watched_by_default(motion: Path) -> None:
+    found = run_json_with_warnings(
+        "program", motion, "--model", "panda", "--regions", "hand", *QUICK
+    )
+    assert found["points"][0] == "hand_tcp"
+    assert "link1" not in found["points"]
 
 
 def test_options_may_be_repeated_instead(motion: Path) -> None:
@@ -187,3 +199,17 @@ def test_json_needs_no_folder(motion: Path) -> None:
         "program", motion, "--model", "panda", "--regions", "abdomen", *slow
     )
     assert found["out"] is None
+
+
+def test_the_report_is_one_page_with_the_answer(motion: Path, tmp_path: Path) -> None:
+    path = tmp_path / "program.html"
+    shape = ("--shape", "sphere:0.01")
+    found = run_json_with_warnings(*arguments(motion, "hand", *QUICK, *shape, "--report", path))
+    page = path.read_text("utf-8")
+    assert well_formed(page)
+    worst = found["worst"][0]
+    assert f"It must slow down to {100 * worst['factor']:.0f} % at {worst['t']:.4g} s" in page
+    assert worst["limit"] == "transient pressure"
+    assert worst["pressure"] > 0
+    assert page.count('<svg class="arm"') == 5
+    assert "&#34;faint&#34;" in page

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -199,6 +200,22 @@ def test_check_of_what_is_no_study(tmp_path: Path, text: str, message: str) -> N
     outcome = run("check", written(tmp_path, text, "study.toml"))
     assert outcome.code == 2
     assert message in outcome.err
+
+
+def test_check_says_what_the_search_could_not_do(tmp_path: Path) -> None:
+    """Springs so stiff that impacts take too many steps are said before the design says it."""
+    text = run("init", "ur10e").out
+    named = text.replace("# rotor_inertia = [", 'rotor_inertia = "upper_estimate"  # [')
+    study = written(tmp_path, named, "study.toml")
+    assert run("check", study).code == 0
+    study = written(tmp_path, re.sub(r"(?m)^upper = .*$", "upper = 1e7", named), "study.toml")
+    (line,) = (
+        i for i, text in enumerate(study.read_text().splitlines(), 1) if text == "upper = 1e7"
+    )
+    refused = run("check", study)
+    assert refused.code == 2
+    assert refused.err.startswith(f"error: {study}:{line}: stiffness.upper: joints that stiff")
+    assert refused.err.count("\n") == 1
 
 
 def test_check_of_a_study_that_comes_along() -> None:

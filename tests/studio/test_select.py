@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import refusal, run, run_json
+from pages import well_formed
 
 from softimpact.robots import FOLDER
 
@@ -126,7 +127,7 @@ def test_bad_study(study: Path, old: str, new: str, reason: str) -> None:
 @pytest.mark.parametrize(
     ("robot", "reason"),
     [
-        ("rmin", "has a loop ('end_point'); a study needs an open chain"),
+        ("rmin", "has joints that are tied together ('end_point'); a study needs an open chain"),
         ("rr", "joint 'q2' has a spring of its own; give the rigid arm"),
     ],
 )
@@ -140,3 +141,13 @@ def test_bad_options(tmp_path: Path, study: Path) -> None:
     assert "no such study file" in refusal("select", tmp_path / "none.toml")
     assert "unknown criterion 'luck'; known: peak_force" in refusal("select", study, "--by", "luck")
     assert "unknown impact model" in refusal("select", study, "--model", "exact")
+
+
+def test_the_report_is_one_page_with_the_answer(study: Path, tmp_path: Path) -> None:
+    path = tmp_path / "select.html"
+    outcome = run("select", study, "--report", path)
+    assert outcome.code == 0
+    page = path.read_text("utf-8")
+    assert well_formed(page)
+    best = run_json("select", study)["poses"][0]
+    assert f"{best['name']}, by peak force: {best['peak_force']:.0f} N" in page

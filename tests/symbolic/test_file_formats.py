@@ -66,6 +66,28 @@ def test_xacro_is_expanded(tmp_path: Path) -> None:
         load_robot(path)
 
 
+def test_xacro_of_several_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Includes beside the file and of a package above it; missing meshes do not stop it."""
+    pytest.importorskip("xacrodoc")
+    described = tmp_path / "two_description"
+    (described / "urdf").mkdir(parents=True)
+    (described / "package.xml").write_text("<package><name>two_description</name></package>")
+    space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    mass = f'<robot {space}><xacro:property name="m" value="${{1 + 1}}"/></robot>'
+    (described / "mass.xacro").write_text(mass)
+    visual = '<visual><geometry><mesh filename="package://nowhere/a.dae"/></geometry></visual>'
+    path = described / "urdf/arm.xacro"
+    monkeypatch.chdir(tmp_path.parent)
+    for include in ("../mass.xacro", "$(find two_description)/mass.xacro"):
+        named = f'<xacro:include filename="{include}"/>'
+        text = XACRO.replace('<xacro:property name="m" value="2"/>', named)
+        path.write_text(text.replace("</link>", f"{visual}</link>", 1))
+        assert felt(load_robot(path)) == pytest.approx(0.473499, abs=1e-6)
+    path.write_text(path.read_text().replace("two_description)", "nowhere)"))
+    with pytest.raises(ModelFileError, match=r"does not expand: Package not found: nowhere$"):
+        load_robot(path)
+
+
 def test_xacro_without_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import sys
 

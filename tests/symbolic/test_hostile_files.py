@@ -12,13 +12,22 @@ from pathlib import Path
 
 import pytest
 from oracles import example_urdf
-from robot_files import two_links, two_links_urdf
+from robot_files import URDF_LIMIT, many_joints, two_links, two_links_urdf, urdf_inertial
 
 from softimpact.robots import built_in_robots
-from softimpact.symbolic import ModelFileError, Robot, SoftImpactError, load_robot
+from softimpact.symbolic import (
+    InvalidValue,
+    ModelFileError,
+    Robot,
+    SoftImpactError,
+    arm_of,
+    load_robot,
+)
 
 SECONDS, BYTES = 2.0, 50e6
 """What one file may cost; an order above what it does, for busy machines."""
+
+VISUAL = '<visual><geometry><mesh filename="package://nowhere/arm.dae"/></geometry></visual>'
 
 BOMB = '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa">' + "".join(
     f'<!ENTITY {chr(98 + i)} "{f"&{chr(97 + i)};" * 10}">' for i in range(10)
@@ -165,3 +174,43 @@ def test_many_mutated_files(tmp_path: Path) -> None:
     good = mutated(tmp_path, 5000, 2)
     assert 500 < good < 4500
     assert time.process_time() - started < 900
+
+
+def nested(count: int) -> str:
+    """Return many bodies one on another, of which the first and the middle one turn."""
+    parts = ['<robot name="tower"><link name="l0"/>']
+    for i in range(1, count + 1):
+        kind = "revolute" if i in (1, count // 2) else "fixed"
+        parts.append(
+            f'<link name="l{i}">{urdf_inertial("0.01", "0", *["1e-4"] * 3)}</link>'
+            f'<joint name="j{i}" type="{kind}"><origin xyz="0.001 0 0"/><axis xyz="0 0 1"/>'
+            f'<parent link="l{i - 1}"/><child link="l{i}"/>{URDF_LIMIT}</joint>'
+        )
+    return "".join([*parts, "</robot>"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("text", "tip", "joints"),
+    [
+        (nested(3000), "l3000", 2),
+        (two_links_urdf(upper=urdf_inertial("2", "0.2") + 1000 * VISUAL), "tool", 2),
+        (two_links(on_upper=1500 * '<body><geom size="0.01" mass="0.001"/></body>'), "tool", 2),
+        (two_links(on_upper=1000 * '<body><joint/><geom size="0.01"/></body>'), "tool", 2),
+    ],
+    ids=["3000 nested bodies", "1000 visuals", "1500 bodies", "1000 joints off the arm"],
+)
+def test_large_files_take_seconds(tmp_path: Path, text: str, tip: str, joints: int) -> None:
+    path = tmp_path / "robot.xml"
+    path.write_text(text)
+    started = time.process_time()
+    assert load_robot(path, tip).n >= joints
+    assert arm_of(load_robot(path, tip), tip).robot.n == joints
+    assert time.process_time() - started < 10.0
+
+
+def test_arms_of_too_many_joints_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "robot.urdf"
+    path.write_text(many_joints(101))
+    with pytest.raises(InvalidValue, match="101 joints lie on the way to 'tool', but no more"):
+        arm_of(load_robot(path, "tool"), "tool")

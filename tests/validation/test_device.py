@@ -46,7 +46,7 @@ RECOMPUTED = (
     "servo of 100 rad/s, 50 ms",
     "driven 20 ms, then stop within 100 ms",
 )
-"""Rows that the tests compute anew; examples/validation.py prints them all."""
+"""Rows that the tests compute anew; examples/05_validation.py prints them all."""
 
 FEW = 60
 """Draws in quick tests, whose bands are rougher than the page's."""

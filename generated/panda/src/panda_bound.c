@@ -25,14 +25,18 @@ static panda_real while_driven(panda_real time, panda_real hold, panda_real damp
     return y*y;
 }
 
-/* r'(M + B) r, or what of it an impact can take. */
-static panda_real twice_energy(const panda_impact *impact)
+panda_real panda_twice_energy(const panda_impact *impact)
 {
     const panda_params *const p = impact->p;
     const panda_arrival *const arrival = &impact->arrival;
-    if (impact->together > PANDA_R(0.0)) {
-        return PANDA_R(1.0)/impact->together;
+#if PANDA_STRUCTURED
+    const panda_real together = panda_together(arrival, p);
+    if (together > PANDA_R(0.0)) {
+        const panda_real body =
+            impact->gives_way ? PANDA_R(1.0)/impact->region->effective_mass : PANDA_R(0.0);
+        return PANDA_R(1.0)/(together + body);
     }
+#endif
     panda_real sum = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
         for (int j = 0; j < PANDA_N; ++j) {
@@ -83,7 +87,7 @@ panda_real panda_bound(const panda_impact *impact)
         return PANDA_R(0.0);
     }
     const panda_real hold = impact->hold;
-    const panda_real twice = twice_energy(impact);
+    const panda_real twice = panda_twice_energy(impact);
     if (impact->first == PANDA_LOOSE) {
         return PANDA_SQRT(twice*hold);
     }

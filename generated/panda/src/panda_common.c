@@ -82,7 +82,7 @@ int panda_fill_params(panda_params *p, unsigned int layout)
     p->reaction_time = PANDA_R(0.02);
     p->horizon = PANDA_R(0.5);
     p->motors = PANDA_MOTORS_FREE_OR_DRIVEN;
-    p->steps = 8000;
+    p->steps = 800;
     return PANDA_OK;
 }
 

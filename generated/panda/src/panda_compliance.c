@@ -173,22 +173,32 @@ static panda_real mobility_of(panda_matrix mass, const panda_real row[PANDA_N])
     return sum;
 }
 
-int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_real found[3])
+int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_real *links,
+    panda_real *rotors)
 {
     panda_matrix mass;
-    panda_matrix together;
-    found[2] = PANDA_R(0.0);
+    *rotors = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             mass[i][j] = arrival->links.M[i][j];
-            together[i][j] = mass[i][j];
         }
-        together[i][i] += PANDA_ROTOR(p, i);
-        found[2] += arrival->row[i]*arrival->row[i]/PANDA_ROTOR(p, i);
+        *rotors += arrival->row[i]*arrival->row[i]/PANDA_ROTOR(p, i);
     }
     (void)p;
-    found[0] = mobility_of(mass, arrival->row);
-    found[1] = mobility_of(together, arrival->row);
-    return found[0] > PANDA_LEAST_MOBILITY && found[1] > PANDA_R(0.0) ? PANDA_OK : PANDA_SINGULAR;
+    *links = mobility_of(mass, arrival->row);
+    return *links > PANDA_LEAST_MOBILITY ? PANDA_OK : PANDA_SINGULAR;
+}
+
+panda_real panda_together(const panda_arrival *arrival, const panda_params *p)
+{
+    panda_matrix mass;
+    for (int i = 0; i < PANDA_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+        }
+        mass[i][i] += PANDA_ROTOR(p, i);
+    }
+    (void)p;
+    return mobility_of(mass, arrival->row);
 }
 #endif

@@ -66,7 +66,9 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
-    bool ready;
+    bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
+    bool has_body;
+    bool ready; /* steps are */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* no energy enters but by the motors' drift: see panda_settled.c */
     panda_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -85,10 +87,9 @@ typedef struct {
     panda_arrival arrival;
     const panda_region *region;
     const panda_params *p;
-    int motors;
+    int motors, led; /* what they do, and in the modes of the first phase */
     bool gives_way;
     panda_real mobility; /* of the contact, 1/kg */
-    panda_real together; /* of links and rotors as one, and of the body, 1/kg */
     panda_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
     panda_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
     panda_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
@@ -125,6 +126,13 @@ int panda_check_impact(const panda_region *region, const panda_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival);
 
+/* Checks and links of an impact of one of the contact points. */
+int panda_approach(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
+    const panda_region *region, const panda_params *p, panda_impact *impact);
+
+/* To be called as impact->arrival changes: no modes are known. */
+void panda_impact_forget(panda_impact *impact);
+
 /*
  * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about
  * a size (or, if that is negative, for a speed of its size).
@@ -134,6 +142,12 @@ int panda_impact_prepare(const panda_region *region, const panda_params *p, int 
 
 /* Prepares what comes after the motors' release, once it is asked for. */
 void panda_impact_let_go(panda_impact *impact);
+
+/*
+ * Twice the energy that an impact with loose motors can take, for 1 m/s: at most r'(M + B)r for joint
+ * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
+ */
+panda_real panda_twice_energy(const panda_impact *impact);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 panda_real panda_bound(const panda_impact *impact);
@@ -164,11 +178,11 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
 int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real carried[PANDA_N]);
 
-/*
- * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
- * 1/kg; 0 or a status.
- */
-int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_real found[3]);
+/* Mobility of the contact point with links alone, and with rotors alone, 1/kg; 0 or a status. */
+int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_real *links,
+    panda_real *rotors);
+/* The same with links and rotors as one; 0 if their mass is not positive definite. */
+panda_real panda_together(const panda_arrival *arrival, const panda_params *p);
 
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase *phase);

@@ -25,14 +25,18 @@ static rmin_real while_driven(rmin_real time, rmin_real hold, rmin_real damping)
     return y*y;
 }
 
-/* r'(M + B) r, or what of it an impact can take. */
-static rmin_real twice_energy(const rmin_impact *impact)
+rmin_real rmin_twice_energy(const rmin_impact *impact)
 {
     const rmin_params *const p = impact->p;
     const rmin_arrival *const arrival = &impact->arrival;
-    if (impact->together > RMIN_R(0.0)) {
-        return RMIN_R(1.0)/impact->together;
+#if RMIN_STRUCTURED
+    const rmin_real together = rmin_together(arrival, p);
+    if (together > RMIN_R(0.0)) {
+        const rmin_real body =
+            impact->gives_way ? RMIN_R(1.0)/impact->region->effective_mass : RMIN_R(0.0);
+        return RMIN_R(1.0)/(together + body);
     }
+#endif
     rmin_real sum = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
         for (int j = 0; j < RMIN_N; ++j) {
@@ -83,7 +87,7 @@ rmin_real rmin_bound(const rmin_impact *impact)
         return RMIN_R(0.0);
     }
     const rmin_real hold = impact->hold;
-    const rmin_real twice = twice_energy(impact);
+    const rmin_real twice = rmin_twice_energy(impact);
     if (impact->first == RMIN_LOOSE) {
         return RMIN_SQRT(twice*hold);
     }

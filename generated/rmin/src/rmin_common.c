@@ -72,7 +72,7 @@ int rmin_fill_params(rmin_params *p, unsigned int layout)
     p->reaction_time = RMIN_R(0.02);
     p->horizon = RMIN_R(0.5);
     p->motors = RMIN_MOTORS_FREE_OR_DRIVEN;
-    p->steps = 8000;
+    p->steps = 800;
     return RMIN_OK;
 }
 

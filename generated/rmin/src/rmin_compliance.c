@@ -173,22 +173,32 @@ static rmin_real mobility_of(rmin_matrix mass, const rmin_real row[RMIN_N])
     return sum;
 }
 
-int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real found[3])
+int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real *links,
+    rmin_real *rotors)
 {
     rmin_matrix mass;
-    rmin_matrix together;
-    found[2] = RMIN_R(0.0);
+    *rotors = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             mass[i][j] = arrival->links.M[i][j];
-            together[i][j] = mass[i][j];
         }
-        together[i][i] += RMIN_ROTOR(p, i);
-        found[2] += arrival->row[i]*arrival->row[i]/RMIN_ROTOR(p, i);
+        *rotors += arrival->row[i]*arrival->row[i]/RMIN_ROTOR(p, i);
     }
     (void)p;
-    found[0] = mobility_of(mass, arrival->row);
-    found[1] = mobility_of(together, arrival->row);
-    return found[0] > RMIN_LEAST_MOBILITY && found[1] > RMIN_R(0.0) ? RMIN_OK : RMIN_SINGULAR;
+    *links = mobility_of(mass, arrival->row);
+    return *links > RMIN_LEAST_MOBILITY ? RMIN_OK : RMIN_SINGULAR;
+}
+
+rmin_real rmin_together(const rmin_arrival *arrival, const rmin_params *p)
+{
+    rmin_matrix mass;
+    for (int i = 0; i < RMIN_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+        }
+        mass[i][i] += RMIN_ROTOR(p, i);
+    }
+    (void)p;
+    return mobility_of(mass, arrival->row);
 }
 #endif

@@ -66,7 +66,9 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
-    bool ready;
+    bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
+    bool has_body;
+    bool ready; /* steps are */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* no energy enters but by the motors' drift: see rmin_settled.c */
     rmin_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -85,10 +87,9 @@ typedef struct {
     rmin_arrival arrival;
     const rmin_region *region;
     const rmin_params *p;
-    int motors;
+    int motors, led; /* what they do, and in the modes of the first phase */
     bool gives_way;
     rmin_real mobility; /* of the contact, 1/kg */
-    rmin_real together; /* of links and rotors as one, and of the body, 1/kg */
     rmin_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
     rmin_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
     rmin_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
@@ -125,6 +126,13 @@ int rmin_check_impact(const rmin_region *region, const rmin_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival);
 
+/* Checks and links of an impact of one of the contact points. */
+int rmin_approach(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
+    const rmin_region *region, const rmin_params *p, rmin_impact *impact);
+
+/* To be called as impact->arrival changes: no modes are known. */
+void rmin_impact_forget(rmin_impact *impact);
+
 /*
  * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about
  * a size (or, if that is negative, for a speed of its size).
@@ -134,6 +142,12 @@ int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int mot
 
 /* Prepares what comes after the motors' release, once it is asked for. */
 void rmin_impact_let_go(rmin_impact *impact);
+
+/*
+ * Twice the energy that an impact with loose motors can take, for 1 m/s: at most r'(M + B)r for joint
+ * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
+ */
+rmin_real rmin_twice_energy(const rmin_impact *impact);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 rmin_real rmin_bound(const rmin_impact *impact);
@@ -164,11 +178,11 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
 int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real carried[RMIN_N]);
 
-/*
- * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
- * 1/kg; 0 or a status.
- */
-int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real found[3]);
+/* Mobility of the contact point with links alone, and with rotors alone, 1/kg; 0 or a status. */
+int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real *links,
+    rmin_real *rotors);
+/* The same with links and rotors as one; 0 if their mass is not positive definite. */
+rmin_real rmin_together(const rmin_arrival *arrival, const rmin_params *p);
 
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *phase);

@@ -3,13 +3,15 @@
 #include "rmin_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS RMIN_R(0.015)
+#define BENDS RMIN_R(0.0125)
 #define BENDS_ROUGH RMIN_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
-#define STRAIGHT RMIN_R(0.2)
+#define STRAIGHT RMIN_R(0.12)
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (RMIN_LEVELS - 1)
 #define SHORTEST_ROUGH 2
+/* Steps in contact after which it is looked whether the rest matters. */
+#define LOOKS 2
 /* Share of what a harder contact takes up to which rough runs take it to be out of reach. */
 #define ROUGHLY RMIN_R(1.3)
 /* Advances the clock, and lengthens the next step where it may. */
@@ -156,7 +158,9 @@ static bool run_phase(rmin_state *s, rmin_budget *budget, rmin_peak *peak)
             rmin_damp(s->phase, s->speed, RMIN_R(0.5)*s->h, s->rate);
         }
         const bool falls = taken && s->f < peak->force;
-        if (falls && (peak->force > budget->stop_above || rmin_is_settled(s, peak->force, share))) {
+        const bool looks = falls && (s->past % LOOKS == 0 || !s->touching);
+        if ((falls && peak->force > budget->stop_above)
+            || (looks && rmin_is_settled(s, peak->force, share))) {
             peak->ended = true;
             return true;
         }

@@ -25,14 +25,18 @@ static rr_real while_driven(rr_real time, rr_real hold, rr_real damping)
     return y*y;
 }
 
-/* r'(M + B) r, or what of it an impact can take. */
-static rr_real twice_energy(const rr_impact *impact)
+rr_real rr_twice_energy(const rr_impact *impact)
 {
     const rr_params *const p = impact->p;
     const rr_arrival *const arrival = &impact->arrival;
-    if (impact->together > RR_R(0.0)) {
-        return RR_R(1.0)/impact->together;
+#if RR_STRUCTURED
+    const rr_real together = rr_together(arrival, p);
+    if (together > RR_R(0.0)) {
+        const rr_real body =
+            impact->gives_way ? RR_R(1.0)/impact->region->effective_mass : RR_R(0.0);
+        return RR_R(1.0)/(together + body);
     }
+#endif
     rr_real sum = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) {
         for (int j = 0; j < RR_N; ++j) {
@@ -83,7 +87,7 @@ rr_real rr_bound(const rr_impact *impact)
         return RR_R(0.0);
     }
     const rr_real hold = impact->hold;
-    const rr_real twice = twice_energy(impact);
+    const rr_real twice = rr_twice_energy(impact);
     if (impact->first == RR_LOOSE) {
         return RR_SQRT(twice*hold);
     }

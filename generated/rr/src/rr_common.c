@@ -66,7 +66,7 @@ int rr_fill_params(rr_params *p, unsigned int layout)
     p->reaction_time = RR_R(0.02);
     p->horizon = RR_R(0.5);
     p->motors = RR_MOTORS_FREE_OR_DRIVEN;
-    p->steps = 8000;
+    p->steps = 800;
     return RR_OK;
 }
 

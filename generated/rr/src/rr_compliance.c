@@ -173,22 +173,32 @@ static rr_real mobility_of(rr_matrix mass, const rr_real row[RR_N])
     return sum;
 }
 
-int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real found[3])
+int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real *links,
+    rr_real *rotors)
 {
     rr_matrix mass;
-    rr_matrix together;
-    found[2] = RR_R(0.0);
+    *rotors = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             mass[i][j] = arrival->links.M[i][j];
-            together[i][j] = mass[i][j];
         }
-        together[i][i] += RR_ROTOR(p, i);
-        found[2] += arrival->row[i]*arrival->row[i]/RR_ROTOR(p, i);
+        *rotors += arrival->row[i]*arrival->row[i]/RR_ROTOR(p, i);
     }
     (void)p;
-    found[0] = mobility_of(mass, arrival->row);
-    found[1] = mobility_of(together, arrival->row);
-    return found[0] > RR_LEAST_MOBILITY && found[1] > RR_R(0.0) ? RR_OK : RR_SINGULAR;
+    *links = mobility_of(mass, arrival->row);
+    return *links > RR_LEAST_MOBILITY ? RR_OK : RR_SINGULAR;
+}
+
+rr_real rr_together(const rr_arrival *arrival, const rr_params *p)
+{
+    rr_matrix mass;
+    for (int i = 0; i < RR_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+        }
+        mass[i][i] += RR_ROTOR(p, i);
+    }
+    (void)p;
+    return mobility_of(mass, arrival->row);
 }
 #endif

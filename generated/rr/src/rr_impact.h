@@ -66,7 +66,9 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
-    bool ready;
+    bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
+    bool has_body;
+    bool ready; /* steps are */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* no energy enters but by the motors' drift: see rr_settled.c */
     rr_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -85,10 +87,9 @@ typedef struct {
     rr_arrival arrival;
     const rr_region *region;
     const rr_params *p;
-    int motors;
+    int motors, led; /* what they do, and in the modes of the first phase */
     bool gives_way;
     rr_real mobility; /* of the contact, 1/kg */
-    rr_real together; /* of links and rotors as one, and of the body, 1/kg */
     rr_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
     rr_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
     rr_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
@@ -125,6 +126,13 @@ int rr_check_impact(const rr_region *region, const rr_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival);
 
+/* Checks and links of an impact of one of the contact points. */
+int rr_approach(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    const rr_region *region, const rr_params *p, rr_impact *impact);
+
+/* To be called as impact->arrival changes: no modes are known. */
+void rr_impact_forget(rr_impact *impact);
+
 /*
  * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about
  * a size (or, if that is negative, for a speed of its size).
@@ -134,6 +142,12 @@ int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
 
 /* Prepares what comes after the motors' release, once it is asked for. */
 void rr_impact_let_go(rr_impact *impact);
+
+/*
+ * Twice the energy that an impact with loose motors can take, for 1 m/s: at most r'(M + B)r for joint
+ * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
+ */
+rr_real rr_twice_energy(const rr_impact *impact);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 rr_real rr_bound(const rr_impact *impact);
@@ -164,11 +178,11 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
 int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real carried[RR_N]);
 
-/*
- * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
- * 1/kg; 0 or a status.
- */
-int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real found[3]);
+/* Mobility of the contact point with links alone, and with rotors alone, 1/kg; 0 or a status. */
+int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real *links,
+    rr_real *rotors);
+/* The same with links and rotors as one; 0 if their mass is not positive definite. */
+rr_real rr_together(const rr_arrival *arrival, const rr_params *p);
 
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase);

@@ -25,14 +25,18 @@ static ur5e_real while_driven(ur5e_real time, ur5e_real hold, ur5e_real damping)
     return y*y;
 }
 
-/* r'(M + B) r, or what of it an impact can take. */
-static ur5e_real twice_energy(const ur5e_impact *impact)
+ur5e_real ur5e_twice_energy(const ur5e_impact *impact)
 {
     const ur5e_params *const p = impact->p;
     const ur5e_arrival *const arrival = &impact->arrival;
-    if (impact->together > UR5E_R(0.0)) {
-        return UR5E_R(1.0)/impact->together;
+#if UR5E_STRUCTURED
+    const ur5e_real together = ur5e_together(arrival, p);
+    if (together > UR5E_R(0.0)) {
+        const ur5e_real body =
+            impact->gives_way ? UR5E_R(1.0)/impact->region->effective_mass : UR5E_R(0.0);
+        return UR5E_R(1.0)/(together + body);
     }
+#endif
     ur5e_real sum = UR5E_R(0.0);
     for (int i = 0; i < UR5E_N; ++i) {
         for (int j = 0; j < UR5E_N; ++j) {
@@ -83,7 +87,7 @@ ur5e_real ur5e_bound(const ur5e_impact *impact)
         return UR5E_R(0.0);
     }
     const ur5e_real hold = impact->hold;
-    const ur5e_real twice = twice_energy(impact);
+    const ur5e_real twice = ur5e_twice_energy(impact);
     if (impact->first == UR5E_LOOSE) {
         return UR5E_SQRT(twice*hold);
     }

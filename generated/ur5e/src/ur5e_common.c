@@ -78,7 +78,7 @@ int ur5e_fill_params(ur5e_params *p, unsigned int layout)
     p->reaction_time = UR5E_R(0.02);
     p->horizon = UR5E_R(0.5);
     p->motors = UR5E_MOTORS_FREE_OR_DRIVEN;
-    p->steps = 8000;
+    p->steps = 800;
     return UR5E_OK;
 }
 

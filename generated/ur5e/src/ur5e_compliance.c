@@ -173,22 +173,32 @@ static ur5e_real mobility_of(ur5e_matrix mass, const ur5e_real row[UR5E_N])
     return sum;
 }
 
-int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real found[3])
+int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real *links,
+    ur5e_real *rotors)
 {
     ur5e_matrix mass;
-    ur5e_matrix together;
-    found[2] = UR5E_R(0.0);
+    *rotors = UR5E_R(0.0);
     for (int i = 0; i < UR5E_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             mass[i][j] = arrival->links.M[i][j];
-            together[i][j] = mass[i][j];
         }
-        together[i][i] += UR5E_ROTOR(p, i);
-        found[2] += arrival->row[i]*arrival->row[i]/UR5E_ROTOR(p, i);
+        *rotors += arrival->row[i]*arrival->row[i]/UR5E_ROTOR(p, i);
     }
     (void)p;
-    found[0] = mobility_of(mass, arrival->row);
-    found[1] = mobility_of(together, arrival->row);
-    return found[0] > UR5E_LEAST_MOBILITY && found[1] > UR5E_R(0.0) ? UR5E_OK : UR5E_SINGULAR;
+    *links = mobility_of(mass, arrival->row);
+    return *links > UR5E_LEAST_MOBILITY ? UR5E_OK : UR5E_SINGULAR;
+}
+
+ur5e_real ur5e_together(const ur5e_arrival *arrival, const ur5e_params *p)
+{
+    ur5e_matrix mass;
+    for (int i = 0; i < UR5E_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            mass[i][j] = arrival->links.M[i][j];
+        }
+        mass[i][i] += UR5E_ROTOR(p, i);
+    }
+    (void)p;
+    return mobility_of(mass, arrival->row);
 }
 #endif

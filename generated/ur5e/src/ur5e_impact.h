@@ -66,7 +66,9 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
-    bool ready;
+    bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
+    bool has_body;
+    bool ready; /* steps are */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* no energy enters but by the motors' drift: see ur5e_settled.c */
     ur5e_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -85,10 +87,9 @@ typedef struct {
     ur5e_arrival arrival;
     const ur5e_region *region;
     const ur5e_params *p;
-    int motors;
+    int motors, led; /* what they do, and in the modes of the first phase */
     bool gives_way;
     ur5e_real mobility; /* of the contact, 1/kg */
-    ur5e_real together; /* of links and rotors as one, and of the body, 1/kg */
     ur5e_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
     ur5e_real hold; /* K: no energy E presses harder than sqrt(2 K E) */
     ur5e_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
@@ -125,6 +126,13 @@ int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival);
 
+/* Checks and links of an impact of one of the contact points. */
+int ur5e_approach(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    const ur5e_region *region, const ur5e_params *p, ur5e_impact *impact);
+
+/* To be called as impact->arrival changes: no modes are known. */
+void ur5e_impact_forget(ur5e_impact *impact);
+
 /*
  * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about
  * a size (or, if that is negative, for a speed of its size).
@@ -134,6 +142,12 @@ int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int mot
 
 /* Prepares what comes after the motors' release, once it is asked for. */
 void ur5e_impact_let_go(ur5e_impact *impact);
+
+/*
+ * Twice the energy that an impact with loose motors can take, for 1 m/s: at most r'(M + B)r for joint
+ * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
+ */
+ur5e_real ur5e_twice_energy(const ur5e_impact *impact);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 ur5e_real ur5e_bound(const ur5e_impact *impact);
@@ -164,11 +178,11 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
 int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real carried[UR5E_N]);
 
-/*
- * Mobility of the contact point with links alone, with links and rotors as one, and with rotors alone,
- * 1/kg; 0 or a status.
- */
-int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real found[3]);
+/* Mobility of the contact point with links alone, and with rotors alone, 1/kg; 0 or a status. */
+int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real *links,
+    ur5e_real *rotors);
+/* The same with links and rotors as one; 0 if their mass is not positive definite. */
+ur5e_real ur5e_together(const ur5e_arrival *arrival, const ur5e_params *p);
 
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *phase);

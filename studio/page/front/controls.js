@@ -32,7 +32,7 @@ function slider(name, label, { low, high, step, read, write, logarithmic = false
       if (row.hidden) return;
       if (document.activeElement !== range) range.value = logarithmic ? Math.log10(Math.max(now, low)) : now;
       range.setAttribute("aria-valuetext", shown(now, digits));
-      if (document.activeElement !== number) number.value = shown(now, digits + 1);
+      if (document.activeElement !== number) number.value = logarithmic ? shown(now, digits + 1) : Number(now.toFixed(4));
     },
   };
 }
@@ -186,7 +186,7 @@ function motorParts(content) {
     slider(name, label, { low: 0, high, step: high / 1000, read: (s) => (s.motors === "servo" ? s[name][0] : undefined), write: (k) => ({ [name]: all(content, k) }) });
   return [
     choices("They", [["bracket", "free or driven", "The worse of both ends: what to take where nobody knows"], ["free", "are free"], ["driven", "drive on"], ["servo", "servo"]], { read: (s) => s.motors, write: (motors) => ({ motors }) }),
-    slider("reaction", "Released after, ms", { low: 0, high: 200, step: 1, read: (s) => (s.reaction_time === null || s.motors === "free" ? undefined : 1e3 * s.reaction_time), write: (ms) => ({ reaction_time: ms / 1e3 }) }),
+    slider("reaction", "Reaction, ms", { title: "From first touch until motors are released", low: 0, high: 200, step: 1, read: (s) => (s.reaction_time === null || s.motors === "free" ? undefined : 1e3 * s.reaction_time), write: (ms) => ({ reaction_time: ms / 1e3 }) }),
     check("never", "never released", { read: (s) => s.reaction_time === null, write: (on) => ({ reaction_time: on ? null : 0.02 }) }),
     servo("position_gain", "K<sub>p</sub>, N·m/rad", 1e4),
     servo("damping_gain", "K<sub>d</sub>, N·m·s/rad", 300),
@@ -222,7 +222,9 @@ export function controlsOf(form, content, solver, changed) {
     group("Hardware", hardwareParts(content)),
   ];
   if (content.elastic) groups.push(group("Joint stiffness, each (N·m/rad)", eachJoint(content, "springs", "Stiffness", { low: SOFTEST, high: STIFFEST, logarithmic: true }), { folded: true }));
-  groups.push(group("Rotor inertia, each (kg·m²)", eachJoint(content, "rotors", "Reflected rotor inertia", { low: 0.001, high: 10, logarithmic: true }), { folded: !content.unknown_rotors.length }));
+  const inertia = { low: 0.001, high: 10, logarithmic: true };
+  const together = slider("rotors", "all", { ...inertia, title: "Reflected rotor inertia of all joints", read: (s) => s.rotors.reduce((a, b) => a + b) / s.rotors.length, write: (b) => ({ rotors: all(content, b) }) });
+  groups.push(group("Rotor inertia (kg·m²)", [together, ...eachJoint(content, "rotors", "Reflected rotor inertia", inertia)], { folded: !content.unknown_rotors.length }));
   form.append(...groups.map(({ box }) => box));
   const parts = groups.flatMap((g) => g.parts);
   parts.forEach((part) => part.watch(changed));

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Below the arm: a program to scrub through, designs to click, and what a safe speed depends on.
 import { shown } from "./answers.js";
-import { plotTrend, ticksTo } from "./plot.js";
+import { plotTrend } from "./plot.js";
 import { readMotion } from "./motion.js";
+import { sizeOf } from "./sizes.js";
 
 function section(title, html) {
   const box = document.createElement("section");
   box.innerHTML = `<h2>${title}</h2>${html}`;
   return box;
 }
+
+const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 
 /** A program: scrubbing sets posture, direction and speed as the contact point really moves. */
 export function programStrip(content, changed, solver, fail) {
@@ -42,7 +45,9 @@ export function programStrip(content, changed, solver, fail) {
     box.querySelector(".play").hidden = !motion;
     if (!motion) return;
     range.max = motion.t.length - 1;
-    output.textContent = `${motion.t[0].toFixed(2)} s`;
+    const away = motion.q.map((q) => apart(q, content.start.q));
+    range.value = away.indexOf(Math.min(...away));
+    output.textContent = `${motion.t[Number(range.value)].toFixed(2)} s`;
   }
   button.addEventListener("click", () => {
     if (timer) return stop();
@@ -87,15 +92,17 @@ export function designStrip(content, changed) {
     changed({ q: [...design.q], springs: [...design.springs] });
   };
   function draw(looks, state) {
-    const { width, height } = svg.getBoundingClientRect();
+    const { width, height } = sizeOf(svg);
     if (!known.length || !width) return;
     const colours = [looks.driven, looks.free, looks.good, looks.soft];
-    const xs = ticksTo(1.05e3 * Math.max(...known.map((d) => d.deflection)));
+    const bends = known.map((d) => 1e3 * Math.max(d.deflection, 1e-6));
+    const ends = [0.8 * Math.min(...bends), 1.25 * Math.max(...bends)].map(Math.log10);
+    const xs = [0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100].filter((mm) => Math.log10(mm) >= ends[0] && Math.log10(mm) <= ends[1]);
     const forces = known.map((d) => d.force);
     const [least, most] = [Math.min(...forces), Math.max(...forces)];
     const pad = Math.max(0.08 * (most - least), 0.01 * most);
     const box = { left: 46, right: width - 10, top: 18, bottom: height - 28 };
-    const x = (mm) => box.left + ((box.right - box.left) * mm) / xs.at(-1);
+    const x = (mm) => box.left + ((box.right - box.left) * (Math.log10(Math.max(mm, 1e-3)) - ends[0])) / (ends[1] - ends[0]);
     const y = (N) => box.bottom - ((box.bottom - box.top) * (N - least + pad)) / (most - least + 2 * pad);
     const marks = [least, (least + most) / 2, most];
     const text = (px, py, words, anchor = "start") => `<text class="tick" x="${px}" y="${py}" text-anchor="${anchor}">${words}</text>`;
@@ -105,7 +112,7 @@ export function designStrip(content, changed) {
       marks.map((N) => `<line x1="${box.left}" x2="${box.right}" y1="${y(N)}" y2="${y(N)}" stroke="${looks.line}" stroke-width=".6"/>${text(box.left - 5, y(N) + 4, N.toFixed(0), "end")}`).join("") +
       xs.map((mm) => text(x(mm), box.bottom + 14, mm, "middle")).join("") +
       text(box.right, box.bottom + 26, "deflection, mm", "end") + text(2, 10, "worst force, N") +
-      fronts.map((front, k) => text(box.left + 8 + k * 130, 10, `<tspan fill="${colours[k % 4]}">●</tspan> ${front}`)).join("") +
+      fronts.map((front, k) => text(box.left + 70 + k * 78, 10, `<tspan fill="${colours[k % 4]}">●</tspan> ${front}`)).join("") +
       known.map((d, k) => `<circle tabindex="0" role="button" data-k="${k}" aria-label="${d.front}: ${shown(d.force)} newtons, ${shown(1e3 * d.deflection)} millimetres" cx="${x(1e3 * d.deflection)}" cy="${y(d.force)}" r="${isTaken(d) ? 7.5 : 5}" fill="${colours[fronts.indexOf(d.front) % 4]}" stroke="${isTaken(d) ? looks.limit : "none"}" stroke-width="2"/>`).join("");
   }
   const pick = (event) => { const k = event.target.dataset?.k; if (k !== undefined) take(known[Number(k)]); };
@@ -144,7 +151,8 @@ export function trendStrip(content, solver) {
   let last = null;
   function draw(looks, state, found) {
     last = [looks, state, found];
-    if (!found.scene?.contact || !svg.getBoundingClientRect().width) return;
+    if (!found.scene?.contact || !sizeOf(svg).width) return;
+    if (select.value === "reaction" && solver.unknown(state)) select.value = "payload"; // motors that let go need their rotors
     const how = over[select.value];
     const points = how.values.map((value) => [value, solver.safeSpeed(how.at(state, value), found.scene.contact)]);
     if (points.every(([, v]) => v === null)) { svg.innerHTML = ""; return; }

@@ -7,9 +7,9 @@
 
 /*
  * Follows an impact at a speed through its steps; `out` may be NULL. Returns the largest force from
- * half a second on, or of all where the steps do not do.
+ * half a second on, the largest of numbers where the steps do not do.
  */
-robot_real robot_run_seen(const robot_impact *impact, robot_real speed, int steps, robot_peak *peak,
+robot_real robot_run_seen(robot_impact *impact, robot_real speed, int steps, robot_peak *peak,
     robot_follow_t *out);
 
 #endif

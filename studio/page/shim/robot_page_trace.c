@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force of an impact of robot_ over time: the runtime's own steps, each of them written down. */
-#include "robot_contact_steps.h" /* the runtime's robot_contact.c, whose steps are its own */
+#include "robot_run_steps.h" /* the runtime's robot_run.c, whose steps are its own */
 
 #include "robot_page_steps.h"
 
@@ -12,7 +12,7 @@ typedef struct {
     int every, passed;
 } pace;
 
-static void write_down(const state *s, pace *p, robot_follow_t *out)
+static void write_down(const robot_state *s, pace *p, robot_follow_t *out)
 {
     if (p->passed++ % p->every != 0) {
         return;
@@ -30,37 +30,53 @@ static void write_down(const state *s, pace *p, robot_follow_t *out)
     ++out->count;
 }
 
-robot_real robot_run_seen(const robot_impact *impact, robot_real speed, int steps, robot_peak *peak,
+/* One step that is taken; false if the steps do not do. */
+static bool step_on(robot_state *s, int *left, robot_peak *peak)
+{
+    robot_trial t;
+    bool taken = false;
+    while (!taken) { /* steps on trial count, too */
+        if (--*left < 0) {
+            return false;
+        }
+        robot_glide(s, &t);
+        taken = s->touching ? step_pressed(s, &t, s->impact->smooth*BENDS, SHORTEST, peak)
+                            : step_apart(s, &t, SHORTEST, peak);
+    }
+    if (s->phase->damped) {
+        robot_damp(s->phase, s->speed, ROBOT_R(0.5)*s->h, s->rate);
+    }
+    return true;
+}
+
+robot_real robot_run_seen(robot_impact *impact, robot_real speed, int steps, robot_peak *peak,
     robot_follow_t *out)
 {
     static const robot_peak none = {ROBOT_R(0.0), ROBOT_R(0.0), 1, 1, false};
-    state s;
-    trial t;
+    robot_state s;
     pace p = {1, 0};
     int left = steps;
     robot_real pressing = ROBOT_R(0.0);
     *peak = none;
-    start(impact, speed, &s);
-    for (int k = 0; k < impact->phases; ++k) {
-        if (k > 0) {
-            release(&s);
+    start(impact, speed, false, &s);
+    for (int k = impact->first; k <= impact->last; ++k) {
+        if (k > impact->first) {
+            robot_impact_let_go(impact);
+            if (impact->status != ROBOT_OK) {
+                return ROBOT_REAL_MAX;
+            }
+            robot_release(&s);
+        }
+        if (impact->phase[k].blurred) {
+            return ROBOT_REAL_MAX;
         }
         while (s.ticks > 0) {
             if (out != NULL) {
                 write_down(&s, &p, out);
             }
             pressing = s.time >= PRESSED_FROM ? ROBOT_FMAX(pressing, s.f) : pressing;
-            bool taken = false;
-            while (!taken) { /* steps on trial count, too */
-                if (left-- <= 0) {
-                    return ROBOT_FMAX(peak->force, s.f);
-                }
-                glide(&s, &t);
-                taken = s.touching ? step_pressed(&s, &t, impact->smooth*BENDS, peak)
-                                   : step_apart(&s, &t, peak);
-            }
-            if (s.phase->damped) {
-                damp(s.phase, speed, ROBOT_R(0.5)*s.h, s.rate);
+            if (!step_on(&s, &left, peak)) {
+                return ROBOT_REAL_MAX;
             }
         }
     }

@@ -3,11 +3,8 @@
 "use strict";
 
 function drawArm(svg) {
-  const points = JSON.parse(svg.dataset.points);
-  const contact = JSON.parse(svg.dataset.contact);
-  const direction = JSON.parse(svg.dataset.direction);
-  const exceeded = Number(svg.dataset.share) > 1;
-  const every = points.concat([contact, [0, 0, 0]]);
+  const { points, hits, faint } = JSON.parse(svg.dataset.arm);
+  const every = points.concat(hits.map((hit) => hit.place), [[0, 0, 0]], ...faint);
   const middle = [0, 1, 2].map((k) => {
     const values = every.map((p) => p[k]);
     return (Math.min(...values) + Math.max(...values)) / 2;
@@ -30,16 +27,27 @@ function drawArm(svg) {
     const [x, y] = flat(p);
     return `<circle cx="${x}" cy="${y}" r="${radius}" fill="${colour}"/>`;
   }
+  function chain(places, colour, width) {
+    return places.slice(1).map((p, i) => line(places[i], p, colour, width)).join("");
+  }
+  function drawn(hit) {
+    const colour = hit.share > 1 ? "#d55e00" : hit.share > 0.5 ? "#009e73" : "#0072b2";
+    const [x, y] = flat(hit.place);
+    const back = hit.direction && hit.direction.map((d, k) => hit.place[k] - 0.45 * reach * d);
+    const arrow = back ? line(back, hit.place, colour, 0.022) : "";
+    const [side, anchor] = x > 0.55 ? [-0.07, "end"] : [0.07, "start"];
+    return arrow + dot(hit.place, colour, 0.045) +
+      `<text x="${x + side}" y="${y - 0.05}" text-anchor="${anchor}" font-size="0.09" fill="#1a1a1a" stroke="#fff" ` +
+      `stroke-width="0.025" paint-order="stroke">${Math.round(100 * hit.share)} %</text>`;
+  }
   function paint() {
-    const arrow = direction.map((x, k) => contact[k] - 0.45 * reach * x);
     const ground = reach * 0.25;
     let picture = line([-ground, 0, 0], [ground, 0, 0], "#b8b8b8", 0.012);
     picture += line([0, -ground, 0], [0, ground, 0], "#b8b8b8", 0.012);
-    for (let i = 1; i < points.length; ++i) picture += line(points[i - 1], points[i], "#0072b2", 0.035);
+    for (const other of faint) picture += chain(other, "#d0d0d0", 0.02);
+    picture += chain(points, "#5c5c5c", 0.035);
     for (const p of points) picture += dot(p, "#1a1a1a", 0.022);
-    const colour = exceeded ? "#d55e00" : "#009e73";
-    picture += line(arrow, contact, colour, 0.022) + dot(contact, colour, 0.04);
-    svg.innerHTML = picture;
+    svg.innerHTML = picture + hits.map(drawn).join("");
   }
   let last = null;
   svg.addEventListener("pointerdown", (event) => { last = event; svg.setPointerCapture(event.pointerId); });

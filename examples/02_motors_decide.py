@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the motors do until someone notices decides the force: the picture of the README.
 
-python examples/motors_decide.py [FILE]
+python examples/02_motors_decide.py [FILE]
 """
 
 from __future__ import annotations

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Calls of a package's functions for the rows of arrays."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from softimpact.symbolic import InvalidValue
+
+from .build import PREFIX, Sources
+
+if TYPE_CHECKING:
+    from softimpact.codegen.interface import Entry, Interface, Variable
+
+Arrays = dict[str, NDArray[Any]]
+"""Results by name, one row a call, and ``status``."""
+
+CHUNK = 1024
+"""Fewest rows of a closed form that are worth a thread of their own; of an impact one is."""
+
+IMPACT = "region"
+"""Argument of functions that integrate in time, and its type."""
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledPackage:
+    """A package's functions over arrays; each is a method by its C name without the prefix.
+
+    ``q`` is N×n, or n for all rows; so are ``n`` (3), ``dq`` (n), other arguments and parameters
+    by the names of the C struct's fields. A region is the name of one, with ``clamped``, or a
+    mapping of the fields of the C struct. A ``limit`` that is not given is the region's transient
+    one. ``motors`` is a name. Results are arrays of N rows by
+    name, with ``status`` beside them; rows whose status is neither OK (0) nor BOUNDED (9) hold NaN,
+    or -1 where numbers are whole.
+
+    Attributes:
+        sources: of the package, in the cache.
+        threads: that calls are spread over.
+    """
+
+    sources: Sources
+    threads: int
+    _entries: dict[str, Callable[..., int]] = field(default_factory=dict, init=False, repr=False)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a method for a function of the package."""
+        if not name.startswith("_") and name in self.functions:
+            return partial(self._call, self.interface.entries[name])
+        raise AttributeError(f"the package has no function '{name}'")
+
+    def __dir__(self) -> list[str]:
+        """Return the names of all functions, too."""
+        return [*super().__dir__(), *self.functions]
+
+    @cached_property
+    def interface(self) -> Interface:
+        """What the package's header declares."""
+        return self.sources.interface()
+
+    @cached_property
+    def functions(self) -> tuple[str, ...]:
+        """Names of the functions."""
+        paths = self.sources.folder.glob("batch/*.c")
+        found = {path.stem for path in paths}
+        return tuple(name for name in self.interface.entries if name in found)
+
+    def status_text(self, status: int) -> str:
+        """Return what a status means."""
+        entry = self._common.batched_status_text
+        entry.restype = ctypes.c_char_p
+        return str(entry(ctypes.c_int(status)).decode())
+
+    @cached_property
+    def _common(self) -> ctypes.CDLL:
+        return self.sources.library(f"src/{PREFIX}_common.c")
+
+    @cached_property
+    def _defaults(self) -> NDArray[Any]:
+        """The parameter struct as the package fills it in."""
+        p = np.zeros(1, self.interface.dtype("params", self.sources.real))
+        layout = ctypes.c_uint(self.interface.layout_in(self.sources.real))
+        self._common.batched_fill_params(ctypes.c_void_p(p.ctypes.data), layout)
+        return p
+
+    def _rows_of(self, name: str) -> Callable[..., int]:
+        if name not in self._entries:
+            self._entries[name] = self.sources.library(f"batch/{name}.c").batched_rows
+        return self._entries[name]
+
+    def _call(self, entry: Entry, *given: Any, **options: Any) -> Arrays:
+        inputs = self._inputs(entry, given, options)
+        count = max(len(rows) for rows in inputs)
+        for rows in inputs:
+            if len(rows) not in (1, count):
+                raise InvalidValue("rows", f"needs {count} rows or one everywhere, not {len(rows)}")
+        (written,) = [a for a in entry.arguments if a.written]
+        out, found = self._results(written, count)
+        status = np.empty(count, dtype=np.int32)
+        impact = any(a.name == IMPACT for a in entry.arguments)
+        self._run(self._rows_of(entry.name), inputs, out, status, 1 if impact else CHUNK)
+        return {**found, "status": status}
+
+    def _inputs(
+        self, entry: Entry, given: tuple[Any, ...], options: dict[str, Any]
+    ) -> list[NDArray[Any]]:
+        """Return an array of rows for each argument that a function reads."""
+        read = [a for a in entry.arguments if not a.written]
+        plain = [a for a in read if a.type not in self.interface.structs]
+        if len(given) > len(plain):
+            raise InvalidValue(entry.name, f"takes {', '.join(a.name for a in plain)}, and names")
+        values = dict(zip((a.name for a in plain), given, strict=False))
+        region = None
+        if any(a.type == IMPACT for a in read):
+            region = self._region(options.pop(IMPACT, "chest"), options.pop("clamped", True))
+            values.setdefault("limit", region["force_limit"])
+        for a in plain:
+            if a.name in options:
+                values[a.name] = options.pop(a.name)
+            if a.name not in values:
+                raise InvalidValue(a.name, f"is needed by {entry.name}")
+        inputs = []
+        for a in read:
+            if a.type == "params":
+                inputs.append(self._parameters(options))
+            elif a.type == IMPACT:
+                assert region is not None
+                inputs.append(region)
+            else:
+                inputs.append(self._rows(a, values[a.name]))
+        if options:
+            raise InvalidValue(next(iter(options)), f"is nothing that {entry.name} reads")
+        return inputs
+
+    def _kind(self, type_: str) -> np.dtype[Any]:
+        from softimpact.codegen.interface import NUMPY
+
+        return np.dtype(NUMPY[self.sources.real if type_ == "real" else type_])
+
+    def _rows(self, a: Variable, values: Any) -> NDArray[Any]:
+        width = int(np.prod([size or 1 for size in a.shape]))
+        array = np.ascontiguousarray(values, dtype=self._kind(a.type))
+        rows = array.reshape(-1, 1) if width == 1 else np.atleast_2d(array)
+        if rows.ndim != 2 or rows.shape[1] != width:
+            raise InvalidValue(a.name, f"needs rows of {width} numbers, not {array.shape}")
+        return rows
+
+    def _region(self, region: str | Mapping[str, Any], clamped: bool) -> NDArray[Any]:
+        row = np.zeros(1, self.interface.dtype("region", self.sources.real))
+        if not isinstance(region, str):
+            return _filled(row, {**region, "clamped": region.get("clamped", clamped)}, "region")
+        parts = {name.lower(): n for name, n in self.interface.enums["body_part"].items()}
+        if region not in parts:
+            raise InvalidValue("region", f"must be one of {', '.join(parts)}, not '{region}'")
+        entry = self._common.batched_body_region
+        entry(ctypes.c_int(parts[region]), ctypes.c_int(clamped), ctypes.c_void_p(row.ctypes.data))
+        return row
+
+    def _parameters(self, options: dict[str, Any]) -> NDArray[Any]:
+        """Return parameter structs, one or one a row; takes the fields out of ``options``."""
+        names = [name for name in self._defaults.dtype.names or () if name in options]
+        given = {name: options.pop(name) for name in names}
+        if isinstance(given.get("motors"), str):
+            kinds = {k.removeprefix("MOTORS_").lower(): n
+                     for k, n in self.interface.enums["motors"].items()}  # fmt: skip
+            if given["motors"] not in kinds:
+                said = f"must be one of {', '.join(kinds)}, not '{given['motors']}'"
+                raise InvalidValue("motors", said)
+            given["motors"] = kinds[given["motors"]]
+        return _filled(self._defaults, given, "parameters")
+
+    def _results(self, written: Variable, count: int) -> tuple[NDArray[Any], Arrays]:
+        """Return room for results, and how it is seen by name."""
+        if written.type not in self.interface.structs:
+            sizes = [size or 1 for size in written.shape]
+            plain = np.full((count, *sizes), np.nan, dtype=self._kind(written.type))
+            return plain, {written.name: plain}
+        out = np.empty(count, self.interface.dtype(written.type, self.sources.real))
+        for name in out.dtype.names or ():
+            out[name] = np.nan if out[name].dtype.kind == "f" else -1
+        return out, {name: out[name] for name in out.dtype.names or ()}
+
+    def _run(
+        self,
+        rows: Callable[..., int],
+        inputs: list[NDArray[Any]],
+        out: NDArray[Any],
+        status: NDArray[np.int32],
+        chunk: int,
+    ) -> None:
+        """Call a function for all rows, in pieces that threads share."""
+        strides = [0 if len(x) == 1 else x.strides[0] for x in inputs]
+        steps = (ctypes.c_long * len(inputs))(*strides)
+
+        def part(bounds: tuple[int, int]) -> None:
+            first, last = bounds
+            places = [x.ctypes.data + first * s for x, s in zip(inputs, strides, strict=True)]
+            at = (ctypes.c_void_p * len(inputs))(*places)
+            row = out.ctypes.data + first * out.strides[0]
+            rows(ctypes.c_long(last - first), at, steps, ctypes.c_void_p(row),
+                 ctypes.c_void_p(status.ctypes.data + first * status.itemsize))  # fmt: skip
+
+        count = len(status)
+        pieces = min(16 * self.threads, count // chunk) if self.threads > 1 else 1
+        if pieces <= 1:
+            part((0, count))
+            return
+        edges = np.linspace(0, count, pieces + 1).astype(int).tolist()
+        with ThreadPoolExecutor(self.threads) as pool:
+            list(pool.map(part, zip(edges[:-1], edges[1:], strict=True)))
+
+
+def _filled(row: NDArray[Any], given: Mapping[str, Any], what: str) -> NDArray[Any]:
+    """Return structs like a row with other fields, each one value or one a row."""
+    fields: Mapping[str, Any] = row.dtype.fields or {}
+    for name in given:
+        if name not in fields:
+            raise InvalidValue(name, f"is no field of {what}: {', '.join(fields)}")
+    values = {name: np.asarray(value) for name, value in given.items()}
+    depth = {name: len(fields[name][0].shape) for name in values}
+    counts = [len(v) for name, v in values.items() if v.ndim > depth[name]]
+    table = np.repeat(row, max(counts, default=1))
+    for name, value in values.items():
+        try:
+            table[name] = value
+        except ValueError:
+            shape = (*table.shape, *fields[name][0].shape)
+            raise InvalidValue(name, f"needs {shape} numbers, not {value.shape}") from None
+    return table
