@@ -107,8 +107,7 @@ def test_it_is_compared_with_what_keeps_the_bounds(found: RobustDesign) -> None:
 @pytest.mark.slow
 def test_ranges_cost_less_than_half_a_percent(found: RobustDesign) -> None:
     least = found.worst.share
-    for joints in (slice(0, 4), slice(4, 7)):
-        low, high = found.indifferent[joints][0]
+    for joints, (low, high) in zip((slice(0, 4), slice(4, 7)), found.indifferent, strict=True):
         assert low <= found.springs[joints][0] * (1 + 1e-9)
         assert high >= found.springs[joints][0] * (1 - 1e-9)
         for end in (low, high):
