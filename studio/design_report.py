@@ -158,6 +158,11 @@ def as_record(report: DesignReport) -> dict[str, Any]:
         "indifferent": by_name(study, design.answers.indifferent),
         "prices": design.answers.prices,
         "conflicts": [],
+        "self_motion_branches": design.branches,
+        "optima": [
+            {"force": o.best.force, "q": o.best.q, "springs": o.best.springs, "starts": o.starts}
+            for o in design.optima
+        ],
         "reference": design.answers.reference,
         "check": vars(report.check),
         "gains": None if design.gains is None else vars(design.gains),
