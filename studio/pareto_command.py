@@ -39,13 +39,14 @@ def pareto(
 
     from .output import failures_as_json, print_json
     from .pareto_record import GENERATOR, as_record
-    from .results_folder import replaced_folder, require_replaceable
+    from .results_folder import replaced_folder, require_folder_of, require_replaceable
     from .values import given
 
     overrides = {"impact": given(region=region, speed=speed), "pareto": given(points=points)}
     problem = load_study(study, overrides)
     folder = out or Path("results") / f"{problem.source.stem}_pareto"
     require_replaceable(folder, GENERATOR)
+    require_folder_of(page)
     with failures_as_json(json):
         report = _search(problem)
     record = as_record(report)
