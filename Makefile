@@ -17,7 +17,8 @@ N ?= 10000
 # faults that make mutants puts into the sources, one at a time
 SAMPLE ?= 200
 
-.PHONY: demo install test coverage mutants lint format bench bench-c fuzz adversarial generated docs clean
+.PHONY: demo install test coverage mutants lint format bench bench-c bench-opt fuzz adversarial \
+	generated docs clean
 
 demo: $(VENV)/installed
 	$(BIN)/softimpact design robots/studies/panda_24_poses.toml
@@ -57,6 +58,10 @@ bench-c: $(VENV)/installed-test $(OTHERS)/installed
 	$(BIN)/python benchmarks/embedded/run.py
 	$(MAKE) generated
 	$(BIN)/python benchmarks/cost/run.py --others $(OTHERS)/bin/python --out docs/benchmarks.md
+
+# one robust design by us and by general optimisers, some ten minutes
+bench-opt: $(VENV)/installed-test
+	$(BIN)/python benchmarks/design/run.py --budget 2000 --out docs/benchmarks-design.md
 
 # libFuzzer on every package, float and double; needs clang
 fuzz: $(VENV)/installed-test

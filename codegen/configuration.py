@@ -42,6 +42,9 @@ MOVE = 0.125
 MOVES = 64
 """Most moves."""
 
+FARTHEST = 1.0
+"""Longest Newton step of a joint that is taken [rad, m]."""
+
 LAST_STEP = {np.float64: 1e-9, np.float32: 1e-4}
 """Newton step [rad, m] after which the equilibrium counts as found: what is left is its square."""
 
@@ -73,8 +76,8 @@ class Configuration:
 
     @cached_property
     def home(self) -> Array:
-        """A closed configuration."""
-        return closed_chain(self.robot).home
+        """A closed configuration, in digits that do not depend on the machine."""
+        return closed_chain(self.robot).home.round(9)
 
     @property
     def forces(self) -> int:
@@ -170,27 +173,49 @@ def rounded_configurations(
 def _solve(
     configuration: Configuration, goal: Array, kind: type[np.floating[Any]]
 ) -> tuple[NDArray[Any], NDArray[Any], NDArray[np.bool_]]:
-    """Mirror of the C function over columns of motor angles."""
+    """Do what the C function does, on columns of motor angles; a test runs both at the edges."""
     samples, motors = goal.shape[1], list(configuration.motors)
-    q = np.tile(configuration.home[:, None], samples).astype(kind)
-    force = np.zeros((configuration.forces, samples), dtype=kind)
-    start, target = q[motors].copy(), goal.astype(kind)
-    moves = max(1, math.ceil(float(abs(target - start).max(initial=0.0)) / MOVE))
-    good = np.full(samples, True)
+    home = configuration.home[:, None].astype(kind)
+    q, force = np.tile(home, samples), np.zeros((configuration.forces, samples), dtype=kind)
+    start, target = home[motors], goal.astype(kind)
+    farthest = abs(target - start).max(axis=0, initial=0.0)
+    good = farthest <= MOVES * MOVE
+    moves = np.maximum(1, np.ceil(np.where(good, farthest, 0.0) / MOVE)).astype(int)
     with np.errstate(all="ignore"):  # searches that fail may run away
-        for move in range(1, moves + 1):
-            q[motors] = target if move == moves else start + (target - start) * kind(move / moves)
-            for _ in range(NEWTON_STEPS):
-                residual, flat = evaluate_rounded(configuration.equations, [q, force], kind)
-                size = configuration.unknowns
-                step = _eliminated(flat.reshape(size, size, samples), residual)
-                _subtract(configuration, q, force, step)
-                longest = abs(step[: len(configuration.passive)]).max(axis=0)
-                if not (longest[good] > LAST_STEP[kind]).any():
-                    break
-            good &= longest <= LAST_STEP[kind]
+        for move in range(1, moves.max(initial=1) + 1):
+            at = np.flatnonzero(good & (move <= moves))
+            share = kind(move) / moves[at].astype(kind)
+            moved = start + (target[:, at] - start) * share
+            q[np.array(motors)[:, None], at] = np.where(moves[at] == move, target[:, at], moved)
+            good[at] = _balanced(configuration, q, force, at, kind)
     (checks,) = evaluate_rounded(configuration.checks, [q], kind)
     return q, force, good & (checks > 0).all(axis=0)
+
+
+def _balanced(
+    configuration: Configuration,
+    q: NDArray[Any],
+    force: NDArray[Any],
+    at: NDArray[np.intp],
+    kind: type[np.floating[Any]],
+) -> NDArray[np.bool_]:
+    """Balance the passive joints of some columns; return for which of them it was done."""
+    passive, size = len(configuration.passive), configuration.unknowns
+    found, left = np.full(q.shape[1], False), at
+    for _ in range(NEWTON_STEPS):
+        state = [q[:, left], force[:, left]]
+        residual, flat = evaluate_rounded(configuration.equations, state, kind)
+        step = _eliminated(flat.reshape(size, size, left.size), residual)
+        near = (abs(step[:passive]) <= FARTHEST).all(axis=0)
+        left, step = left[near], step[:, near]
+        q[np.array(configuration.passive)[:, None], left] -= step[:passive]
+        force[:, left] -= step[passive:]
+        small = abs(step[:passive]).max(axis=0, initial=0.0) <= LAST_STEP[kind]
+        found[left[small]] = np.isfinite(force[:, left[small]]).all(axis=0)
+        left = left[~small]
+        if not left.size:
+            break
+    return found[at]
 
 
 def _subtract(

@@ -13,6 +13,7 @@ from softimpact.symbolic import NoEquilibrium
 
 from .accuracy import DOUBLE_ERROR, MARGIN, USUAL, rounded_up
 from .configuration import (
+    FARTHEST,
     LAST_STEP,
     MOVE,
     MOVES,
@@ -45,6 +46,7 @@ class ConfigurationSource:
     newton_steps = NEWTON_STEPS
     move = MOVE
     moves = MOVES
+    farthest = FARTHEST
     last_step_double = LAST_STEP[np.float64]
     last_step_float = LAST_STEP[np.float32]
 
@@ -55,8 +57,8 @@ class ConfigurationSource:
 
     @property
     def home(self) -> list[float]:
-        """A closed configuration, in digits that do not depend on the machine."""
-        return [round(float(x), 9) for x in self.configuration.home]
+        """A closed configuration."""
+        return [float(x) for x in self.configuration.home]
 
     @property
     def motor_names(self) -> list[str]:

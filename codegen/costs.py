@@ -31,7 +31,7 @@ class FunctionCost:
     """Cost of a function in a float build.
 
     Attributes:
-        name: of the C function.
+        name: of the C function, and in brackets the case that was measured, if it is special.
         m4: instructions on a Cortex-M4F.
         m7: instructions on a Cortex-M7.
         text: code of the source it stands in, on the M7 [bytes].
@@ -47,6 +47,11 @@ class FunctionCost:
     rodata: int
     stack: int
     digest: str
+
+    @property
+    def function(self) -> str:
+        """Name of the C function."""
+        return self.name.split()[0]
 
 
 @dataclass(frozen=True)
@@ -92,7 +97,7 @@ def stored_costs(prefix: str, files: Mapping[str, str]) -> Costs | None:
         return None
     costs = _from_json(path.read_text(encoding="utf-8"))
     digests = cost_digests(prefix, files)
-    functions = tuple(f for f in costs.functions if f.digest == digests.get(f.name))
+    functions = tuple(f for f in costs.functions if f.digest == digests.get(f.function))
     shared = tuple(s for s in costs.shared if s.digest == digests.get(s.name))
     return replace(costs, functions=functions, shared=shared) if functions else None
 

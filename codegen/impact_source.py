@@ -7,9 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from softimpact.symbolic import Robot, closed_chain
+from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
+from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import directions_of_motion
+from .directions import directions_of_motion
 from .functions import Symbols, has_potential, links_of
 from .functions.guards import fastest_arrival, heaviest
 from .impacts import Impact, draw_impacts, reference_force
@@ -23,11 +25,8 @@ GOLDEN_IMPACTS = 12
 ACCURACY = 2e-3
 """Bound stated of the error of peak forces, in double and in float."""
 
-HORIZON = 0.5
+HORIZON = QUASI_STATIC_FROM
 """Default time in which forces count [s]: what a transient limit is stated for."""
-
-REACTION_TIME = 0.02
-"""Default time until motors are released [s]."""
 
 STEPS = 800
 """Default budget of steps of a call."""

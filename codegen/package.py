@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 
@@ -24,6 +23,7 @@ from .functions import coordinates_of, functions_of, symbols_of
 from .impact_source import GOLDEN_IMPACTS, NOT_MEASURED, impact_source
 from .inputs import parameters_of
 from .manifest import MANIFEST, FunctionRecord, Manifest, Real
+from .names import c_name
 from .poses import checked_poses
 from .render import MEASURED_SAMPLES, Package, render
 from .replay import replay
@@ -44,17 +44,6 @@ GOLDEN_CASES = 12
 
 CHAIN_ORDER = 3
 """Masses of the chain unless another number is asked for, or the robot has fewer coordinates."""
-
-TAKEN = frozenset((
-    "assert", "complex", "ctype", "errno", "fenv", "float", "inttypes", "iso646", "limits",
-    "locale", "math", "setjmp", "signal", "stdalign", "stdarg", "stdatomic", "stdbit", "stdbool",
-    "stdckdint", "stddef", "stdint", "stdio", "stdlib", "stdnoreturn", "string", "tgmath",
-    "threads", "time", "uchar", "wchar", "wctype",
-    "arm",
-    "all", "clean", "edit_cache", "help", "install", "package", "rebuild_cache", "test",
-))  # fmt: skip
-"""Names that a package cannot have: headers of C, what DSP libraries use (``arm_status``), then
-targets of CMake."""
 
 
 def unseen(what: str, done: int, of: int) -> None:
@@ -179,6 +168,7 @@ def package_of(
     _check(robot, real, gravity, chain_order, floating)
     chain_order = chain_order or min(CHAIN_ORDER, longest_chain(robot))
     checked = checked_poses(robot, poses or {})
+    watched = {TIP: frame, **checked_points(robot, points or {})}
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot, payload=payload is not None)
     defaults = defaults_of(robot, parameters, drives_, payload)
@@ -219,7 +209,7 @@ def package_of(
         impact=impact_source(
             prefix,
             symbols,
-            {TIP: frame, **checked_points(robot, points or {})},
+            watched,
             golden=GOLDEN_IMPACTS if verified else 0,
         ),
         poses=checked,
@@ -231,19 +221,16 @@ def package_of(
 
 def checked_points(robot: Robot, points: Mapping[str, str]) -> dict[str, str]:
     """Return contact points by name; raises InvalidValue, FrameNotFound."""
+    seen = {TIP}
     for name, frame in points.items():
-        if not name.isidentifier() or not name.isascii() or name == TIP:
+        if not name.isidentifier() or not name.isascii():
             raise InvalidValue("points", f"'{name}' is no name of a contact point in C")
+        if name.lower() in seen:
+            raise InvalidValue("points", f"'{name}' is the name of two contact points in C")
+        seen.add(name.lower())
         if robot.frame(frame).joint < 0:
             raise InvalidValue("points", f"frame '{frame}' is fixed to the base and never moves")
     return dict(points)
-
-
-def c_name(name: str) -> str:
-    """Return a C identifier in lower case for a robot's name, fit for a header and for CMake."""
-    words = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
-    usable = words[:1].isalpha() and words not in TAKEN
-    return words if usable else f"robot_{words}".rstrip("_")
 
 
 def _check(

@@ -16,6 +16,7 @@ from softimpact.symbolic import REGIONS, JointKind, Robot, closed_chain
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 
 from . import sine
+from .bindings import bindings
 from .configuration_source import ConfigurationSource
 from .costs import Costs, stored_costs
 from .defaults import Default
@@ -142,6 +143,7 @@ def render(package: Package) -> tuple[dict[str, str], Costs | None]:
     rendered = sources(package, show)
     for path in ("test/golden.h", "test/golden.c", "test/run_tests.c", "fuzz/fuzz.c", "LICENSE"):
         rendered[path] = show(Path(path).name)
+    rendered |= bindings(interface_of(rendered[f"include/{name}.h"], name), show)
     compiled = sorted(path for path in rendered if path.startswith("src/") and path.endswith(".c"))
     rendered["CMakeLists.txt"] = show("CMakeLists.txt", sources=compiled)
     costs = stored_costs(name, rendered)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.symbolic import InvalidValue, Motors
+from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
@@ -23,7 +24,7 @@ from .repair import accurate_springs
 from .solve import Mode, Outcome, Start, better, solve
 from .study import Study
 from .timing import Timing
-from .workers import as_completed, awake, workers
+from .workers import as_completed, awake, cores, workers, works_elsewhere
 
 MODES: tuple[Mode, ...] = ("table", "free")
 
@@ -108,7 +109,7 @@ class Answers:
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class Design(Record):
     """Results of a study.
 
     Attributes:
@@ -122,6 +123,8 @@ class Design:
         compiled: whether the NLP ran as machine code.
     """
 
+    UNSHOWN = ("study", "timing")
+
     study: Study
     poses: tuple[PoseResult, ...]
     winner: Outcome
@@ -129,6 +132,25 @@ class Design:
     answers: Answers
     timing: Timing
     compiled: bool
+
+    def rows(self) -> list[Row]:
+        """Return a line for each search: the pose it began with, posture, springs and force."""
+        names = self.study.robot.joint_names
+        return [
+            {
+                "pose": found.name,
+                "mode": mode,
+                "force": found.force,
+                "force_before": pose.force_before,
+                "deflection": largest_deflection(self.study, found.q, found.springs),
+                "solved": found.solved,
+                **{f"q_{name}": float(x) for name, x in zip(names, found.q, strict=True)},
+                **{f"k_{name}": float(k) for name, k in zip(names, found.springs, strict=True)},
+            }
+            for pose in self.poses
+            for mode, found in (("table", pose.table), ("free", pose.free))
+            if found is not None
+        ]
 
     def outcomes(self, mode: Mode) -> list[Outcome]:
         """Return the outcomes of a mode, in the study's order."""
@@ -159,9 +181,9 @@ def design(
     modes = applicable(study, modes)
     require_reachable(study, modes)
     outcomes: dict[tuple[str, Mode], Outcome] = {}
-    with workers(len(study.poses), executor) as pool:
+    with workers(min(len(study.poses), cores()), executor) as pool:
         awake(pool, len(study.poses))
-        problem = prepare(study)
+        problem = prepare(study, elsewhere=works_elsewhere(executor))
         poses = problem.poses
         for mode in modes:
             starts = [_start(study, p, mode, outcomes.get((p.pose.name, "table"))) for p in poses]
@@ -169,10 +191,10 @@ def design(
                 outcomes[outcome.name, outcome.mode] = outcome
                 if on_outcome is not None:
                     on_outcome(outcome)
-        again = _laggards(study, poses, outcomes) if modes == MODES else []
-        for outcome in _run(problem, again, pool):
-            key = outcome.name, outcome.mode
-            outcomes[key] = better(outcomes[key], outcome)
+        for begin in (_stiffest_of, _best_of) if "free" in modes else ():
+            for outcome in _run(problem, _laggards(study, poses, outcomes, begin), pool):
+                key = outcome.name, outcome.mode
+                outcomes[key] = better(outcomes[key], outcome)
     solved = [outcome for outcome in outcomes.values() if outcome.solved]
     if not solved:
         raise SolverFailure(list(outcomes.values()))
@@ -280,21 +302,33 @@ def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None
     return Start(candidate.pose.name, mode, points, fallbacks)
 
 
-def _laggards(
-    study: Study, poses: Sequence[Candidate], outcomes: dict[tuple[str, Mode], Outcome]
-) -> list[Start]:
-    """Return another start, with the stiffest joints, for free searches that end above the best.
+Begin = Callable[[Study, Candidate, Outcome], tuple[Array, Array]]
+"""Where a laggard begins again: posture and springs, by the study, its pose and the best found."""
 
-    Where the springs of a given posture were not sought, they have begun there already.
-    """
+
+def _stiffest_of(study: Study, pose: Candidate, best: Outcome) -> tuple[Array, Array]:
+    return pose.q, study.upper
+
+
+def _best_of(study: Study, pose: Candidate, best: Outcome) -> tuple[Array, Array]:
+    return best.q, best.springs
+
+
+def _laggards(
+    study: Study,
+    poses: Sequence[Candidate],
+    outcomes: dict[tuple[str, Mode], Outcome],
+    begin: Begin,
+) -> list[Start]:
+    """Return another start for free searches that failed or end above the best."""
     found = {name: outcome for (name, mode), outcome in outcomes.items() if mode == "free"}
-    solved = [outcome.force for outcome in found.values() if outcome.solved]
+    solved = [outcome for outcome in found.values() if outcome.solved]
     if not solved:
         return []
-    enough = LAGS_BEHIND * min(solved)
-    late = {name for name, o in found.items() if not o.solved or o.force > enough}
+    best = min(solved, key=lambda outcome: outcome.force)
+    late = {n for n, o in found.items() if not o.solved or o.force > LAGS_BEHIND * best.force}
     return [
-        Start(pose.pose.name, "free", ((pose.q, study.upper),))
+        Start(pose.pose.name, "free", (begin(study, pose, best),))
         for pose in poses
         if pose.pose.name in late
     ]

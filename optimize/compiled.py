@@ -63,7 +63,7 @@ def _compile(
     key = hashlib.sha256(source.read_bytes())
     key.update(" ".join([*compiler, *FLAGS, sys.platform, platform.machine()]).encode())
     library = folder / f"impact_{key.hexdigest()[:24]}.so"
-    if library.exists():
+    if library.exists() and _loads(library):
         LOGGER.info("take compiled impacts from %s", library)
     else:
         LOGGER.info("compile impacts with %s into %s", compiler[0], library)
@@ -75,3 +75,12 @@ def _compile(
         ctypes.CDLL(str(built))  # raises OSError for code of another machine
         built.replace(library)
     return library
+
+
+def _loads(library: Path) -> bool:
+    """Return whether a library in the cache is whole, and of this machine."""
+    try:
+        ctypes.CDLL(str(library))
+    except OSError:
+        return False
+    return True

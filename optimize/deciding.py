@@ -8,15 +8,14 @@ worse; the derivatives of the other are most of its price.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from softimpact.symbolic.robot.rigid import Array
 
 from .ipopt import Bounds, Found, Instance, impact_forces, minimise
 from .nlp import Program
+from .objectives.objective import Indices
 
 NEAR = 0.98
 """Share of the worst force from which on an impact is carried from the start."""
@@ -65,7 +64,7 @@ def _shares(program: Program, instance: Instance, postures: Array, v: Array) -> 
     return np.array([force.max() for force in forces]) / instance.units
 
 
-def _some(instance: Instance, carried: NDArray[np.integer[Any]]) -> Instance:
+def _some(instance: Instance, carried: Indices) -> Instance:
     """Return the NLP with some of its impacts."""
     shape, places = instance.shape, [int(i) for i in carried]
     own = [shape.scenarios[i] for i in places]

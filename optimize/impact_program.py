@@ -27,7 +27,7 @@ from softimpact.symbolic import (
 )
 from softimpact.symbolic.matrices import Factorisation
 from softimpact.symbolic.robot.rigid import Array
-from softimpact.toolchain import c_compiler
+from softimpact.toolchain import c_compiler, cache_folder
 
 from .compiled import compiled_functions
 from .hardware import Hardware, Machine
@@ -61,13 +61,15 @@ class ImpactProgram:
     A process can load them.
 
     Attributes:
-        functions: names and serialised functions, none where there is a library, since every job
-            carries them: ``forces`` (x, p) -> all nodes [N]; ``peaks`` (x, p,
-            boundary) -> one for each window [N]; ``slopes``, the same and its derivative by x.
+        functions: names and serialised functions, none where there is a library that all workers
+            share, since every job carries them: ``forces`` (x, p) -> all nodes [N]; ``peaks``
+            (x, p, boundary) -> one for each window [N]; ``slopes``, the same and its derivative
+            by x.
         library: their compiled form, None to run in CasADi's virtual machine.
         n: number of joints.
         nodes: times at which the force is taken.
         parts: of the hardware that are sought.
+        compiles: whether a process that has no such library makes its own, if it can.
     """
 
     functions: tuple[tuple[str, str], ...]
@@ -75,17 +77,32 @@ class ImpactProgram:
     n: int
     nodes: int
     parts: Parts = SPRINGS
+    compiles: bool = False
 
     def __getitem__(self, name: str) -> ca.Function:
         """Return a function by name."""
-        return _loaded(name, dict(self.functions).get(name), self.library)
+        return _loaded(name, self.functions, self.library, self.compiles)
 
 
 @lru_cache(maxsize=64)
-def _loaded(name: str, serialised: str | None, library: Path | None) -> ca.Function:
+def _loaded(
+    name: str, functions: tuple[tuple[str, str], ...], library: Path | None, compiles: bool
+) -> ca.Function:
+    if compiles:
+        library = _library_here(functions, library)
     if library is not None:
         return ca.external(name, str(library))
-    return ca.Function.deserialize(serialised)
+    return ca.Function.deserialize(dict(functions)[name])
+
+
+@lru_cache(maxsize=8)
+def _library_here(functions: tuple[tuple[str, str], ...], library: Path | None) -> Path | None:
+    """Return what is in this process's cache, or compile what was sent; None without a compiler."""
+    folder = cache_folder()
+    if folder is not None and library is not None and (folder / library.name).exists():
+        return folder / library.name
+    loaded = [ca.Function.deserialize(serialised) for _, serialised in functions]
+    return compiled_functions(loaded, c_compiler())
 
 
 def impact_numbers(
@@ -119,6 +136,7 @@ def impact_program(
     parts: Parts = SPRINGS,
     *,
     compiled: bool,
+    elsewhere: bool = False,
 ) -> ImpactProgram:
     """Return the program of a robot whose joints are all elastic.
 
@@ -129,13 +147,14 @@ def impact_program(
         point: frame that hits; default the model's tip, which carries the load.
         parts: of the hardware that are sought.
         compiled: whether to compile, if there is a compiler.
+        elsewhere: whether the program must run without this machine's library, too.
     """
     functions = impact_functions(model, nodes, substeps, point or model.tip, parts)
     library = compiled_functions(functions, c_compiler()) if compiled else None
     carried: tuple[tuple[str, str], ...] = ()
-    if library is None:
+    if library is None or elsewhere:
         carried = tuple((function.name(), function.serialize()) for function in functions)
-    return ImpactProgram(carried, library, model.robot.n, nodes, parts)
+    return ImpactProgram(carried, library, model.robot.n, nodes, parts, compiles=elsewhere)
 
 
 def impact_functions(

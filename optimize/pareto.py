@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .evaluation import largest_deflection
@@ -29,7 +30,7 @@ from .stiffest import Stiffest, stiffest
 from .study import Study
 from .sweep import Level, sweep
 from .timing import Timing
-from .workers import workers
+from .workers import cores, workers, works_elsewhere
 
 RIGID = 1e-12
 """Deflection [m] that counts as none."""
@@ -56,7 +57,7 @@ class Reference:
 
 
 @dataclass(frozen=True, eq=False)
-class Pareto:
+class Pareto(Record):
     """Fronts of a study.
 
     Attributes:
@@ -69,6 +70,8 @@ class Pareto:
         timing: of the impacts simulated.
         compiled: whether the NLP ran as machine code.
     """
+
+    UNSHOWN = ("study", "timing")
 
     study: Study
     levels: Array
@@ -83,6 +86,21 @@ class Pareto:
     def task(self) -> Front:
         """The front of the task's pose."""
         return self.held[self.study.task_pose.name]
+
+    def rows(self) -> list[Row]:
+        """Return a line for each point of the fronts."""
+        fronts = {"free": self.free, "given": self.given, **self.held}
+        return [
+            {
+                "front": name,
+                "bound": point.bound,
+                "deflection": point.deflection,
+                "force": point.force,
+                "from": point.outcome.name,
+            }
+            for name, front in fronts.items()
+            for point in front.points
+        ]
 
     @property
     def searches(self) -> int:
@@ -108,10 +126,10 @@ def pareto_fronts(
         SolverFailure: no search with a free posture was solved.
     """
     _require_deflection(study)
-    problem = prepare(study)
+    problem = prepare(study, elsewhere=works_elsewhere(executor))
     ends = {pose.pose.name: stiffest(study, pose.q, "table") for pose in problem.poses}
     accurate = _most_accurate(problem, ends)
-    with workers(max(len(ends), study.levels.points), executor) as pool:
+    with workers(min(max(len(ends), study.levels.points), cores()), executor) as pool:
         searches = Searches(problem, pool, on_progress or (lambda *_: None))
         soft = softest_design(searches, ends)
         levels = _levels(searches, accurate, ends[study.task_pose.name], soft)

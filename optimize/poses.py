@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, InvalidValue, Joint, JointKind
+from softimpact.symbolic import InvalidValue, Joint, JointKind
 from softimpact.symbolic.robot.rigid import Array
 
-from .repair import posture_at_pose
+from .repair import held_elsewhere, posture_at_pose
 from .study import Pose, Study
-from .tip_pose import POSE, tip_pose, tip_pose_error
+from .tip_pose import POSE, tip_pose, tip_pose_error, tip_poses
 
 TURNED = 0.1
 """Angle [rad] about the base from which a pose counts as another one, turned."""
@@ -65,25 +65,36 @@ def candidates(study: Study) -> list[Candidate]:
         InvalidValue: a pose cannot be moved to where it holds the tip exactly, as the study wants.
     """
     task = tip_pose(study.model, study.task_pose.q)
-    return [_candidate(study, pose, task) for pose in study.poses]
+    first, given = study.robot.joints[0], np.array([pose.q for pose in study.poses])
+    turns = np.zeros(len(given))
+    if first.kind is JointKind.HINGE:
+        turns = _best_turns(study, given, task)
+        turns[abs(turns) <= TURNED] = 0.0
+    back = given.copy()
+    back[:, 0] = [
+        _within_limits(first, q - turn) for q, turn in zip(given[:, 0], turns, strict=True)
+    ]
+    served = back.copy()
+    for i in held_elsewhere(study, back, *task) if study.exact else ():
+        served[i] = _moved(study, study.poses[i], back[i], task)
+    offsets = np.linalg.norm(tip_poses(study.model, served)[0] - task[0], axis=1)
+    moved = abs(served - back).max(axis=1)
+    numbers = zip(
+        study.poses, turns.tolist(), moved.tolist(), served, offsets.tolist(), strict=True
+    )
+    return [Candidate(*each) for each in numbers]
 
 
-def _candidate(study: Study, pose: Pose, task: tuple[Array, Array]) -> Candidate:
-    turned = 0.0
-    if study.robot.joints[0].kind is JointKind.HINGE:
-        turn = _best_turn(study.model, pose.q, task)
-        turned = turn if abs(turn) > TURNED else 0.0
-    back = pose.q.copy()
-    back[0] = _within_limits(study.robot.joints[0], back[0] - turned)
-    q = posture_at_pose(study, back, *task) if study.exact else back
+def _moved(study: Study, pose: Pose, back: Array, task: tuple[Array, Array]) -> Array:
+    """Return the posture near a pose that serves the task."""
+    q = posture_at_pose(study, back, *task)
     if q is None:
         raise InvalidValue(
             f"{study.source}: poses.{pose.name}.q",
             f"no posture near it holds the tip where pose '{study.task_pose.name}' does; change "
             "it, or set task.exact = false",
         )
-    offset = np.linalg.norm(tip_pose(study.model, q)[0] - task[0])
-    return Candidate(pose, turned, float(abs(q - back).max()), q, float(offset))
+    return q
 
 
 def _within_limits(joint: Joint, angle: float) -> float:
@@ -92,18 +103,18 @@ def _within_limits(joint: Joint, angle: float) -> float:
     return next((a for a in same if joint.lower <= a <= joint.upper), angle)
 
 
-def _best_turn(model: ImpactModel, q: Array, task: tuple[Array, Array]) -> float:
-    """Angle of the first joint that, taken back, brings the tip's axes nearest to the task's."""
+def _best_turns(study: Study, postures: Array, task: tuple[Array, Array]) -> Array:
+    """Angles of the first joint that, taken back, bring the tip's axes nearest to the task's."""
 
-    def agreement(turn: float) -> float:
-        moved = q.copy()
-        moved[0] -= turn
-        position, rotation = tip_pose(model, moved)
-        miss = np.sum((position - task[0]) ** 2)
-        return float(np.sum(rotation * task[1]) - miss / np.sum(task[0] ** 2))
+    def agreement(turn: float) -> Array:
+        moved = postures.copy()
+        moved[:, 0] -= turn
+        position, rotation = tip_poses(study.model, moved)
+        miss = np.sum((position - task[0]) ** 2, axis=1)
+        return np.asarray(np.sum(rotation * task[1], axis=(1, 2)) - miss / np.sum(task[0] ** 2))
 
     # over turns the agreement is a + b cos + c sin: three samples give its maximum
     at = [agreement(turn) for turn in (0.0, 2 * np.pi / 3, -2 * np.pi / 3)]
     cosine = 2 * at[0] - at[1] - at[2]
     sine = np.sqrt(3.0) * (at[1] - at[2])
-    return float(np.arctan2(sine, cosine))
+    return np.asarray(np.arctan2(sine, cosine))

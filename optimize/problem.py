@@ -61,8 +61,10 @@ class Problem:
         return Instance(shape, task[None, :], impacts, np.full(len(impacts), unit))
 
 
-def prepare(study: Study) -> Problem:
+def prepare(study: Study, *, elsewhere: bool = False) -> Problem:
     """Place a study's poses, time its impacts, and build and compile its NLP.
+
+    With ``elsewhere`` its functions run on other machines, too.
 
     Raises:
         InvalidValue: as ``candidates`` and ``impact_timing``.
@@ -70,7 +72,14 @@ def prepare(study: Study) -> Problem:
     poses = tuple(candidates(study))
     timing = impact_timing(study, [pose.q for pose in poses])
     parts = sought_parts(study)
-    impact = impact_program(study.model, timing.nodes, timing.substeps, parts=parts, compiled=True)
+    impact = impact_program(
+        study.model,
+        timing.nodes,
+        timing.substeps,
+        parts=parts,
+        compiled=True,
+        elsewhere=elsewhere,
+    )
     program = study_program(study, (impact,))
     before = tuple(peak_force(study, impact, timing, pose.q, study.nominal) for pose in poses)
     return Problem(study, poses, before, timing, program, Bounds.of(study))

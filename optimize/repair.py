@@ -8,6 +8,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
@@ -40,6 +41,15 @@ def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) ->
     p = np.concatenate([q, pose])
     found = solver(x0=q, p=p, lbx=lower, ubx=upper, lbg=0, ubg=0)
     return np.array(found["x"]).ravel() if solver.stats()["success"] else None
+
+
+def held_elsewhere(
+    study: Study, postures: Array, position: Array, rotation: Array
+) -> NDArray[np.int64]:
+    """Return the numbers of postures, m×n, that do not hold the tip at a pose."""
+    pose = np.concatenate([position, rotation.ravel(order="F")])
+    errors = np.array(_pose_error(study.model)(postures.T, np.tile(pose[:, None], len(postures))))
+    return np.flatnonzero(abs(errors).max(axis=0) >= HELD)
 
 
 @lru_cache(maxsize=8)

@@ -17,6 +17,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.record import Record
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
@@ -38,7 +39,7 @@ from .study import Study, transient_limit
 from .timing import Timing, scenario_timing
 from .tip_pose import tip_pose
 from .variables.cover import Cover
-from .workers import as_completed, workers
+from .workers import as_completed, cores, workers, works_elsewhere
 
 ROUNDS = 40
 """Most exchanges."""
@@ -54,7 +55,7 @@ MOST_AT_ONCE = 300
 
 
 @dataclass(frozen=True, eq=False)
-class RobustDesign:
+class RobustDesign(Record):
     """One machine for all scenarios, and what the answer means.
 
     Attributes:
@@ -78,6 +79,8 @@ class RobustDesign:
         bought: the springs of the catalogue, and what they cost; None without one. ``springs`` are
             then these, and ``bound`` is that of springs of any stiffness.
     """
+
+    UNSHOWN = ("study", "scenarios", "timing")
 
     study: Study
     scenarios: Scenarios
@@ -129,10 +132,18 @@ def robust_design(
     require_reachable(study, scenarios.poses, free=free)
     timing, parts = scenario_timing(study, scenarios), sought_parts(study)
     impacts = tuple(
-        impact_program(study.model, timing.nodes, timing.substeps, point, parts, compiled=True)
+        impact_program(
+            study.model,
+            timing.nodes,
+            timing.substeps,
+            point,
+            parts,
+            compiled=True,
+            elsewhere=works_elsewhere(executor),
+        )
         for point in scenarios.points
     )
-    with workers(max(2, len(scenarios) // PIECE), executor) as pool:
+    with workers(min(max(2, len(scenarios) // PIECE), cores()), executor) as pool:
         setting = Setting(
             study,
             scenarios,

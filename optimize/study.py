@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from softimpact.robots import study_path
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
@@ -33,6 +34,7 @@ from softimpact.symbolic import (
 from softimpact.symbolic.impact.drives import PerJoint, require_rotors
 from softimpact.symbolic.robot.rigid import Array
 
+from .approach import singular_postures
 from .bounds import Bound, Deflection
 from .hardware import Motion
 from .objectives import Objective, WorstForce
@@ -210,14 +212,14 @@ def load_study(path: str | Path, overrides: dict[str, dict[str, Any]] | None = N
     """Read and check a study file.
 
     Args:
-        path: a TOML file.
+        path: a TOML file, or the name of a built-in study.
         overrides: values that replace the file's, by section and field, as a command line gives.
 
     Raises:
         InvalidValue: a field is missing, unknown, of the wrong type or out of range; names file
             and field.
     """
-    source = Path(path)
+    source = study_path(path)
     return build_study(read_study_file(source, overrides or {}), source)
 
 
@@ -262,9 +264,10 @@ def build_study(file: StudyFile, source: Path) -> Study:
     with _naming(source, "objective", "kind"):
         objective = asked_objective(file.objective)
         require_fit(objective, bounds)
-    for pose in poses:
-        with _naming(source, "impact", f"direction at pose '{pose.name}'"):
-            approach_velocity(model, pose.q, direction)
+    stuck = singular_postures(model, np.array([pose.q for pose in poses]), direction)
+    for i in stuck[:1]:
+        with _naming(source, "impact", f"direction at pose '{poses[i].name}'"):
+            approach_velocity(model, poses[i].q, direction)
     return Study(
         title=file.title or source.stem,
         source=source,

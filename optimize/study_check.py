@@ -10,14 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
+from softimpact.robots import study_path
 from softimpact.symbolic import InvalidValue
-from softimpact.symbolic.errors import did_you_mean
 
 from .poses import candidates
 from .study import build_study, robot_of_study
-from .study_file import RobotSection, StudyFile, read_toml
+from .study_file import Fault, RobotSection, StudyFile, fault_in_words, read_toml
 from .timing import require_time_steps
 
 ROUNDS = 100
@@ -60,7 +60,7 @@ def study_problems(path: str | Path) -> list[Problem]:
     A field that is wrong is replaced, and the rest looked at again. What depends on a robot that
     cannot be read is not looked at.
     """
-    source = Path(path)
+    source = study_path(path)
     try:
         content = read_toml(source)
     except InvalidValue as error:
@@ -89,15 +89,11 @@ def study_problems(path: str | Path) -> list[Problem]:
     return sorted(dict.fromkeys(found), key=lambda problem: problem.line or 0)
 
 
-Fault = tuple[tuple[str | int, ...], str]
-"""Where in a study something is wrong, and what."""
-
-
 def _faults(content: dict[str, Any], source: Path) -> list[Fault]:
     try:
         file = StudyFile.model_validate(deepcopy(content))
     except ValidationError as error:
-        return [_of_form(dict(fault)) for fault in error.errors()]
+        return [fault_in_words(dict(fault)) for fault in error.errors()]
     try:
         build_study(file, source)
     except InvalidValue as error:
@@ -126,33 +122,6 @@ def _of_robot(content: dict[str, Any], source: Path) -> list[Fault]:
     except InvalidValue as error:
         return [(tuple(error.field.removeprefix(f"{source}: ").split(".")), error.reason)]
     return []
-
-
-def _of_form(fault: dict[str, Any]) -> Fault:
-    """Words for a field of the wrong form, with the name that may have been meant."""
-    place, reason = tuple(fault["loc"]), str(fault["msg"]).removeprefix("Value error, ")
-    if not place:  # a check of the whole, which names its field itself
-        field, _, words = reason.partition(": ")
-        return tuple(field.split(".")), words
-    if fault["type"] == "extra_forbidden":
-        reason = f"unknown{did_you_mean(str(place[-1]), _fields_of(place[:-1]))}"
-    elif fault["type"] == "missing":
-        reason = "is missing"
-    return place, reason
-
-
-def _fields_of(place: Sequence[str | int]) -> list[str]:
-    """Names of the fields that a section may have."""
-    kind: Any = StudyFile
-    for part in place:
-        if isinstance(part, int):
-            continue
-        field = kind.model_fields.get(part)
-        parts = (field.annotation, *getattr(field.annotation, "__args__", ())) if field else ()
-        kind = next((p for p in parts if isinstance(p, type) and issubclass(p, BaseModel)), None)
-        if kind is None:
-            return []
-    return list(kind.model_fields)
 
 
 def _place(content: dict[str, Any], field: str) -> tuple[str | int, ...]:

@@ -4,12 +4,17 @@
 from __future__ import annotations
 
 import tomllib
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from softimpact.robots import built_in_studies
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
+from softimpact.symbolic.errors import did_you_mean
 from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, Reaction
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -52,7 +57,7 @@ class MotorsSection(_Section):
     reaction_time: Annotated[float, Field(ge=0)] = REACTION_TIME
     reaction: Reaction = "release"
     stopping_time: Positive = STOPPING_TIME
-    horizon: Positive = 0.5
+    horizon: Positive = QUASI_STATIC_FROM
 
 
 class HardwareSection(_Section):
@@ -160,7 +165,7 @@ class StudyFile(_Section):
     @model_validator(mode="after")
     def _poses_are_named_once(self) -> StudyFile:
         names = [pose.name for pose in self.poses]
-        repeated = {name for name in names if names.count(name) > 1}
+        repeated = {name for name, count in Counter(names).items() if count > 1}
         if repeated:
             raise ValueError(f"poses: named more than once: {', '.join(sorted(repeated))}")
         if self.task.pose_of not in names:
@@ -193,7 +198,8 @@ def read_toml(source: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(source.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
-        raise InvalidValue(str(source), "no such study file") from None
+        known = ", ".join(built_in_studies())
+        raise InvalidValue(str(source), f"no such study file; built in: {known}") from None
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidValue(str(source), f"cannot be read: {error}") from None
     except tomllib.TOMLDecodeError as error:
@@ -201,8 +207,41 @@ def read_toml(source: Path) -> dict[str, Any]:
 
 
 def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
-    first = error.errors()[0]
-    field = ".".join(str(part) for part in first["loc"])
-    more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+    """Return the fault that tells most: a name that is not known, before one that is missing."""
+    faults = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+    place, reason = fault_in_words(dict(faults[0]))
+    field = ".".join(str(part) for part in place)
     where = f"{source}: {field}" if field else str(source)
-    return InvalidValue(where, f"{first['msg'].removeprefix('Value error, ')}{more}")
+    more = f" (and {len(faults) - 1} more; softimpact check lists all)" if faults[1:] else ""
+    return InvalidValue(where, f"{reason}{more}")
+
+
+Fault = tuple[tuple[str | int, ...], str]
+"""Where in a study something is wrong, and what."""
+
+
+def fault_in_words(fault: Mapping[str, Any]) -> Fault:
+    """Words for a field of the wrong form, with the name that may have been meant."""
+    place, reason = tuple(fault["loc"]), str(fault["msg"]).removeprefix("Value error, ")
+    if not place:  # a check of the whole, which names its field itself
+        field, _, words = reason.partition(": ")
+        return tuple(field.split(".")), words
+    if fault["type"] == "extra_forbidden":
+        reason = f"unknown{did_you_mean(str(place[-1]), _fields_of(place[:-1]))}"
+    elif fault["type"] == "missing":
+        reason = "is missing"
+    return place, reason
+
+
+def _fields_of(place: Sequence[str | int]) -> list[str]:
+    """Names of the fields that a section may have."""
+    kind: Any = StudyFile
+    for part in place:
+        if isinstance(part, int):
+            continue
+        field = kind.model_fields.get(part)
+        parts = (field.annotation, *getattr(field.annotation, "__args__", ())) if field else ()
+        kind = next((p for p in parts if isinstance(p, type) and issubclass(p, BaseModel)), None)
+        if kind is None:
+            return []
+    return list(kind.model_fields)

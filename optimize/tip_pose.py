@@ -36,6 +36,12 @@ def tip_pose(model: ImpactModel, q: Array) -> tuple[Array, Array]:
     return np.array(position).ravel(), np.array(rotation)
 
 
+def tip_poses(model: ImpactModel, postures: Array) -> tuple[Array, Array]:
+    """Return the tip's positions, m×3 [m], and rotations, m×3×3, of postures, m×n."""
+    position, rotation = _tip_function(model)(postures.T)
+    return np.array(position).T, np.array(rotation).T.reshape(-1, 3, 3).transpose(0, 2, 1)
+
+
 @lru_cache(maxsize=8)
 def _tip_function(model: ImpactModel) -> ca.Function:
     q = ca.SX.sym("q", model.robot.n)

@@ -30,18 +30,18 @@ class WorkerLost(Exception):
     def __init__(self) -> None:
         super().__init__(
             "a worker process was ended from outside, perhaps for want of memory; "
-            "close other programs or use fewer workers"
+            "close other programs or use fewer workers; --resume goes on from here"
         )
 
 
 @contextmanager
-def workers(jobs: int, given: Executor | None = None) -> Iterator[Executor]:
+def workers(count: int, given: Executor | None = None) -> Iterator[Executor]:
     """Return an executor to use with ``with``; one that was given stays open.
 
     An exception, an interruption above all, ends jobs that run and drops those that wait.
 
     Args:
-        jobs: most that will run at once.
+        count: number of processes.
         given: the caller's executor, None for a process for each core.
 
     Raises:
@@ -51,7 +51,7 @@ def workers(jobs: int, given: Executor | None = None) -> Iterator[Executor]:
         yield given
         return
     context = _Context()
-    pool = ProcessPoolExecutor(min(jobs, _cores()), context, initializer=_prepare_worker)
+    pool = ProcessPoolExecutor(count, context, initializer=_prepare_worker)
     try:
         yield pool
     except BaseException as error:
@@ -63,9 +63,14 @@ def workers(jobs: int, given: Executor | None = None) -> Iterator[Executor]:
         pool.shutdown(cancel_futures=True)
 
 
+def works_elsewhere(executor: Executor | None) -> bool:
+    """Return whether jobs may run on other machines, which have no library of this one."""
+    return bool(getattr(executor, "elsewhere", False))
+
+
 def awake(pool: Executor, jobs: int) -> None:
     """Let worker processes start and load what they need while this one prepares their jobs."""
-    for _ in range(min(jobs, _cores())):
+    for _ in range(min(jobs, cores())):
         pool.submit(_load)
 
 
@@ -89,7 +94,7 @@ def as_completed(jobs: Iterable[Future[Result]]) -> Iterator[Future[Result]]:
             continue
 
 
-def _cores() -> int:
+def cores() -> int:
     """Number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))

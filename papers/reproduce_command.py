@@ -144,7 +144,7 @@ def _print(record: dict[str, Any], out: Path) -> None:
 
     if "comparisons" in record:
         _print_verdicts("Printed numbers of MSM", record["verdicts"])
-        others = [line for line in record["comparisons"] if line.verdict != "agrees"]
+        others = [x for x in record["comparisons"] if x.verdict not in ("agrees", "input")]
         print_table(
             "Where they differ",
             ("quantity", "scenario", "unit", "printed", "ours", "verdict"),

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Time simulation of impacts: full nonlinear, linearised, chain, two masses, one mass."""
 
-from .approach import Approach
+from .arrival import Approach
 from .assessment import Assessment, assess_impact
+from .assessments import Assessments, assess_impacts
 from .bracket import bracket
 from .controller import Controller, Reference
 from .decoupling import Decoupling, decoupling_stiffness, is_isolated, scaled_springs
@@ -17,6 +18,7 @@ __all__ = [
     "HORIZON",
     "Approach",
     "Assessment",
+    "Assessments",
     "Controller",
     "Decoupling",
     "Fidelity",
@@ -27,6 +29,7 @@ __all__ = [
     "Reference",
     "SimulationFailed",
     "assess_impact",
+    "assess_impacts",
     "bracket",
     "decoupling_stiffness",
     "is_isolated",

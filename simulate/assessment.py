@@ -15,9 +15,10 @@ from softimpact.symbolic.body.shapes import Shape
 from softimpact.symbolic.body.verdict import Limits, Verdict, judge, limits_of
 from softimpact.symbolic.impact.motors import refuse_held
 from softimpact.symbolic.impact.two_body import TwoBody, moving_mass, two_body
+from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Approach, arrival_of
+from .arrival import Approach, arrival_of
 from .band import ImpactBand, impact_band
 from .bracket import bracket
 from .controller import Controller
@@ -29,7 +30,7 @@ from .tolerances import Tolerances
 
 
 @dataclass(frozen=True, eq=False)
-class Assessment:
+class Assessment(Record):
     """One impact, held against every limit.
 
     Attributes:
@@ -75,6 +76,24 @@ class Assessment:
     def safe_speed(self) -> float | None:
         """Largest speed that keeps every limit at every end [m/s]."""
         return None if self.safe_speeds is None else min(self.safe_speeds.values())
+
+    def rows(self) -> list[Row]:
+        """Return a line for each end of what the motors may do."""
+        return [self._row(kind, history) for kind, history in self.ends.items()]
+
+    def _row(self, kind: str, history: ImpactHistory) -> Row:
+        verdict = _verdict(self.limits, history)
+        return {
+            "motors": kind,
+            "peak": history.peak,
+            "time_of_peak": history.time_of_peak,
+            "first_contact": history.first_contact,
+            "pressing": history.pressing,
+            "share_of_limit": verdict.share,
+            "binding": verdict.binding,
+            "verdict": verdict.ruling,
+            "safe_speed": None if self.safe_speeds is None else self.safe_speeds[kind],
+        }
 
 
 def assess_impact(

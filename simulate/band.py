@@ -21,7 +21,7 @@ from softimpact.symbolic.body.verdict import Limits
 from softimpact.symbolic.impact.motors import MotorLaw
 from softimpact.symbolic.robot.rigid import Array, Inertia
 
-from .approach import Approach, Arrival, arrival_of
+from .arrival import Approach, Arrival, arrival_of
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import LinearSystem, given_motion, linear_system, modes
 from .stepping import Bodies, LargestForces, ManyPeaks, Stage, at_first_touch, faster, slower

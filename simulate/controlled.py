@@ -25,7 +25,7 @@ from softimpact.symbolic import (
 )
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Arrival
+from .arrival import Arrival
 from .controller import Controller
 from .linear import chain_stiffness, check_order
 from .mechanism import BodyKind, Mechanism

@@ -9,12 +9,10 @@ from typing import Literal, get_args
 import numpy as np
 
 from softimpact.symbolic import InvalidValue, UnknownName
+from softimpact.symbolic.impact.motors import REACTION_TIME
 
 Reference = Literal["moving", "held"]
 """Motors' wanted motion after first touch: on with the speed of arrival, or none."""
-
-REACTION_TIME = 0.02
-"""From first touch to the reaction [s] (MSM §3.1.3)."""
 
 
 @dataclass(frozen=True)

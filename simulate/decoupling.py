@@ -13,7 +13,7 @@ import numpy as np
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors
 from softimpact.symbolic.impact.chain import ChainEnd
 
-from .approach import Approach
+from .arrival import Approach
 from .controller import Controller
 from .history import Fidelity, ImpactHistory
 from .impact import simulate_impact

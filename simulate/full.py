@@ -23,7 +23,7 @@ from softimpact.symbolic.impact.motors import MotorLaw
 from softimpact.symbolic.matrices import Matrix
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Arrival
+from .arrival import Arrival
 from .controller import Controller
 from .full_mechanism import full_simulator
 from .mechanism import BodyKind

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from softimpact.symbolic import InvalidValue, Motors, UnknownName
+from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
+from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 Fidelity = Literal["one_mass", "two_mass", "chain", "linearised", "full"]
@@ -15,15 +17,15 @@ Fidelity = Literal["one_mass", "two_mass", "chain", "linearised", "full"]
 PeakDefinition = Literal["peak", "first_contact", "first_peak"]
 """Maximum over all contacts, maximum until separation, or first local maximum (MSM's)."""
 
-HORIZON = 0.5
-"""How long the transient limit counts after first touch [s] (ISO/TS 15066, 5.5.4)."""
+HORIZON = QUASI_STATIC_FROM
+"""How long forces count by default: as long as the transient limit does [s]."""
 
 PRESSED_UNTIL = 0.6
 """Until when the force is followed that a clamped body still bears after ``HORIZON`` [s]."""
 
 
 @dataclass(frozen=True, eq=False)
-class ImpactHistory:
+class ImpactHistory(Record):
     """The contact force of an impact.
 
     The peaks part where a light mass at the contact point bounces before what is behind it
@@ -62,6 +64,12 @@ class ImpactHistory:
     separation: float | None
     pressing: float | None
     largest_torque: Array | None = None
+
+    def rows(self) -> list[Row]:
+        """Return a line for each time."""
+        columns = (self.time.tolist(), self.force.tolist(), self.reading.tolist())
+        names = ("time", "force", "reading")
+        return [dict(zip(names, values, strict=True)) for values in zip(*columns, strict=True)]
 
     def force_of(self, definition: PeakDefinition = "peak") -> float:
         """Return the peak force [N] of a definition.

@@ -13,7 +13,7 @@ from softimpact.symbolic.impact.chain import ChainEnd
 from softimpact.symbolic.impact.motors import check_motors
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Approach, Arrival, arrival_of
+from .arrival import Approach, Arrival, arrival_of
 from .controlled import controlled, controlled_scene
 from .controller import Controller, check_controller
 from .events import Course, course_of, peaks_of

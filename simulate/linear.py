@@ -15,7 +15,7 @@ from softimpact.symbolic.impact.chain import ChainEnd
 from softimpact.symbolic.impact.motors import PRESCRIBED, MotorLaw
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Arrival
+from .arrival import Arrival
 from .mechanism import BodyKind, Mechanism
 from .scene import Motion
 from .simulator import Simulator, build_simulator

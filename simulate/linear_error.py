@@ -12,7 +12,7 @@ from softimpact.symbolic import ImpactModel, InvalidValue, Robot, bias_torques, 
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 from softimpact.symbolic.matrices import Matrix
 
-from .approach import Approach, arrival_of
+from .arrival import Approach, arrival_of
 
 UNSEEN = 0.005
 """Share of the force by which ``full`` may differ beyond the estimate: of 265 random impacts of

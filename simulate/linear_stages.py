@@ -18,7 +18,7 @@ from softimpact.symbolic.impact.chain import ChainEnd
 from softimpact.symbolic.impact.motors import MotorLaw
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import Arrival
+from .arrival import Arrival
 from .linear import Modes, given_motion, linear_system, modal_simulator, modes
 from .mechanism import BodyKind
 from .scene import Leg, Motion, Scene, Stage, one_stage

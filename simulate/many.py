@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from softimpact.symbolic import Contact, ImpactModel, Motors, generalised_velocity
 
-from .approach import Approach, arrival_of
+from .arrival import Approach, arrival_of
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import given_motion, linear_system, modes
 from .stepping import Bodies, LargestForces, ManyPeaks, Stage, at_first_touch, faster, slower

@@ -75,7 +75,7 @@ class BodyKind:
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class BodySymbols:
     """A body region and the law of contact in front of it, as symbols (MSM §3.1).
 
     Attributes:
@@ -101,11 +101,11 @@ class Body:
     law_parameters: Matrix
 
     @staticmethod
-    def symbols(kind: BodyKind) -> Body:
+    def symbols(kind: BodyKind) -> BodySymbols:
         """Return a body of fresh symbols."""
         k_h, c_h, m_h, m_p, x_0 = (ca.SX.sym(name) for name in ("k_h", "c_h", "m_h", "m_p", "x_0"))
         numbers = ca.SX.sym("law", len(kind.law.parameters))
-        return Body(
+        return BodySymbols(
             with_numbers(kind.law, ca.vertsplit(numbers)),
             k_h,
             c_h,
@@ -173,7 +173,7 @@ class Press:
     rate: Matrix
 
 
-def press(robot: Mechanism, body: Body, kind: BodyKind) -> Press:
+def press(robot: Mechanism, body: BodySymbols, kind: BodyKind) -> Press:
     """Return how a robot presses on a body: a law, a plate if any, spring and damper, a mass."""
     depth = robot.displacement - body.node
     force = body.law.force(depth)

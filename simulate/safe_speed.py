@@ -13,7 +13,7 @@ from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors
 from softimpact.symbolic.impact.chain import ChainEnd
 from softimpact.symbolic.impact.motors import refuse_held
 
-from .approach import Approach, arrival_of
+from .arrival import Approach, arrival_of
 from .controller import Controller
 from .history import HORIZON, Fidelity, ImpactHistory, PeakDefinition
 from .impact import simulate_impact

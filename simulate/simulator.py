@@ -15,7 +15,7 @@ import numpy as np
 from softimpact.symbolic import SoftImpactError
 from softimpact.symbolic.matrices import Matrix
 
-from .mechanism import Body, BodyKind, Mechanism, Press, body_units, press
+from .mechanism import BodyKind, BodySymbols, Mechanism, Press, body_units, press
 
 NODES = 400
 """Intervals of a run's time grid."""
@@ -63,7 +63,7 @@ def build_simulator(robot: Mechanism, kind: BodyKind, tolerance: float) -> Simul
         kind: of the body.
         tolerance: relative and absolute, for an approach of 1 m/s.
     """
-    body = Body.symbols(kind)
+    body = BodySymbols.symbols(kind)
     speed, span = ca.SX.sym("v"), ca.SX.sym("T")
     pressed = press(robot, body, kind)
     state = ca.vertcat(robot.position, robot.velocity, robot.memory, body.state)

@@ -3,19 +3,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from itertools import product
+from typing import TYPE_CHECKING, Any
 
 from . import options as o
 
 if TYPE_CHECKING:
     from softimpact.symbolic import Analysis
 
+    from .situation import Situation
+
 
 def analyze(
     model: o.Model,
     q: o.Configuration,
-    direction: o.Direction,
-    tip: o.Tip = None,
+    direction: o.Directions,
+    tip: o.Tips = None,
     end: o.End = None,
     lock: o.Lock = None,
     hold_base: o.HoldBase = False,
@@ -32,7 +35,10 @@ def analyze(
     order: o.Order = 3,
     json: o.Json = False,
 ) -> None:
-    """Print what an impact meets: m_c, k_r, m_a, the chain and the impact factors."""
+    """Print what an impact meets: m_c, k_r, m_a, the chain and the impact factors.
+
+    Points and directions may be repeated: all combinations are analysed then.
+    """
     from softimpact.symbolic import analyse
 
     from .output import print_json, print_warnings
@@ -43,19 +49,54 @@ def analyze(
         joint_stiffness, rotor_inertia, position_gain, computed_torque_gain, gear_ratio
     )
     known, _ = motors_of(TypedMotors(motors), given)
-    arm = TypedArm(model, tip, end, lock, payload, tool, hold_base)
-    scene = situation(Typed(arm, q, direction, given, gravity, motor_angles))
     law = None if known is None else known.kind
-    result = analyse(scene.model, scene.q, scene.direction, order, law)
-    warnings = [*scene.warnings, *unknown_rotors(scene.model)]
+    points: list[str | None] = [*tip] if tip else [None]
+    found, warnings = [], []
+    for point, along in product(points, direction):
+        arm = TypedArm(model, point, end, lock, payload, tool, hold_base)
+        scene = situation(Typed(arm, q, along, given, gravity, motor_angles))
+        found.append((scene, analyse(scene.model, scene.q, scene.direction, order, law)))
+        warnings += [*scene.warnings, *unknown_rotors(scene.model)]
+    warnings = list(dict.fromkeys(warnings))
     print_warnings(warnings)
-    if json:
-        robot = scene.model.robot
-        about = {"robot": robot.name, "joints": robot.joint_names, "tip": scene.model.tip}
-        numbers = {"q": scene.q, "direction": scene.direction, **vars(result)}
-        print_json({**about, **numbers, "warnings": warnings})
-        return
-    _print_tables(result)
+    records = [_record(scene, result) for scene, result in found]
+    if json and len(found) > 1:
+        print_json({"analyses": records, "warnings": warnings})
+    elif json:
+        print_json({**records[0], "warnings": warnings})
+    elif len(found) > 1:
+        _print_rows(found)
+    else:
+        _print_tables(found[0][1])
+
+
+def _record(scene: Situation, result: Analysis) -> dict[str, Any]:
+    robot = scene.model.robot
+    about = {"robot": robot.name, "joints": robot.joint_names, "tip": scene.model.tip}
+    return {**about, "q": scene.q, "direction": scene.direction, **vars(result)}
+
+
+def _print_rows(found: list[tuple[Situation, Analysis]]) -> None:
+    """Print a line for each point and direction."""
+    from .output import print_table
+
+    print_table(
+        "What the impacts meet",
+        ("point", "direction", "m_c kg", "k_r N/m", "m_a kg", "rigid kg", "GIAF", "along n"),
+        [
+            (
+                scene.model.tip,
+                ", ".join(f"{x:.3g}" for x in scene.direction),
+                result.m_c,
+                result.k_r,
+                result.m_a,
+                result.reflected_mass_rigid,
+                result.giaf,
+                result.directional_giaf,
+            )
+            for scene, result in found
+        ],
+    )
 
 
 def _print_tables(result: Analysis) -> None:

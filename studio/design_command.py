@@ -11,7 +11,10 @@ import typer
 from . import options as o
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from softimpact.optimize import Design, Study
+    from softimpact.optimize.execution import Execution
     from softimpact.optimize.solve import Mode
 
     from .design_report import DesignReport
@@ -37,12 +40,17 @@ def design(
     motors: o.StudyMotors = None,
     reaction_time: o.ReactionTime = None,
     page: o.Report = None,
+    workers: o.Workers = None,
+    dask: o.Dask = None,
+    resume: o.Resume = False,
     json: o.Json = False,
 ) -> None:
     """Find the joint stiffness and the posture of least peak force with Ipopt."""
     from softimpact.optimize import load_study
+    from softimpact.optimize.execution import Execution
 
     from .design_report import GENERATOR, as_record, design_report
+    from .execution import running
     from .output import failures_as_json, print_json
     from .results_folder import replaced_folder, require_folder_of, require_replaceable
     from .values import given
@@ -55,12 +63,13 @@ def design(
     folder = out or Path("results") / problem.source.stem
     require_replaceable(folder, GENERATOR)
     require_folder_of(page)
+    how = Execution(workers, dask, resume)
     if problem.scenarios is not None:
-        _robust(problem, folder, page, json)
+        _robust(problem, folder, page, how, json)
         return
     modes = _modes(mode, problem)
-    with failures_as_json(json):
-        found = _search(problem, modes)
+    with failures_as_json(json), running(how, folder) as pool:
+        found = _search(problem, modes, pool)
     report = design_report(found)
     record = as_record(report)
     with replaced_folder(folder, GENERATOR) as fresh:
@@ -75,7 +84,7 @@ def design(
         _print(report, folder)
 
 
-def _robust(study: Study, folder: Path, page: Path | None, json: bool) -> None:
+def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json: bool) -> None:
     """Design one machine for all scenarios."""
     from softimpact.codegen import generate_package
     from softimpact.optimize.robust import robust_design
@@ -83,6 +92,7 @@ def _robust(study: Study, folder: Path, page: Path | None, json: bool) -> None:
     from softimpact.optimize.study_scenarios import scenarios_of
 
     from .design_report import GENERATOR
+    from .execution import running
     from .output import failures_as_json, print_json, say, write_json
     from .progress import optimiser_bar
     from .results_folder import RESULTS, replaced_folder
@@ -90,13 +100,13 @@ def _robust(study: Study, folder: Path, page: Path | None, json: bool) -> None:
 
     asked, scenarios = study.scenarios, scenarios_of(study)
     free = isinstance(asked, ScenariosSection) and asked.posture == "free"
-    with failures_as_json(json), optimiser_bar() as progress:
+    with failures_as_json(json), running(how, folder) as pool, optimiser_bar() as progress:
         task = progress.add_task("compile", total=None)
 
         def advance(what: str, done: int, total: int) -> None:
             progress.update(task, description=what, completed=done, total=total)
 
-        found = robust_design(study, scenarios, on_progress=advance, free=free)
+        found = robust_design(study, scenarios, pool, advance, free=free)
     record = robust_record(found)
     with replaced_folder(folder, GENERATOR) as fresh:
         write_json(fresh / RESULTS, record)
@@ -127,7 +137,7 @@ def _modes(name: str, study: Study) -> tuple[Mode, ...]:
     return applicable(study, MODES if chosen == "both" else (chosen,))
 
 
-def _search(study: Study, modes: tuple[Mode, ...]) -> Design:
+def _search(study: Study, modes: tuple[Mode, ...], pool: Executor) -> Design:
     """Run the design with a progress bar on stderr."""
     from softimpact.optimize import Outcome
     from softimpact.optimize import design as search
@@ -141,7 +151,7 @@ def _search(study: Study, modes: tuple[Mode, ...]) -> Design:
             best = f"{outcome.name} {outcome.mode}: {outcome.force:.1f} N"
             progress.update(task, advance=1, description=best)
 
-        return search(study, modes, on_outcome=advance)
+        return search(study, modes, pool, advance)
 
 
 def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:

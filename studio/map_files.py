@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from softimpact.symbolic.record import plain
+
 from .design_report import versions
 from .figures.safety_map import map_figure
-from .output import plain, print_table, write_json
+from .output import print_table, write_json
 from .results_folder import RESULTS
 from .safety_map import SafetyMap
 
@@ -25,6 +27,7 @@ def map_record(found: SafetyMap) -> dict[str, Any]:
     return {
         "generator": GENERATOR,
         "versions": versions(),
+        "arm": found.arm,
         "robot": robot.name,
         "robot_digest": robot.digest(),
         "joints": robot.joint_names,

@@ -45,6 +45,23 @@ Direction = Annotated[
     str,
     typer.Option("--direction", metavar="LIST", help="Direction of the impact in the base's axes."),
 ]
+Tips = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--tip",
+        metavar="FRAME",
+        help="Contact frame, or BODY@x,y,z for any point of a body (m); default the model's own. "
+        "May be repeated.",
+    ),
+]
+Directions = Annotated[
+    list[str],
+    typer.Option(
+        "--direction",
+        metavar="LIST",
+        help="Direction of the impact in the base's axes; may be repeated.",
+    ),
+]
 JointStiffness = Annotated[
     str | None,
     typer.Option(
@@ -186,4 +203,19 @@ Report = Annotated[
     typer.Option(
         "--report", metavar="FILE", help="Write a report: one HTML page that opens offline."
     ),
+]
+
+Workers = Annotated[
+    int | None,
+    typer.Option("--workers", metavar="N", help="Processes that search; default one a core."),
+]
+Dask = Annotated[
+    str | None,
+    typer.Option(
+        "--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster whose workers search."
+    ),
+]
+Resume = Annotated[
+    bool,
+    typer.Option("--resume", help="Go on where an earlier run of this study was ended."),
 ]

@@ -5,21 +5,20 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import typer
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
+
+from softimpact.symbolic.record import plain
 
 Cell = float | str | None
 
@@ -43,27 +42,6 @@ def tables_as_csv(wanted: bool) -> Iterator[None]:
 def say(line: str) -> None:
     """Print a line for people to stdout; to stderr where stdout is for a machine."""
     typer.echo(line, err=AS_CSV.get())
-
-
-def plain(value: Any) -> Any:
-    """Return a value as JSON has it: dataclasses and arrays opened, NaN and infinity as null."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
-    if hasattr(value, "full"):  # a CasADi matrix of numbers
-        value = value.full().ravel() if 1 in value.shape else value.full()
-    if isinstance(value, (np.ndarray, np.generic)):
-        return plain(value.tolist())
-    if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
-    return _scalar(value)
-
-
-def _scalar(value: Any) -> Any:
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    return str(value) if isinstance(value, Path) else value
 
 
 def print_json(result: Mapping[str, Any]) -> None:

@@ -11,6 +11,8 @@ import typer
 from . import options as o
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from softimpact.optimize import Study
 
     from .pareto_report import ParetoReport
@@ -32,11 +34,16 @@ def pareto(
     region: o.Region = None,
     speed: o.Speed = None,
     page: o.Report = None,
+    workers: o.Workers = None,
+    dask: o.Dask = None,
+    resume: o.Resume = False,
     json: o.Json = False,
 ) -> None:
     """Find the least peak force at every accuracy: fronts with the posture free and held."""
     from softimpact.optimize import load_study
+    from softimpact.optimize.execution import Execution
 
+    from .execution import running
     from .output import failures_as_json, print_json
     from .pareto_record import GENERATOR, as_record
     from .results_folder import replaced_folder, require_folder_of, require_replaceable
@@ -47,8 +54,9 @@ def pareto(
     folder = out or Path("results") / f"{problem.source.stem}_pareto"
     require_replaceable(folder, GENERATOR)
     require_folder_of(page)
-    with failures_as_json(json):
-        report = _search(problem)
+    how = Execution(workers, dask, resume)
+    with failures_as_json(json), running(how, folder) as pool:
+        report = _search(problem, pool)
     record = as_record(report)
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(report, record, fresh)
@@ -62,7 +70,7 @@ def pareto(
         _print(report, folder)
 
 
-def _search(study: Study) -> ParetoReport:
+def _search(study: Study, pool: Executor) -> ParetoReport:
     """Find the fronts and check them, with a progress bar on stderr."""
     from softimpact.optimize import pareto_fronts
 
@@ -75,7 +83,7 @@ def _search(study: Study) -> ParetoReport:
         def advance(what: str, done: int, total: int) -> None:
             progress.update(task, description=what, completed=done, total=total)
 
-        return pareto_report(pareto_fronts(study, on_progress=advance), advance)
+        return pareto_report(pareto_fronts(study, pool, advance), advance)
 
 
 def _write(report: ParetoReport, record: dict[str, Any], folder: Path) -> None:

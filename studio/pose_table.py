@@ -7,6 +7,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+from softimpact.robots import study_path
 from softimpact.symbolic import InvalidValue, Robot
 
 
@@ -22,7 +23,7 @@ def pose_table(path: Path, robot: Robot) -> dict[str, Sequence[float]]:
     Raises:
         InvalidValue: what the file holds is neither, or it is another robot's study.
     """
-    if path.suffix == ".toml":
+    if study_path(path).suffix == ".toml":
         return _of_study(path, robot)
     try:
         found = json.loads(path.read_text(encoding="utf-8-sig"))

@@ -36,7 +36,14 @@ from .motion_source import MotionSource, Survey, motion_source, require_all_move
 from .program_record import ProgramResult, program_record
 from .program_run import Question, slowed_program
 from .progress import progress_bar
-from .situation import TypedArm, TypedDrives, drives_of, gravity_of, loaded_arm
+from .situation import (
+    TypedArm,
+    TypedDrives,
+    counted_as_rigid,
+    drives_of,
+    gravity_of,
+    loaded_arm,
+)
 from .typed_motors import TypedMotors, motors_of
 from .zones_file import read_zones
 
@@ -91,7 +98,9 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     question = Question(model, points, bodies, ends, horizon, arm.load)
     answer = slowed_program(source, seen, question, engine, how.band, _progress)
     limits = limits_left(path, np.array([seen.lowest, seen.highest]), robot)
-    warnings = [*arm.warnings, *told, *limits, *assumed, *_cautions(robot, bodies, seen)]
+    rigid = counted_as_rigid(model, how.drives)
+    cautions = _cautions(robot, bodies, seen)
+    warnings = [*arm.warnings, *rigid, *told, *limits, *assumed, *cautions]
     record = program_record(path, question, answer, [*warnings, *answer.warnings])
     return ProgramResult(question, answer, record)
 

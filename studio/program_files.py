@@ -10,10 +10,11 @@ from typing import Any
 
 from softimpact.simulate.program import Danger
 from softimpact.symbolic import InvalidValue
+from softimpact.symbolic.record import plain
 
 from .figures.program import program_figure
 from .figures.style import save
-from .output import plain, write_json
+from .output import write_json
 from .program_record import ProgramResult
 from .program_run import Question
 from .program_table import ProgramTable

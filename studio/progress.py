@@ -18,6 +18,7 @@ from rich.progress import (
     TaskID,
     TextColumn,
     TimeElapsedColumn,
+    TimeRemainingColumn,
 )
 
 from softimpact.toolchain import c_compiler
@@ -83,7 +84,14 @@ def progress_bar() -> Progress:
     console = Console(stderr=True)
     if not console.is_terminal:
         return _Lines(console)
-    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    columns = (
+        "{task.description}",
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        "left",
+        TimeRemainingColumn(),
+    )
     return Progress(*columns, console=console)
 
 

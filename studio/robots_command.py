@@ -7,8 +7,8 @@ from .options import Json
 
 
 def robots(json: Json = False) -> None:
-    """List the built-in robots; their frames are in --json."""
-    from softimpact.robots import built_in_robots
+    """List the built-in robots and studies; robots' frames are in --json."""
+    from softimpact.robots import built_in_robots, built_in_studies
     from softimpact.symbolic import load_robot
 
     from .output import print_json, print_table
@@ -26,7 +26,7 @@ def robots(json: Json = False) -> None:
         for name, (robot, path) in found.items()
     ]
     if json:
-        print_json({"robots": entries})
+        print_json({"robots": entries, "studies": built_in_studies()})
         return
     print_table(
         "Built-in robots",
@@ -42,3 +42,4 @@ def robots(json: Json = False) -> None:
             for name, (robot, path) in found.items()
         ],
     )
+    print_table("Built-in studies", ("name",), [(name,) for name in built_in_studies()])

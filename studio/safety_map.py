@@ -82,6 +82,7 @@ class SafetyMap:
     """A map; arrays have an entry for each posture, NaN where the tip cannot go that way.
 
     Attributes:
+        arm: as typed.
         model: the robot.
         over: what it is over.
         postures: in the order of the map, N×n.
@@ -106,6 +107,7 @@ class SafetyMap:
         warnings: a line each.
     """
 
+    arm: TypedArm
     model: ImpactModel
     over: Over
     postures: Array
@@ -180,6 +182,7 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         raise InvalidValue("q", f"is where no map can begin: {told[0]}")
     found, assumed = bracket(model, motors, reaction)
     ends = {kind: end for kind, end in found.items() if isinstance(end, Motors)}
+    _require_rotors(model, ends, horizon)
     ground = _ground(model, q, over, how)
     if asked is None:
         direction, guess = worst_directions(model, ground.postures, body, ends, seen)
@@ -193,6 +196,7 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
     seen(len(rows))
     formula = two_body(body.region, body.clamped, float(moving_mass(robot)), arm.load)
     return SafetyMap(
+        arm=how.arm,
         model=model,
         over=over,
         postures=ground.postures,
@@ -218,6 +222,20 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         hold=ground.hold,
         warnings=(*arm.warnings, *told, *assumed, *_cautions(model, body, len(rows), direction)),
     )
+
+
+def _require_rotors(model: ImpactModel, ends: Mapping[str, Motors], horizon: float) -> None:
+    """Refuse rotors of nothing behind springs where motors are free or let go."""
+    rotors = np.array(model.drives.rotors, dtype=float).ravel()
+    none = np.array(model.drives.elastic) & np.array(model.robot.actuated) & (rotors == 0)
+    led = all(end.kind == "driven" and end.reaction_time >= horizon for end in ends.values())
+    if none.any() and not led:
+        name = model.robot.joint_names[int(none.argmax())]
+        raise InvalidValue(
+            "rotor_inertia",
+            f"of joint '{name}' is 0, which no motor behind a spring has; give it, or choose "
+            "driven motors with --reaction-time inf",
+        )
 
 
 def _body(how: TypedMap) -> Contact:

@@ -7,9 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import casadi as ca
+import numpy as np
+
 from softimpact.optimize import Candidate, Study, candidates
+from softimpact.optimize.many_postures import peaks_of_postures
 from softimpact.simulate import Fidelity
-from softimpact.symbolic import InvalidValue, analyse
+from softimpact.symbolic import InvalidValue, analyse, directional_giaf, giaf
 from softimpact.symbolic.robot.rigid import Array
 
 from .checks import simulated
@@ -65,7 +69,11 @@ def ranking(study: Study, criterion: Criterion, fidelity: Fidelity) -> list[Pose
     Raises:
         InvalidValue: the criterion does not apply to the robot.
     """
-    found = [_figures(study, candidate, fidelity) for candidate in candidates(study)]
+    given = candidates(study)
+    if fidelity == "linearised" and len(given) > MANY:
+        found = _of_many(study, given)
+    else:
+        found = [_figures(study, candidate, fidelity) for candidate in given]
     if any(getattr(pose, criterion) is None for pose in found):
         raise InvalidValue("by", f"{criterion} does not apply to robot '{study.robot.name}'")
     more_is_better = criterion in ("giaf", "directional_giaf")
@@ -86,6 +94,57 @@ def _figures(study: Study, candidate: Candidate, fidelity: Fidelity) -> PoseFigu
         directional_giaf=figures.directional_giaf,
         peak_force=simulated(study, q, study.nominal, fidelity).peak,
     )
+
+
+MANY = 100
+"""Configurations beyond which all are looked at at once, by the program of a design: the same
+model, to 0.1 %, in a thousandth of the time. The best are simulated again."""
+
+AGAIN = 3
+"""Configurations of least force that are simulated, each for itself."""
+
+
+def _of_many(study: Study, given: Sequence[Candidate]) -> list[PoseFigures]:
+    """Return the figures of many configurations."""
+    postures = np.array([candidate.q for candidate in given])
+    forces = peaks_of_postures(study, postures)
+    for i in np.argsort(forces)[:AGAIN]:
+        forces[i] = simulated(study, postures[i], study.nominal, "linearised").peak
+    figures = np.array(_all_figures(study)(postures.T)).T
+    found = []
+    for candidate, row, force in zip(given, figures.tolist(), forces.tolist(), strict=True):
+        named = dict(zip(FIGURES, row, strict=True))
+        if not np.isfinite(row).all() or min(row) < SMALL:  # what may not apply there
+            exact = analyse(study.model, candidate.q, study.direction)
+            named = {name: getattr(exact, name) for name in FIGURES}
+        found.append(
+            PoseFigures(
+                name=candidate.pose.name,
+                q=candidate.q,
+                turned=candidate.turned,
+                **named,
+                peak_force=force,
+            )
+        )
+    return found
+
+
+FIGURES = ("m_c", "k_r", "m_a", "giaf", "directional_giaf")
+"""Names in ``PoseFigures`` and in ``softimpact.symbolic.Analysis``."""
+
+SMALL = 1e-9
+"""Figure below which it may not apply."""
+
+
+def _all_figures(study: Study) -> ca.Function:
+    """Return q -> ``FIGURES``."""
+    model, n = study.model, ca.DM(study.direction)
+    q = ca.SX.sym("q", model.robot.n)
+    reduced = model.reduced(q, n)
+    free, real = model.free_mobility(q), model.mobility(q)
+    along = directional_giaf(free, real, n)
+    found = [reduced.m_c, reduced.k_r, reduced.m_a, giaf(free, real), along]
+    return ca.Function("figures", [q], [ca.vertcat(*found)], {"cse": True})
 
 
 def record(

@@ -11,10 +11,13 @@ from . import options as o
 
 BODY = "What is hit"
 
-Region = Annotated[
-    str | None,
+Regions = Annotated[
+    list[str] | None,
     typer.Option(
-        metavar="NAME", help="Region or area of the body: chest, hand, ...", rich_help_panel=BODY
+        "--region",
+        metavar="NAME",
+        help="Region or area of the body: chest, hand, ...; may be repeated.",
+        rich_help_panel=BODY,
     ),
 ]
 Body = Annotated[
@@ -102,10 +105,10 @@ SafeSpeed = Annotated[
 def simulate(
     model: o.Model,
     q: o.Configuration,
-    direction: o.Direction,
-    region: Region = None,
+    direction: o.Directions,
+    region: Regions = None,
     speed: Speed = None,
-    tip: o.Tip = None,
+    tip: o.Tips = None,
     end: o.End = None,
     lock: o.Lock = None,
     hold_base: o.HoldBase = False,
@@ -139,9 +142,13 @@ def simulate(
     order: o.Order = 3,
     json: o.Json = False,
 ) -> None:
-    """Simulate an impact and hold it against what the body may bear."""
+    """Simulate an impact and hold it against what the body may bear.
+
+    Points, directions and regions may be repeated: all combinations are simulated then.
+    """
     from .impact import TypedBody, TypedImpact, impact
     from .impact_record import print_impact, record_of
+    from .impacts import combinations, impacts, print_impacts
     from .output import print_json, print_warnings
     from .situation import Typed, TypedArm, TypedDrives
     from .typed_motors import TypedMotors
@@ -156,10 +163,12 @@ def simulate(
         torque_limit,
         servo=motors == "servo",
     )
-    arm = TypedArm(model, tip, end, lock, payload, tool, hold_base)
-    where = Typed(arm, q, direction, given, gravity, motor_angles)
+    points: list[str | None] = [*tip] if tip else [None]
+    regions: list[str | None] = [*region] if region else [None]
+    arm = TypedArm(model, points[0], end, lock, payload, tool, hold_base)
+    where = Typed(arm, q, direction[0], given, gravity, motor_angles)
     how = TypedImpact(
-        body=TypedBody(region, body, cover, clamped, shape),
+        body=TypedBody(regions[0], body, cover, clamped, shape),
         speed=speed,
         fidelity=fidelity,
         joint_velocity=joint_velocity,
@@ -172,6 +181,12 @@ def simulate(
         pid=pid,
         reference=reference,
     )
+    asked = combinations(where, how, points, direction, regions)
+    if len(asked) > 1:
+        several = impacts(asked, report)
+        print_warnings(several["warnings"])
+        (print_json if json else print_impacts)(several)
+        return
     answer = impact(where, how)
     result = record_of(answer)
     print_warnings(result["warnings"])

@@ -26,7 +26,7 @@ from softimpact.symbolic import (
     whole_configuration,
     with_load,
 )
-from softimpact.symbolic.impact.drives import PerJoint
+from softimpact.symbolic.impact.drives import RIGID_FROM, PerJoint
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 from softimpact.symbolic.robot.rigid import Array
 
@@ -144,9 +144,22 @@ def situation(typed: Typed) -> Situation:
     angles = (
         link_angles(model, np.array(q)) if typed.motor_angles else whole_configuration(robot, q)
     )
-    return Situation(
-        model, angles, direction, arm.load, (*arm.warnings, *beyond_limits(robot, angles))
+    warnings = (
+        *arm.warnings,
+        *counted_as_rigid(model, typed.drives),
+        *beyond_limits(robot, angles),
     )
+    return Situation(model, angles, direction, arm.load, warnings)
+
+
+def counted_as_rigid(model: ImpactModel, typed: TypedDrives) -> list[str]:
+    """Return a line if springs were given that are too stiff to differ from none."""
+    if typed.joint_stiffness is None:
+        return []
+    stiffest = np.array(values.per_joint("joint_stiffness", typed.joint_stiffness), dtype=float)
+    if np.all(np.isinf(stiffest) | (stiffest < RIGID_FROM)):
+        return []
+    return [f"joints of {RIGID_FROM:g} N·m/rad and more count as rigid"]
 
 
 def unknown_rotors(model: ImpactModel) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .options import Json
+from . import options as o
 
 GENERATOR = "softimpact studio"
 """Marks a folder as one that may be replaced."""
@@ -19,8 +19,8 @@ What = Annotated[
     str,
     typer.Argument(
         metavar="[MODEL|STUDY|RESULTS]",
-        help="Built-in robot, model file, study (.toml), or folder that design, pareto or program "
-        "wrote.",
+        help="Built-in robot, model file, study (.toml), or folder that design, pareto, program "
+        "or map wrote.",
         show_default=False,
     ),
 ]
@@ -32,30 +32,43 @@ Out = Annotated[
 ]
 
 
-def studio(what: What = "panda", out: Out = None, json: Json = False) -> None:
+def studio(
+    what: What = "panda",
+    out: Out = None,
+    tip: o.Tip = None,
+    lock: o.Lock = None,
+    hold_base: o.HoldBase = False,
+    json: o.Json = False,
+) -> None:
     """Explore impacts in the browser: posture, direction, springs, motors; the C computes there."""
     import webbrowser
 
     from platformdirs import user_cache_path
 
-    from .output import print_json
+    from .output import print_json, print_warnings, say
     from .page.opened import opened
     from .page.write import page_of
     from .results_folder import replaced_folder, require_replaceable
+    from .situation import TypedArm
 
     if out is not None:
         require_replaceable(out, GENERATOR)
-    text = page_of(opened(what))
+    asked = TypedArm(what, tip, lock=lock, hold_base=hold_base)
+    shown = opened(what, None if asked == TypedArm(what) else asked)
+    text = page_of(shown)
+    print_warnings(shown.warnings)
     folder = out or user_cache_path("softimpact") / "studio"
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(text, fresh, what)
     page = (folder / PAGE).resolve()
     if json:
-        print_json({"page": page})
-    elif out is not None:
-        print(f"wrote {page}")
-    if out is None and not webbrowser.open(page.as_uri()) and not json:
-        print(f"open {page} in a browser")
+        print_json({"page": page, "warnings": shown.warnings})
+        return
+    if out is not None:
+        say(f"wrote {page}")
+    if out is None:
+        is_open = webbrowser.open(page.as_uri())
+        say(f"opened {page}" if is_open else f"open {page} in a browser")
 
 
 def _write(text: str, folder: Path, what: str) -> None:

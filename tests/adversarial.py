@@ -3,10 +3,10 @@
 
 Usage: python tests/adversarial.py [--count N] [--climbs N] [--seed N] [--out FILE] [ROBOT ...]
 
-For each robot, in float and in double, ``count`` random cases and ``climbs`` climbs of 40 turns from
-the worst of them. Every safe speed and two lower speeds of each case are integrated by Runge and
-Kutta's method (``codegen/impact_oracle.c``); what exceeds its limit there is integrated once more in
-finer steps. Ends with 1 if a force exceeds its limit still.
+For each robot, in float and in double, ``count`` random cases and ``climbs`` climbs of 40 turns
+from the worst of them. The safe speed and two lower speeds of each case are integrated by Runge and
+Kutta's method (``codegen/impact_oracle.c``), those that come near the limit once more in finer
+steps. Ends with 1 if a force exceeds its limit.
 """
 
 from __future__ import annotations

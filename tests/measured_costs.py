@@ -17,6 +17,9 @@ from softimpact.codegen.costs import Costs, FunctionCost, Instructions, SharedCo
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "[^"]*\\n(\d+) bytes \((.*?)\)')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
 
+FEW_STEPS = 250
+"""Budget of the safe speed that is counted apart: motors drive on, released after 20 ms, 0.1 s."""
+
 
 @dataclass(frozen=True)
 class Call:
@@ -28,6 +31,7 @@ class Call:
         inputs: name of the array that ``in`` points into.
         region: type of the region; None where there is none.
         rounds: how often each input is repeated.
+        case: what is special about it, in a word; none for most.
     """
 
     function: str
@@ -35,6 +39,12 @@ class Call:
     inputs: str
     region: str | None = None
     rounds: int = 200
+    case: str = ""
+
+    @property
+    def name(self) -> str:
+        """The function's name, and the case in brackets."""
+        return f"{self.function} ({self.case})" if self.case else self.function
 
     @property
     def defines(self) -> list[str]:
@@ -71,6 +81,14 @@ def calls(package: Generated) -> list[Call]:
             full = f"{name}_{short}"
             text = f"{full}(in->q, in->n, {number}, &region, &in->p, &({full}_t){{0}})%9"  # BOUNDED
             found.append(Call(full, text, f"{name}_golden_impacts", f"{name}_region", rounds=20))
+        NAME, full = name.upper(), f"{name}_safe_speed"
+        p = (
+            f"({name}_params p = in->p; p.motors = {NAME}_MOTORS_DRIVEN; p.steps = {FEW_STEPS};"
+            " p.reaction_time = 0.02f; p.horizon = 0.1f;"
+        )
+        text = f"{p.replace('(', '({', 1)} {text.replace('&in->p', '&p')}; }})"
+        region = f"{name}_region"
+        found.append(Call(full, text, f"{name}_golden_impacts", region, 20, "driven"))
     if package.manifest.poses:
         full = f"{name}_select_configuration"
         table = f"{name}_candidates, {name.upper()}_CANDIDATES, NULL"
@@ -102,24 +120,24 @@ def measure(package: Generated, folder: Path, known: Sequence[FunctionCost] = ()
         str(p.relative_to(package.folder)): p.read_text() for p in package.folder.rglob("*.[ch]")
     }
     digests = cost_digests(package.manifest.name, texts)
-    kept = {f.name: f for f in known if f.digest == digests.get(f.name)}
-    asked = [call for call in calls(package) if call.function not in kept]
+    kept = {f.name: f for f in known if f.digest == digests.get(f.function)}
+    asked = [call for call in calls(package) if call.name not in kept]
     counts: dict[str, dict[str, Instructions]] = {}
     for core in CORES:
         (folder / core).mkdir()
         objects = build(package, core, "float", folder / core)
         counts[core] = {
-            call.function: count(package, core, objects, call, folder / core) for call in asked
+            call.name: count(package, core, objects, call, folder / core) for call in asked
         }
     sizes = sizes_of(objects)
     stacks = stacks_of(folder / "m7")
     own = {source.stem for source in package.folder.glob("src/*.c")}
     functions = {
-        call.function: kept.get(call.function)
+        call.name: kept.get(call.name)
         or FunctionCost(
-            call.function,
-            counts["m4"][call.function],
-            counts["m7"][call.function],
+            call.name,
+            counts["m4"][call.name],
+            counts["m7"][call.name],
             *sizes[call.function],
             stacks[call.function],
             digests[call.function],

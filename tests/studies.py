@@ -53,6 +53,8 @@ def _is_array_of_tables(value: Any) -> bool:
 
 def _toml(value: Any) -> str:
     """JSON's notation, which is TOML's for numbers, strings and lists (and NaN, in lower case)."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{name} = {_toml(item)}" for name, item in value.items()) + " }"
     return json.dumps(value).replace("NaN", "nan").replace("Infinity", "inf")
 
 

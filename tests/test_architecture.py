@@ -16,7 +16,7 @@ MAY_IMPORT = {
     "symbolic": {"robots"},
     "codegen": {"symbolic"},
     "simulate": {"symbolic"},
-    "optimize": {"symbolic", "toolchain"},
+    "optimize": {"robots", "symbolic", "toolchain"},  # built-in studies by name
     "studio": {"robots", "symbolic", "codegen", "simulate", "optimize", "batch", "toolchain"},
     "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: 0BSD */
-/* Robot_ about to touch, and what its impacts are prepared with. */
+/* Robot_ about to touch. */
 #include "robot_impact.h"
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE ROBOT_R(1e-6)
 #define MOST_STEPS 1000000
-/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
-#define BLURS ROBOT_R(1.6e-2)
 
 int robot_check_impact(const robot_region *region, const robot_params *p)
 {
@@ -97,150 +95,19 @@ void robot_kinds_of_motors(const robot_params *p, int *first, int *last)
     *last = both ? ROBOT_MOTORS_DRIVEN : p->motors;
 }
 
-/* Largest stiffness of the skin up to a force. */
-static robot_real skin_stiffness(const robot_region *region, robot_real force)
+int robot_approach(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
+    const robot_region *region, const robot_params *p, robot_impact *impact)
 {
-    const robot_real third = ROBOT_R(1.0)/ROBOT_R(3.0);
-    return ROBOT_R(1.5)*ROBOT_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
-}
-
-robot_real robot_two_body_force(const robot_region *region, robot_real mobility, robot_real speed)
-{
-    const robot_real spring = speed*ROBOT_SQRT(region->stiffness/mobility);
-    const robot_real energy = ROBOT_R(1.25)*speed*speed/mobility;
-    const robot_real skin = ROBOT_POW(energy, ROBOT_R(0.6))*ROBOT_POW(region->hertz_stiffness, ROBOT_R(0.4));
-    return ROBOT_R(1.0)/(ROBOT_R(1.0)/spring + ROBOT_R(1.0)/skin);
-}
-
-robot_real robot_two_body_speed(const robot_region *region, robot_real mobility, robot_real force)
-{
-    const robot_real depth = ROBOT_POW(force/region->hertz_stiffness, ROBOT_R(2.0)/ROBOT_R(3.0));
-    return ROBOT_SQRT(mobility*force*(force/region->stiffness + ROBOT_R(0.8)*depth));
-}
-
-/* Modes of a phase. */
-static int modes_of(robot_impact *impact, int which)
-{
-    robot_phase *const phase = &impact->phase[which];
-    phase->drift = ROBOT_R(0.0);
-    phase->modes.noise = ROBOT_R(0.0);
-    phase->damped = false;
-    for (int i = 0; i < ROBOT_N; ++i) {
-        phase->damping[i] = ROBOT_R(0.0);
+    int status = robot_check_impact(region, p);
+    if (status == ROBOT_OK && !(point >= 0 && point < ROBOT_POINTS)) {
+        status = ROBOT_OUT_OF_RANGE;
     }
-    if (which == ROBOT_LOOSE) {
-        return robot_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
+    if (status == ROBOT_OK) {
+        status = robot_links(ROBOT_LINKS_OF(q, p), &impact->arrival.links);
     }
-    if (impact->motors == ROBOT_MOTORS_DRIVEN) {
-        return robot_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
+    if (status == ROBOT_OK) {
+        status = robot_arrive(n, point, &impact->arrival);
     }
-    for (int i = 0; i < ROBOT_N; ++i) {
-        phase->damping[i] = ROBOT_DAMPING_GAIN(impact->p, i);
-        phase->damped = phase->damped || phase->damping[i] > ROBOT_R(0.0);
-    }
-    return robot_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
-}
-
-#if !ROBOT_STRUCTURED
-static robot_real mobility_of(const robot_modes *modes)
-{
-    robot_real sum = ROBOT_R(0.0);
-    for (int i = 0; i < modes->count; ++i) {
-        sum += modes->row[i]*modes->row[i];
-    }
-    return sum;
-}
-#endif
-
-/* Times at which a phase begins and ends. */
-static robot_real time_of(const robot_impact *impact, int which)
-{
-    const robot_real horizon = ROBOT_HORIZON(impact->p);
-    const robot_real until = which < impact->last ? ROBOT_REACTION_TIME(impact->p) : horizon;
-    return which > impact->first ? horizon - ROBOT_REACTION_TIME(impact->p) : until;
-}
-
-static void steps_of(robot_impact *impact, int which)
-{
-    robot_phase *const phase = &impact->phase[which];
-    const robot_real time = time_of(impact, which);
-    phase->blurred = phase->modes.noise*time*time > BLURS;
-    robot_phase_steps(impact, time, phase);
-    const robot_real numbers[2] = {phase->level[0].h, phase->level[ROBOT_LEVELS - 1].h};
-    if (robot_check_positive(numbers, 2) != ROBOT_OK) {
-        impact->status = ROBOT_SINGULAR;
-    }
-}
-
-void robot_impact_let_go(robot_impact *impact)
-{
-    if (!impact->phase[ROBOT_LOOSE].ready) {
-        impact->status = modes_of(impact, ROBOT_LOOSE);
-        if (impact->status == ROBOT_OK) {
-            steps_of(impact, ROBOT_LOOSE);
-        }
-    }
-}
-
-/* Mobilities of the contact, and modes where those need them. */
-static void weigh(robot_impact *impact)
-{
-    const robot_real body = impact->gives_way ? ROBOT_R(1.0)/impact->region->effective_mass : ROBOT_R(0.0);
-    robot_real mobility = ROBOT_R(0.0);
-#if ROBOT_STRUCTURED
-    impact->status = robot_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
-#else
-    for (int k = impact->first; k <= impact->last && impact->status == ROBOT_OK; ++k) {
-        impact->status = modes_of(impact, k);
-        mobility = ROBOT_FMAX(mobility, mobility_of(&impact->phase[k].modes));
-    }
-    impact->rotors = ROBOT_R(0.0);
-    const bool held = !ROBOT_ELASTIC && impact->last == ROBOT_LED && impact->motors == ROBOT_MOTORS_DRIVEN;
-    if (!(mobility > ROBOT_LEAST_MOBILITY) && !held) {
-        impact->status = ROBOT_SINGULAR;
-    }
-#endif
-    impact->mobility = ROBOT_FMAX(mobility, ROBOT_LEAST_MOBILITY) + body;
-}
-
-int robot_impact_prepare(const robot_region *region, const robot_params *p, int motors,
-    robot_real force, robot_impact *impact)
-{
-    const robot_real reaction = ROBOT_REACTION_TIME(p);
-    const bool loose = motors == ROBOT_MOTORS_FREE || !(reaction > ROBOT_R(0.0));
-    impact->region = region;
-    impact->p = p;
-    impact->motors = motors;
-    impact->gives_way = region->clamped == 0;
-    impact->first = loose ? ROBOT_LOOSE : ROBOT_LED;
-    impact->last = loose || reaction < ROBOT_HORIZON(p) ? ROBOT_LOOSE : ROBOT_LED;
-    impact->status = ROBOT_OK;
-    impact->phase[ROBOT_LED].ready = false;
-    impact->phase[ROBOT_LOOSE].ready = false;
-    weigh(impact);
-    if (impact->status != ROBOT_OK) {
-        return impact->status;
-    }
-    const robot_real size =
-        force > ROBOT_R(0.0) ? force : robot_two_body_force(region, impact->mobility, -force);
-    impact->scale = ROBOT_R(0.4)*size;
-    impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
-    const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
-    impact->smooth = ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped);
-    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
-    const robot_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
-    if (!robot_all_finite(numbers, 3) || robot_check_positive(numbers, 3) != ROBOT_OK) {
-        return ROBOT_SINGULAR;
-    }
-#if ROBOT_STRUCTURED
-    impact->status = modes_of(impact, impact->first);
-    if (impact->status == ROBOT_OK) {
-        steps_of(impact, impact->first);
-    }
-#else
-    for (int k = impact->first; k <= impact->last; ++k) {
-        steps_of(impact, k);
-    }
-#endif
-    return impact->status;
+    robot_impact_forget(impact);
+    return status;
 }

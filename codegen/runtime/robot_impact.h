@@ -66,7 +66,9 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
-    bool ready;
+    bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
+    bool has_body;
+    bool ready; /* steps are */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* no energy enters but by the motors' drift: see robot_settled.c */
     robot_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -85,7 +87,7 @@ typedef struct {
     robot_arrival arrival;
     const robot_region *region;
     const robot_params *p;
-    int motors;
+    int motors, led; /* what they do, and in the modes of the first phase */
     bool gives_way;
     robot_real mobility; /* of the contact, 1/kg */
     robot_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
@@ -123,6 +125,13 @@ int robot_check_impact(const robot_region *region, const robot_params *p);
 
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival);
+
+/* Checks and links of an impact of one of the contact points. */
+int robot_approach(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
+    const robot_region *region, const robot_params *p, robot_impact *impact);
+
+/* To be called as impact->arrival changes: no modes are known. */
+void robot_impact_forget(robot_impact *impact);
 
 /*
  * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about

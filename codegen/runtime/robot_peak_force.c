@@ -2,22 +2,16 @@
 /* Largest force of an impact of robot_ on a part of the body. */
 #include "robot_impact.h"
 
-int robot_peak_force(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real speed,
-    const robot_region *region, const robot_params *p, robot_peak_force_t *out)
+int robot_peak_force_at(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
+    robot_real speed, const robot_region *region, const robot_params *p, robot_peak_force_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return ROBOT_NULL_POINTER;
     }
-    int status = robot_check_positive(&speed, 1);
     robot_impact impact;
+    int status = robot_check_positive(&speed, 1);
     if (status == ROBOT_OK) {
-        status = robot_check_impact(region, p);
-    }
-    if (status == ROBOT_OK) {
-        status = robot_links(ROBOT_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == ROBOT_OK) {
-        status = robot_arrive(n, 0, &impact.arrival);
+        status = robot_approach(q, point, n, region, p, &impact);
     }
     if (status != ROBOT_OK) {
         return status;
@@ -56,4 +50,10 @@ int robot_peak_force(const robot_real q[ROBOT_JOINTS], const robot_real n[3], ro
     }
     *out = found;
     return bounded ? ROBOT_BOUNDED : ROBOT_OK;
+}
+
+int robot_peak_force(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real speed,
+    const robot_region *region, const robot_params *p, robot_peak_force_t *out)
+{
+    return robot_peak_force_at(q, ROBOT_POINT_TIP, n, speed, region, p, out);
 }

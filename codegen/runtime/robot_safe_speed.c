@@ -99,21 +99,6 @@ static bool are_weak(const robot_impact *impact, robot_real speed, robot_real fo
     return ROBOT_STRUCTURED && speed*speed*robot_twice_energy(impact) <= needed;
 }
 
-/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
-static int prepare_end(const robot_region *region, const robot_params *p, int motors, robot_real limit,
-    bool again, robot_impact *impact)
-{
-    if (again && ROBOT_STRUCTURED && impact->phase[ROBOT_LOOSE].ready) {
-        robot_phase *const loose = &impact->phase[ROBOT_LOOSE];
-        const robot_real steps = ROBOT_HORIZON(p)/loose->level[0].h;
-        loose->steps = steps < (robot_real)p->steps ? (int)steps + 1 : p->steps;
-        impact->motors = motors;
-        impact->first = ROBOT_LOOSE;
-        return ROBOT_OK;
-    }
-    return robot_impact_prepare(region, p, motors, limit, impact);
-}
-
 int robot_find_speed(const robot_region *region, const robot_params *p, robot_real limit,
     robot_real cap, robot_impact *impact, robot_safe_speed_t *found)
 {
@@ -128,7 +113,7 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
         if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
             continue;
         }
-        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
+        const int status = robot_impact_prepare(region, p, motors, limit, impact);
         if (status != ROBOT_OK) {
             return status;
         }
@@ -158,22 +143,16 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
     return bounded ? ROBOT_BOUNDED : ROBOT_OK;
 }
 
-int robot_safe_speed(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real limit,
-    const robot_region *region, const robot_params *p, robot_safe_speed_t *out)
+int robot_safe_speed_at(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
+    robot_real limit, const robot_region *region, const robot_params *p, robot_safe_speed_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return ROBOT_NULL_POINTER;
     }
-    int status = robot_check_positive(&limit, 1);
     robot_impact impact;
+    int status = robot_check_positive(&limit, 1);
     if (status == ROBOT_OK) {
-        status = robot_check_impact(region, p);
-    }
-    if (status == ROBOT_OK) {
-        status = robot_links(ROBOT_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == ROBOT_OK) {
-        status = robot_arrive(n, 0, &impact.arrival);
+        status = robot_approach(q, point, n, region, p, &impact);
     }
     if (status != ROBOT_OK) {
         return status;
@@ -184,4 +163,10 @@ int robot_safe_speed(const robot_real q[ROBOT_JOINTS], const robot_real n[3], ro
         *out = found;
     }
     return status;
+}
+
+int robot_safe_speed(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real limit,
+    const robot_region *region, const robot_params *p, robot_safe_speed_t *out)
+{
+    return robot_safe_speed_at(q, ROBOT_POINT_TIP, n, limit, region, p, out);
 }

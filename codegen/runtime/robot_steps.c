@@ -148,6 +148,7 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
         }
         ++modes->count;
     }
+    phase->has_body = impact->gives_way;
     let_stand(impact, contact, released, phase);
     robot_real moving = ROBOT_R(0.0);
     robot_real rate2 = ROBOT_R(0.0);

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Builds the documentation site offline: python docs/site/build.py [--out DIR].
 
-Pages are the Markdown files of docs/, the README, the change log, and one for each numbered
-example. Formulas become MathML, so that the site needs no script from elsewhere. Warnings are
-errors.
+Pages are the Markdown files of docs/, the README, the change log and the numbered examples.
+Formulas become MathML, so that the site needs no script from elsewhere. Warnings are errors.
 """
 
 from __future__ import annotations
@@ -27,12 +26,8 @@ PACKAGES = ("softimpact", "softimpact.symbolic", "softimpact.simulate", "softimp
             "softimpact.codegen", "softimpact.batch")  # fmt: skip
 """Whose public names the reference shows."""
 
-MORE = (
-    "softimpact.simulate.program",
-    "softimpact.simulate.zones",
-    "softimpact.simulate.trajectory",
-    "softimpact.optimize.speed_factor",
-)
+MORE = ("softimpact.simulate.program", "softimpact.simulate.zones",
+        "softimpact.simulate.trajectory", "softimpact.optimize.speed_factor")  # fmt: skip
 """Modules whose public names are shown, too."""
 
 FENCES = re.compile(r"(^ *```.*?^ *```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)

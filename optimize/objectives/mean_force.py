@@ -33,7 +33,7 @@ class MeanForce(Objective):
 
     def levels(self, own: Matrix, scenarios: Indices) -> Matrix:
         """Return the level of each impact's scenario."""
-        return own[[int(k) for k in scenarios]]
+        return own[[int(k) for k in scenarios], 0]
 
     def speeds(self, own: Matrix, scenarios: Indices) -> Matrix:
         """Return zeros: speeds stay."""

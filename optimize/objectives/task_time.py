@@ -48,7 +48,7 @@ class TaskTime(Objective):
 
     def speeds(self, own: Matrix, scenarios: Indices) -> Matrix:
         """Return log10 of the factor of each impact's scenario."""
-        return own[[int(k) for k in scenarios]]
+        return own[[int(k) for k in scenarios], 0]
 
     def value(self, own: Array, scenarios: Indices, speeds: Array) -> float:
         """Return the time [s]."""
@@ -58,7 +58,7 @@ class TaskTime(Objective):
     def cost(self, own: Matrix, scenarios: Indices, speeds: Matrix) -> Matrix:
         """Return the time over that at the study's speeds."""
         first = [int(np.argmax(scenarios == k)) for k in range(own.numel())]
-        times = ca.DM(self._lengths(own.numel())) / speeds[first]
+        times = ca.DM(self._lengths(own.numel())) / speeds[first, 0]
         return ca.dot(times, 10 ** (-own)) / ca.sum1(times)
 
     def _lengths(self, scenarios: int) -> Array:

@@ -50,7 +50,7 @@ class JointStiffness(Variable):
 
     def apply(self, hardware: Hardware, values: Matrix) -> Hardware:
         """Return the hardware with these springs, one for each group."""
-        return replace(hardware, springs=values[list(self.groups)])
+        return replace(hardware, springs=values[list(self.groups), 0])
 
 
 def joint_groups(robot: Robot, grouping: Grouping) -> tuple[int, ...]:

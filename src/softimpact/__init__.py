@@ -13,8 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .codegen import generate_package
-    from .optimize import design, load_study
-    from .simulate import Approach, assess_impact, simulate_impact
+    from .batch import compiled
+    from .optimize import design, load_study, pareto_fronts
+    from .optimize.robust import robust_design
+    from .plots import plot
+    from .simulate import (
+        Approach,
+        assess_impact,
+        assess_impacts,
+        largest_safe_speed,
+        simulate_impact,
+    )
     from .symbolic import (
         Contact,
         Motors,
@@ -22,6 +31,7 @@ if TYPE_CHECKING:
         arm_of,
         body_region,
         drives,
+        impact_factors,
         impact_model,
         load_robot,
         with_load,
@@ -37,12 +47,22 @@ _HOMES = {
         "arm_of",
         "body_region",
         "drives",
+        "impact_factors",
         "impact_model",
         "load_robot",
         "with_load",
     ),
-    "simulate": ("Approach", "assess_impact", "simulate_impact"),
-    "optimize": ("design", "load_study"),
+    "simulate": (
+        "Approach",
+        "assess_impact",
+        "assess_impacts",
+        "largest_safe_speed",
+        "simulate_impact",
+    ),
+    "optimize": ("design", "load_study", "pareto_fronts"),
+    "optimize.robust": ("robust_design",),
+    "batch": ("compiled",),
+    "plots": ("plot",),
     "codegen": ("generate_package",),
 }
 
@@ -53,13 +73,20 @@ __all__ = [
     "analyse",
     "arm_of",
     "assess_impact",
+    "assess_impacts",
     "body_region",
+    "compiled",
     "design",
     "drives",
     "generate_package",
+    "impact_factors",
     "impact_model",
+    "largest_safe_speed",
     "load_robot",
     "load_study",
+    "pareto_fronts",
+    "plot",
+    "robust_design",
     "simulate_impact",
     "with_load",
 ]

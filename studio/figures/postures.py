@@ -47,7 +47,7 @@ class Stick:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Drawing:
     """What all views show.
 
     Attributes:
@@ -67,13 +67,13 @@ def figure_of_postures(report: DesignReport) -> Figure:
     """Draw all candidate postures faintly, the winner's and the worst over them, and the impact."""
     figure = new_figure(13.0, 5.2)
     grid = figure.add_gridspec(1, 3, width_ratios=(1.4, 1.0, 1.0))
-    scene = _scene(report)
-    _draw_in_space(figure.add_subplot(grid[0], projection=Axes3D.name), scene)
+    drawing = _drawing(report)
+    _draw_in_space(figure.add_subplot(grid[0], projection=Axes3D.name), drawing)
     for column, view in enumerate(VIEWS):
-        _draw_flat(figure.add_subplot(grid[1 + column]), scene, view)
+        _draw_flat(figure.add_subplot(grid[1 + column]), drawing, view)
     title = f"Postures of all poses; contact at {report.study.model.tip}\n{setting(report)}"
     figure.suptitle(title, fontsize=TEXT + 1)
-    legend_below(figure, _legend(scene), columns=5)
+    legend_below(figure, _legend(drawing), columns=5)
     return figure
 
 
@@ -92,7 +92,7 @@ def stick_points(robot: Robot, tip: str, postures: Sequence[Array]) -> list[Arra
     return [np.array(points(posture)) for posture in postures]
 
 
-def _scene(report: DesignReport) -> Scene:
+def _drawing(report: DesignReport) -> Drawing:
     sticks = _sticks(report)
     points = np.hstack([stick.points for stick in sticks])
     size = float(np.ptp(points, axis=1).max())
@@ -101,7 +101,7 @@ def _scene(report: DesignReport) -> Scene:
     shown = np.column_stack([points, end])
     center = (shown.min(axis=1) + shown.max(axis=1)) / 2
     half = 0.55 * float(np.ptp(shown, axis=1).max())
-    return Scene(sticks, start, end, np.column_stack([center - half, center + half]))
+    return Drawing(sticks, start, end, np.column_stack([center - half, center + half]))
 
 
 def _sticks(report: DesignReport) -> tuple[Stick, ...]:
@@ -120,13 +120,13 @@ def _sticks(report: DesignReport) -> tuple[Stick, ...]:
     )
 
 
-def _draw_in_space(axes: Any, scene: Scene) -> None:
-    for stick in scene.sticks:
+def _draw_in_space(axes: Any, drawing: Drawing) -> None:
+    for stick in drawing.sticks:
         axes.plot(*stick.points, marker="o", **stick.style)
     axes.plot(0, 0, 0, "s", color=BLACK, markersize=10, zorder=5)
-    along = scene.end - scene.start
-    axes.quiver(*scene.start, *along, color=VERMILLION, linewidth=2.5, arrow_length_ratio=0.35)
-    axes.set(**{f"{name}lim": limits for name, limits in zip("xyz", scene.limits, strict=True)})
+    along = drawing.end - drawing.start
+    axes.quiver(*drawing.start, *along, color=VERMILLION, linewidth=2.5, arrow_length_ratio=0.35)
+    axes.set(**{f"{name}lim": limits for name, limits in zip("xyz", drawing.limits, strict=True)})
     axes.set_box_aspect((1, 1, 1), zoom=0.93)
     axes.view_init(elev=22, azim=-60)
     axes.locator_params(nbins=5)
@@ -136,19 +136,19 @@ def _draw_in_space(axes: Any, scene: Scene) -> None:
     axes.set_zlabel("z [m]", fontsize=TEXT)
 
 
-def _draw_flat(axes: Any, scene: Scene, view: tuple[int, int, str]) -> None:
+def _draw_flat(axes: Any, drawing: Drawing, view: tuple[int, int, str]) -> None:
     right, up, name = view
-    for stick in scene.sticks:
+    for stick in drawing.sticks:
         axes.plot(stick.points[right], stick.points[up], marker="o", **stick.style)
     axes.plot(0, 0, "s", color=BLACK, markersize=10, zorder=5)
     axes.annotate(
         "",
-        xy=scene.end[[right, up]],
-        xytext=scene.start[[right, up]],
+        xy=drawing.end[[right, up]],
+        xytext=drawing.start[[right, up]],
         arrowprops={"arrowstyle": "-|>", "color": VERMILLION, "linewidth": 2.5, "shrinkA": 0},
         zorder=6,
     )
-    axes.set(xlim=scene.limits[right], ylim=scene.limits[up], aspect="equal")
+    axes.set(xlim=drawing.limits[right], ylim=drawing.limits[up], aspect="equal")
     axes.locator_params(nbins=6)
     axes.set_xlabel(f"{'xyz'[right]} [m]", fontsize=TEXT)
     axes.set_ylabel(f"{'xyz'[up]} [m]", fontsize=TEXT)
@@ -156,8 +156,8 @@ def _draw_flat(axes: Any, scene: Scene, view: tuple[int, int, str]) -> None:
     tidy(axes)
 
 
-def _legend(scene: Scene) -> list[Line2D]:
-    looks = {stick.label: stick.style for stick in scene.sticks}
+def _legend(drawing: Drawing) -> list[Line2D]:
+    looks = {stick.label: stick.style for stick in drawing.sticks}
     lines = [Line2D([], [], marker="o", label=label, **style) for label, style in looks.items()]
     single: dict[str, Any] = {"linestyle": "none", "markersize": 9}
     base = Line2D([], [], marker="s", color=BLACK, label="base", **single)

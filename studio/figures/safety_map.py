@@ -37,9 +37,12 @@ def _message(found: SafetyMap) -> str:
     safe = found.safe_speed
     held = "held" if found.body.clamped else "free to give way"
     way = "in the worst direction" if found.asked is None else f"along {_vector(found.asked)}"
+    if not found.body.region.permitted:
+        held += "; not permitted, for reference"
+    title = found.body.region.title.lower()
     return (
-        f"{found.model.robot.name} may hit the {found.body.region.title.lower()} ({held}) {way} at "
-        f"{np.nanmin(safe):.2f} to {np.nanmax(safe):.2f} m/s"
+        f"{found.model.robot.name} against the {title} ({held}) {way}: safe up to "
+        f"{np.nanmin(safe):.2f} m/s at the worst place, {np.nanmax(safe):.2f} at the best"
     )
 
 
@@ -67,9 +70,9 @@ def _plane(found: SafetyMap) -> Figure:
         axes.set_xlim(u[0] - MARGIN, u[-1] + MARGIN)
         axes.set_ylim(v[0] - MARGIN, v[-1] + MARGIN)
     (other,) = {0, 1, 2} - {*(found.axes or ())}
-    turn = "its turn kept" if found.hold == "pose" else "free to turn"
+    turn = "keeps its turn" if found.hold == "pose" else "may turn"
     right.set_title(
-        f"plane {'xyz'[other]} = {found.place[found.begun, other] + 0.0:.2f} m; tip {turn}",
+        f"plane {'xyz'[other]} = {found.place[found.begun, other] + 0.0:.2f} m; the tip {turn}",
         fontsize=SMALL,
     )
     return figure

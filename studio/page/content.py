@@ -15,14 +15,14 @@ from softimpact.simulate.tolerances import Tolerances, factors
 from softimpact.simulate.trajectory import passes
 from softimpact.symbolic import (
     REGIONS,
-    BodyRegion,
+    Contact,
     Drives,
     ImpactModel,
+    InvalidValue,
     JointKind,
     Robot,
     limits_of,
 )
-from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 from softimpact.symbolic.impact.two_body import moving_mass
 from softimpact.symbolic.robot.robot import BASE
 
@@ -43,7 +43,7 @@ def content_of(opened: Opened) -> dict[str, Any]:
     """Return all of it as JSON holds it."""
     robot, drives = opened.robot, opened.drives
     model = ImpactModel(robot, str(robot.tip), drives)
-    unknown = unknown_rotors(model)
+    unknown = _unknown(model)
     return {
         "title": opened.title,
         "robot": robot.name,
@@ -65,17 +65,28 @@ def content_of(opened: Opened) -> dict[str, Any]:
         ],
         "base": [*_parts(robot, BASE)],
         "points": [*_points(robot)],
-        "regions": [_region(region) for region in REGIONS.values()],
+        "regions": [*map(_region, _bodies(opened))],
         "moving_mass": float(moving_mass(robot)),
         "elastic": all(drives.elastic),
         "unknown_rotors": unknown,
+        "warnings": opened.warnings,
+        "assumed": opened.assumed,
         "start": _start(opened),
         "postures": [{"name": k, "q": _list(q)} for k, q in opened.postures.items()],
         "designs": [vars(design) for design in opened.designs],
         "designs_limit": opened.limit,
         "motion": None if opened.motion is None else _motion(opened),
+        "map": None if opened.map is None else vars(opened.map),
         "varied": _varied(robot.n),
     }
+
+
+def _unknown(model: ImpactModel) -> list[str]:
+    """Return the joints whose rotors nobody stated, or stated to be nothing behind a spring."""
+    robot, rotors = model.robot, np.array(model.drives.rotors, dtype=float).ravel()
+    nothing = np.array(model.drives.elastic) & np.array(robot.actuated) & (rotors == 0)
+    names = {robot.joint_names[i] for i in np.flatnonzero(nothing)} | {*unknown_rotors(model)}
+    return [name for name in robot.joint_names if name in names]
 
 
 def _parts(robot: Robot, body: int) -> Iterator[list[list[float]]]:
@@ -100,9 +111,24 @@ def _points(robot: Robot) -> Iterator[dict[str, Any]]:
         yield {"name": tip, "body": frame.joint, "place": _list(frame.placement.translation)}
 
 
-def _region(region: BodyRegion) -> dict[str, Any]:
+def _bodies(opened: Opened) -> list[Contact]:
+    """Return the regions of the body, and what is opened where that is another one or is padded.
+
+    Raises:
+        InvalidValue: it follows another law of contact than Hertz's.
+    """
+    name = opened.body.region.name
+    own = {name: opened.body}
+    plain = {region.name: Contact(region) for region in REGIONS.values()}
+    return [*({**plain, **own}).values()]
+
+
+def _region(body: Contact) -> dict[str, Any]:
+    region = body.region
     limits = limits_of(region, clamped=True)
     assert limits.quasi_static is not None
+    if limits.transient.force == np.inf:
+        raise InvalidValue("region", f"'{region.name}' has no limits to be kept")
     return {
         "name": region.name,
         "title": region.title,
@@ -110,7 +136,7 @@ def _region(region: BodyRegion) -> dict[str, Any]:
         "stiffness": region.stiffness,
         "damping": region.damping,
         "effective_mass": region.effective_mass,
-        "hertz_stiffness": HERTZ_STIFFNESS,
+        "hertz_stiffness": body.series_stiffness,
         "transient": limits.transient.force,
         "quantity": limits.transient.quantity,
         "quasi_static": limits.quasi_static.force,
@@ -126,8 +152,8 @@ def _start(opened: Opened) -> dict[str, Any]:
         "body": tip.joint,
         "place": _list(tip.placement.translation),
         "speed": opened.speed,
-        "region": opened.region,
-        "clamped": opened.clamped,
+        "region": opened.body.region.name,
+        "clamped": opened.body.clamped,
         "motors": opened.kind or "bracket",
         "reaction_time": None if np.isinf(opened.reaction_time) else opened.reaction_time,
         "horizon": opened.horizon,

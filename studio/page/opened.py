@@ -12,16 +12,25 @@ from typing import Any
 import numpy as np
 
 from softimpact.optimize import Study, load_study
-from softimpact.robots import built_in_robots
+from softimpact.robots import built_in_robots, study_path
 from softimpact.simulate.trajectory import Trajectory
-from softimpact.symbolic import Drives, InvalidValue, Robot, arm_of, drives, load_robot
+from softimpact.symbolic import (
+    Contact,
+    Drives,
+    InvalidValue,
+    Robot,
+    body_region,
+    drives,
+    load_robot,
+)
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
-from .. import design_report, pareto_record, program_record
+from .. import design_report, map_files, pareto_record, program_record
 from ..first_study import NOMINAL, first_posture
 from ..motion_file import read_motion
 from ..results_folder import RESULTS
+from ..situation import TypedArm, loaded_arm
 from ..waypoints import read_waypoints
 
 SPEED = 0.5
@@ -53,6 +62,27 @@ class DesignPoint:
 
 
 @dataclass(frozen=True, eq=False)
+class MapShown:
+    """A map over a plane; lists have an entry a posture.
+
+    Attributes:
+        axes: of the plane, ``xz`` for example.
+        place: of the tip along these two [m].
+        step: between places [m].
+        safe_speed: [m/s]; None where the tip cannot go so.
+        q: posture.
+        direction: of the impact there.
+    """
+
+    axes: str
+    place: Sequence[Sequence[float]]
+    step: float
+    safe_speed: Sequence[float | None]
+    q: Sequence[Sequence[float]]
+    direction: Sequence[Sequence[float]]
+
+
+@dataclass(frozen=True, eq=False)
 class Opened:
     """What a page shows first, and what it can go to.
 
@@ -63,15 +93,17 @@ class Opened:
         q: posture, length n.
         direction: unit vector.
         speed: [m/s].
-        region: name.
-        clamped: whether it is held.
+        body: that is hit.
         kind: of the motors; None for both ends of the bracket.
         reaction_time: [s].
         horizon: [s].
         postures: by name.
         designs: from results.
         motion: of a program.
+        map: over a plane.
         limit: that the designs were held against [N]; None without designs.
+        warnings: what of a file was ignored, a line each.
+        assumed: what the page says until somebody changes it, a line each.
     """
 
     title: str
@@ -80,43 +112,57 @@ class Opened:
     q: Array
     direction: Array
     speed: float = SPEED
-    region: str = REGION
-    clamped: bool = True
+    body: Contact = field(default_factory=lambda: Contact(body_region(REGION)))
     kind: str | None = None
     reaction_time: float = REACTION_TIME
     horizon: float = 0.5
     postures: Mapping[str, Array] = field(default_factory=dict)
     designs: Sequence[DesignPoint] = ()
     motion: Trajectory | None = None
+    map: MapShown | None = None
     limit: float | None = None
+    warnings: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
 
 
-def opened(what: str) -> Opened:
+def opened(what: str, arm: TypedArm | None = None) -> Opened:
     """Return what a robot's name, a model file, a study or a folder of results opens.
+
+    Args:
+        what: to open.
+        arm: of a model, what of it is meant; None: what its file says.
 
     Raises:
         InvalidValue: a folder without results, or with some that have no page.
         SoftImpactError: a model or a study that cannot be read.
     """
     path = Path(what)
-    if what not in built_in_robots() and path.is_dir():
-        return _of_results(path)
-    return of_study(load_study(path)) if path.suffix == ".toml" else of_model(what)
+    is_folder = what not in built_in_robots() and path.is_dir()
+    if not is_folder and study_path(what).suffix != ".toml":
+        return of_model(arm or TypedArm(what))
+    if arm is not None:
+        raise InvalidValue("tip", "and the like are a model's; studies and results have theirs")
+    return _of_results(path) if is_folder else of_study(load_study(path))
 
 
-def of_model(model: str) -> Opened:
+def of_model(typed: TypedArm) -> Opened:
     """Return a robot in a posture in which it moves well."""
-    whole = load_robot(model)
-    if whole.tip is None:
-        known = ", ".join(list(whole.frames)[:8])
-        raise InvalidValue(
-            "model",
-            f"'{whole.name}' names no end of its arm; write a study with robot.tip, one of {known}",
-        )
-    robot = arm_of(whole).robot
+    arm = loaded_arm(typed)
+    robot = arm.robot
     q, direction = first_posture(robot)
-    stiff = drives(robot, joint_stiffness=NOMINAL)
-    return Opened(robot.name, robot, stiff, q, np.array(direction), postures={"first": q})
+    return Opened(
+        title=robot.name,
+        robot=robot,
+        drives=drives(robot, joint_stiffness=NOMINAL),
+        q=q,
+        direction=np.array(direction),
+        postures={"first": q},
+        warnings=arm.warnings,
+        assumed=(
+            f"The joints' stiffness is a guess, {NOMINAL:g} N·m/rad: a robot's file does not say "
+            "it.",
+        ),
+    )
 
 
 def of_study(study: Study) -> Opened:
@@ -129,8 +175,7 @@ def of_study(study: Study) -> Opened:
         q=study.task_pose.q,
         direction=study.direction,
         speed=study.speed,
-        region=study.contact.region.name,
-        clamped=study.contact.clamped,
+        body=study.contact,
         kind=kinds.pop() if len(kinds) == 1 else None,
         reaction_time=study.motors[0].reaction_time,
         horizon=study.horizon,
@@ -148,9 +193,13 @@ def _of_results(folder: Path) -> Opened:
     generator = str(record.get("generator")) if isinstance(record, dict) else ""
     if generator == program_record.GENERATOR:
         return _of_program(record)
+    if generator == map_files.GENERATOR:
+        return _of_map(record)
     points = {pareto_record.GENERATOR: _fronts, design_report.GENERATOR: _winners}.get(generator)
     if points is None:
-        raise InvalidValue("results", f"{folder} holds no results of design, pareto or program")
+        raise InvalidValue(
+            "results", f"{folder} holds no results of design, pareto, program or map"
+        )
     source = Path(record["study"]["source"])
     if not source.is_file():
         raise InvalidValue(
@@ -205,9 +254,44 @@ def _of_program(record: Mapping[str, Any]) -> Opened:
         q=np.array(worst["q"]),
         direction=np.array(worst.get("direction", (0.0, 0.0, -1.0))),
         speed=worst.get("speed", SPEED),
-        region=worst.get("region", REGION),
-        clamped=record["clamped"],
+        body=Contact(body_region(worst.get("region", REGION)), record["clamped"]),
         kind=kinds[0] if len(kinds) == 1 else None,
         horizon=record["horizon"],
         motion=motion,
+    )
+
+
+def _of_map(record: Mapping[str, Any]) -> Opened:
+    """Return a robot where its map begins."""
+    arm = loaded_arm(TypedArm(**record["arm"]))
+    springs = [NOMINAL if k is None else k for k in record["joint_stiffness"]]
+    kinds, begun = list(record["motors"]), record["begun"]
+    reaction = record["motors"][kinds[0]]["reaction_time"]
+    shown = None
+    if record["plane"]:
+        flat = ["xyz".index(axis) for axis in record["plane"]]
+        grid = next(values for values in record["grid"].values() if len(values) > 1)
+        shown = MapShown(
+            axes=record["plane"],
+            place=[[place[k] for k in flat] for place in record["place"]],
+            step=grid[1] - grid[0],
+            safe_speed=record["safe_speed"],
+            q=record["q"],
+            direction=record["direction"],
+        )
+    rigid = None in record["joint_stiffness"]
+    return Opened(
+        title=f"{record['robot']}: map",
+        robot=arm.robot,
+        drives=drives(arm.robot, joint_stiffness=springs, rotor_inertia=record["rotor_inertia"]),
+        q=np.array(record["q"][begun]),
+        direction=np.array(record["direction"][begun]),
+        speed=record["speed"],
+        body=Contact(body_region(record["region"]), record["clamped"]),
+        kind=kinds[0] if len(kinds) == 1 else None,
+        reaction_time=np.inf if reaction is None else reaction,
+        horizon=record["horizon"],
+        map=shown,
+        warnings=arm.warnings,
+        assumed=(f"Rigid joints have springs here, {NOMINAL:g} N·m/rad.",) if rigid else (),
     )

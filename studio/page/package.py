@@ -12,16 +12,16 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
-from softimpact.codegen.approach import directions_of_motion
 from softimpact.codegen.defaults import Payload, defaults_of
 from softimpact.codegen.description import CFunction, Output
+from softimpact.codegen.directions import directions_of_motion
 from softimpact.codegen.functions import Symbols, coordinates_of, has_potential, links_of
 from softimpact.codegen.functions.catalogue import moves_in_space
 from softimpact.codegen.functions.guards import fastest_arrival, heaviest
 from softimpact.codegen.functions.impact_factors import directional_factor, impact_factors
 from softimpact.codegen.functions.reductions import reduced_model, reflected_mass
 from softimpact.codegen.functions.symbols import function_over, symbols_of
-from softimpact.codegen.impact_source import ACCURACY, HORIZON, REACTION_TIME, STEPS, ImpactSource
+from softimpact.codegen.impact_source import ACCURACY, HORIZON, STEPS, ImpactSource
 from softimpact.codegen.inputs import ANY, SHARE, Parameter, parameters_of
 from softimpact.codegen.manifest import FunctionRecord, ImpactRecord
 from softimpact.codegen.package import TIP
@@ -39,6 +39,7 @@ from softimpact.symbolic import (
 )
 from softimpact.symbolic.dynamics.kinematics import motions, placed_point_jacobian, poses
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
+from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.robot import BASE
 
 PREFIX = "page"

@@ -20,21 +20,24 @@ from .package import page_package
 
 FRONT = Path(__file__).parent / "front"
 
-SCRIPTS = (
-    *(
-        "package",
-        "vectors",
-        "parts",
-        "camera",
-        "arm",
-        "answers",
-        "plot",
-        "state",
-        "solver",
-        "worst",
-    ),
-    *("motion", "controls", "strip", "main"),
-)
+SCRIPTS = [
+    "package",
+    "vectors",
+    "sizes",
+    "parts",
+    "camera",
+    "arm",
+    "answers",
+    "plot",
+    "state",
+    "solver",
+    "worst",
+    "motion",
+    "controls",
+    "strip",
+    "map",
+    "main",
+]
 """In an order in which each has what it imports; the first is the packages' glue."""
 
 IMPORT = re.compile(r'^import \{ (.*?) \} from "\./(\w+)\.js";\n', re.MULTILINE)

@@ -14,9 +14,10 @@ import jinja2
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from softimpact.symbolic.record import plain
 from softimpact.symbolic.robot.rigid import Array
 
-from ..output import Cell, plain, shown
+from ..output import Cell, shown
 
 TEMPLATES = Path(__file__).parent / "templates"
 

@@ -88,23 +88,23 @@ def cross(a: Matrix, b: Matrix) -> Matrix:
 
 
 @dataclass(frozen=True)
-class Pose:
+class FramePose:
     """Rotation (3×3) and position (3) [m] of a frame in the reference frame."""
 
     rotation: Matrix
     position: Matrix
 
 
-def poses(robot: Robot, moves: list[Motion], reference: int = BASE) -> dict[int, Pose]:
+def poses(robot: Robot, moves: list[Motion], reference: int = BASE) -> dict[int, FramePose]:
     """Return the poses of the base and all joint frames in the frame of joint ``reference``."""
-    known = {reference: Pose(ca.SX.eye(3), ca.SX.zeros(3))}
+    known = {reference: FramePose(ca.SX.eye(3), ca.SX.zeros(3))}
     child = reference
     while child != BASE:  # against the arrows, down to the base
         parent, move = robot.joints[child].parent, moves[child]
         axes = [move.to_child(ca.SX.eye(3)[:, k]) for k in range(3)]
         rotation = ca.mtimes(known[child].rotation, ca.horzcat(*axes))
         position = known[child].position - ca.mtimes(rotation, move.translation)
-        known[parent] = Pose(rotation, position)
+        known[parent] = FramePose(rotation, position)
         child = parent
     for i, joint in enumerate(robot.joints):
         if i not in known and joint.parent in known:
@@ -112,15 +112,15 @@ def poses(robot: Robot, moves: list[Motion], reference: int = BASE) -> dict[int,
     return known
 
 
-def _moved(parent: Pose, move: Motion) -> Pose:
+def _moved(parent: FramePose, move: Motion) -> FramePose:
     turned = ca.mtimes(parent.rotation, ca.SX(ca.sparsify(ca.DM(move.rotation))))
     x, y, z = (ca.densify(turned[:, k]) for k in range(3))
     c, s = move.cosine, move.sine
     rotation = ca.horzcat(c * x + s * y, c * y - s * x, z)
-    return Pose(rotation, parent.position + ca.mtimes(parent.rotation, move.translation))
+    return FramePose(rotation, parent.position + ca.mtimes(parent.rotation, move.translation))
 
 
-def frame_pose(robot: Robot, frame: str, q: Matrix) -> Pose:
+def frame_pose(robot: Robot, frame: str, q: Matrix) -> FramePose:
     """Return the pose of a frame in the base.
 
     Args:
@@ -130,7 +130,7 @@ def frame_pose(robot: Robot, frame: str, q: Matrix) -> Pose:
     """
     robot.frame(frame)
     both = on_scalars(_frame_pose, (customised(robot), frame), q)
-    return Pose(both[:, :3], both[:, 3])
+    return FramePose(both[:, :3], both[:, 3])
 
 
 def _frame_pose(robot: Robot, name: str, q: Matrix) -> Matrix:

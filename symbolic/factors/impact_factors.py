@@ -18,6 +18,7 @@ from ..impact.floating import BASE_COORDINATES, BASE_JOINTS
 from ..impact.impact_model import ImpactModel
 from ..loops.closure import require_closed_at
 from ..loops.loops import loop_tangent
+from ..record import Record
 from ..robot.rigid import Array
 from .contact_mobility import ContactMobility, directional_giaf, giaf, giif
 from .ellipsoids import (
@@ -96,7 +97,7 @@ class Measures:
 
 
 @dataclass(frozen=True, eq=False)
-class ImpactFactors:
+class ImpactFactors(Record):
     """Impact factors at one configuration and direction.
 
     Attributes:

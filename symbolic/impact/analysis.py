@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from ..errors import InvalidValue, SingularDirection
 from ..factors.contact_mobility import directional_giaf, giaf, giif
 from ..loops.closure import require_closed_at
+from ..record import Record
 from ..robot.rigid import Array
 from ..robot.robot import JointKind
 from .approach import unit_direction
@@ -39,7 +40,7 @@ class ChainNumbers:
 
 
 @dataclass(frozen=True, eq=False)
-class Analysis:
+class Analysis(Record):
     """What an impact at a contact point along n meets; what does not apply is None.
 
     Attributes:

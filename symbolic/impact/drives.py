@@ -60,6 +60,11 @@ class Drives(ByContent):
         return replace(self, gains=0 * self.gains, computed_torque_gain=None, damping_gains=None)
 
 
+RIGID_FROM = 1e9
+"""Stiffness [N·m/rad] from which on a joint counts as rigid: three decades above any drive.
+Forces then differ by less than 1e-4, but a simulation would follow vibrations of a megahertz."""
+
+
 def drives(
     robot: Robot,
     joint_stiffness: PerJoint | None = None,
@@ -74,7 +79,8 @@ def drives(
 
     Args:
         robot: whose joints they are.
-        joint_stiffness: k_s [N·m/rad], infinite for a rigid joint; None makes all joints rigid.
+        joint_stiffness: k_s [N·m/rad], infinite for a rigid joint, as which it counts from
+            ``RIGID_FROM`` on; None makes all joints rigid.
         rotor_inertia: reflected inertias [kg m²]; None takes the file's armature.
         position_gain: diagonal of K_p [N·m/rad]; None is zero.
         computed_torque_gain: k_p [rad/s²], K_p = k_p M_θθ (MSM §3.1.3) instead.
@@ -108,7 +114,7 @@ def drives(
         robot.torque_limits,
     )
     _require(limits > 0, "torque_limit", "must be greater than 0 N·m", limits)
-    elastic = np.isfinite(springs)
+    elastic = springs < RIGID_FROM
     return Drives(
         ca.DM(rotors),
         ca.DM(np.where(elastic, springs, 0.0)),

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..dynamics.equations_of_motion import STANDARD_GRAVITY, Gravity, bias_torques, mass_matrix
-from ..dynamics.kinematics import Pose, cross, frame_jacobian, frame_pose
+from ..dynamics.kinematics import FramePose, cross, frame_jacobian, frame_pose
 from ..errors import InvalidInertia, MasslessBase
 from ..matrices import Matrix
 from ..robot.plausibility import require_sound_masses
@@ -63,7 +63,7 @@ class FloatingRobot:
         """Return M without rotors over (v, ω, q̇), (6+n)×(6+n); only the joints' q matters."""
         return mass_matrix(self.freed, self.coordinates(q))
 
-    def frame_pose(self, frame: str, configuration: Matrix) -> Pose:
+    def frame_pose(self, frame: str, configuration: Matrix) -> FramePose:
         """Return the pose of a frame in the world; raises FrameNotFound.
 
         Args:
@@ -72,7 +72,7 @@ class FloatingRobot:
         """
         position, R, q = _parted(configuration)
         seen = frame_pose(self.fixed, frame, q)
-        return Pose(ca.mtimes(R, seen.rotation), position + ca.mtimes(R, seen.position))
+        return FramePose(ca.mtimes(R, seen.rotation), position + ca.mtimes(R, seen.position))
 
     def frame_jacobian(self, frame: str, configuration: Matrix) -> Matrix:
         """Return the 6×(6+n) Jacobian of a frame's origin, linear rows first, world axes.

@@ -332,6 +332,12 @@ def vector_of(names: Sequence[str], field: str, values: ArrayLike) -> Array:
         InvalidValue: it is not a flat list.
     """
     array = np.asarray(values, dtype=float)
+    if array.ndim == 2 and array.shape[0] > 1:
+        raise InvalidValue(
+            field,
+            f"must be a flat list of numbers, not {array.shape[0]} of them: call once for each, "
+            "or map arrays with softimpact.compiled",
+        )
     if array.ndim != 1:
         raise InvalidValue(field, "must be a flat list of numbers")
     if len(array) != len(names):

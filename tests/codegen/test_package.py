@@ -18,7 +18,6 @@ from compiled_packages import COMMITTED, Generated, mostly_slow, run, tool
 
 from softimpact.codegen import generate_package
 from softimpact.codegen.inputs import parameters_of
-from softimpact.codegen.package import c_name
 from softimpact.codegen.samples import draw_samples
 from softimpact.symbolic import (
     FrameNotFound,
@@ -100,21 +99,6 @@ def test_every_robot_number_comes_from_the_model(tmp_path: Path, panda: Robot) -
     common = (tmp_path / "p/src/my_arm_2_common.c").read_text()
     assert common.count("MY_ARM_2_R(1234.5)") == common.count("MY_ARM_2_R(0.25)") == 7
     assert ImpactModel(panda, "hand_tcp", values).size == 14
-
-
-@pytest.mark.parametrize(
-    ("name", "identifier"),
-    [
-        ("UR5e", "ur5e"),
-        ("my arm-2", "my_arm_2"),
-        ("7dof", "robot_7dof"),
-        ("机器人", "robot"),
-        ("float", "robot_float"),  # include/float.h would hide that of C
-        ("Test", "robot_test"),  # CMake has a target of this name
-    ],
-)
-def test_names_become_c_identifiers(name: str, identifier: str) -> None:
-    assert c_name(name) == identifier
 
 
 def test_rejects_arguments_without_meaning(tmp_path: Path, panda: Robot) -> None:

@@ -15,7 +15,7 @@ from impact_cases import EARTH, HEAD, POSE, r_min
 from mechanisms import FIVE_BAR, robot_of
 
 from softimpact.simulate import Approach, Controller, simulate_impact
-from softimpact.simulate.approach import arrival_of
+from softimpact.simulate.arrival import arrival_of
 from softimpact.simulate.events import course_of, peaks_of
 from softimpact.simulate.full import full_scene
 from softimpact.simulate.scene import Run, Scene

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -119,6 +120,15 @@ def test_freedom_does_not_hurt(found: Pareto) -> None:
         for front in found.held.values():
             assert given <= force_within(front, level) * (1 + WORTH)
     assert found.free.points[0].deflection <= found.given.points[0].deflection
+
+
+def test_fronts_are_tables_and_figures(found: Pareto) -> None:
+    told = found.to_dict()
+    assert json.loads(json.dumps(told, allow_nan=False)) == told
+    points = [point for front in (found.free, found.given, *found.held.values())
+              for point in front.points]  # fmt: skip
+    assert [row["force"] for row in found.rows()] == [point.force for point in points]
+    assert len(found.plot().lines) == 2
 
 
 def test_levels_hold_the_ends_and_the_studys_bound(found: Pareto) -> None:

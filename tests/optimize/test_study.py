@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from robot_files import many_joints
 from studies import PANDA_24, changed, content, study_of, written
 
 from softimpact.optimize import load_study
 from softimpact.robots import FOLDER
-from softimpact.symbolic import InvalidValue
+from softimpact.symbolic import InvalidValue, arm_of, impact_model, load_robot
 
 NAN, INF = math.nan, math.inf
 
@@ -94,7 +95,7 @@ def test_robot_file_beside_the_study(tmp_path: Path) -> None:
 def test_missing_section(tmp_path: Path, section: str) -> None:
     study = content()
     del study[section]
-    refused(written(tmp_path, study), section, "required")
+    refused(written(tmp_path, study), section, "is missing")
 
 
 @pytest.mark.parametrize(
@@ -113,7 +114,9 @@ def test_missing_section(tmp_path: Path, section: str) -> None:
     ],
 )
 def test_missing_field(tmp_path: Path, section: str, field: str) -> None:
-    refused(written(tmp_path, changed({section: {field: None}})), f"{section}.{field}", "required")
+    refused(
+        written(tmp_path, changed({section: {field: None}})), f"{section}.{field}", "is missing"
+    )
 
 
 @pytest.mark.parametrize("section", ["robot", "impact", "stiffness", "accuracy", "task"])
@@ -246,7 +249,7 @@ def test_bad_pose(tmp_path: Path, fields: dict[str, Any], words: tuple[str, ...]
 def test_incomplete_pose(tmp_path: Path, field: str) -> None:
     study = content()
     del study["poses"][3][field]
-    refused(written(tmp_path, study), f"poses.3.{field}", "required")
+    refused(written(tmp_path, study), f"poses.3.{field}", "is missing")
 
 
 def test_no_poses(tmp_path: Path) -> None:
@@ -284,6 +287,42 @@ def test_joints_with_springs_or_without_motors(tmp_path: Path, joint: str, actua
     refused(written(tmp_path, study), "robot.model", "'loose'")
 
 
+def test_a_misspelt_field_is_named_before_the_missing_one(tmp_path: Path) -> None:
+    study = changed({"accuracy": {"max_deflection": None, "max_deflecton": 1e-3}})
+    refused(
+        written(tmp_path, study),
+        "accuracy.max_deflecton: unknown; did you mean 'max_deflection'?",
+        "and 1 more; softimpact check lists all",
+    )
+
+
+def test_built_in_studies_go_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert load_study("panda_24_poses").source == PANDA_24
+    refused(Path("panda_24"), "no such study file; built in: panda_24_poses")
+
+
+def test_joints_that_are_locked_leave_the_arm(tmp_path: Path) -> None:
+    """Coupled arms, too: the joint that follows a locked one stays where that puts it."""
+    mimic = '<mimic joint="j1" multiplier="-1"/>'
+    text = many_joints(7).replace("</joint>", f"{mimic}</joint>", 2).replace(mimic, "", 1)
+    (tmp_path / "arm.urdf").write_text(text)
+    robot = {"model": "arm.urdf", "tip": "tool", "rotor_inertia": 0.1, "lock": {"j1": 0.3}}
+    content = changed({"robot": robot}, ("q9",))
+    content["poses"] = [{"name": "q9", "q": [0.1, 0.2, 0.3, 0.4, 0.5]}]
+    study = load_study(written(tmp_path, content))
+    assert study.robot.joint_names == ("j3", "j4", "j5", "j6", "j7")
+    whole = load_robot(tmp_path / "arm.urdf", "tool")
+    same = arm_of(whole, "tool", locked={"j1": 0.3, "j2": -0.3}).robot
+    q, n = [0.1, 0.2, 0.3, 0.4, 0.5], [0.0, 1.0, 0.0]
+    found = study.model.reflected_mass(q, n)
+    assert float(found) == pytest.approx(float(impact_model(same).reflected_mass(q, n)), rel=1e-12)
+    del content["robot"]["lock"]
+    refused(written(tmp_path, content), "joints that are tied together ('mimic j2')")
+    content["robot"]["lock"] = {"j9": 0.0}
+    refused(written(tmp_path, content), "unknown joint (robot.lock) 'j9'")
+
+
 def test_missing_file(tmp_path: Path) -> None:
     refused(tmp_path / "none.toml", "no such study file")
 
@@ -307,7 +346,7 @@ def test_not_utf_8(tmp_path: Path) -> None:
 def test_empty_file(tmp_path: Path) -> None:
     path = tmp_path / "empty.toml"
     path.write_text("")
-    refused(path, "robot", "required")
+    refused(path, "robot", "is missing")
 
 
 def test_a_section_that_is_no_table(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from mujoco_impacts import extrapolated, impact_forces
 
 from softimpact.robots import built_in_robots
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.simulate.approach import arrival_of
+from softimpact.simulate.arrival import arrival_of
 from softimpact.symbolic import (
     Contact,
     ImpactModel,

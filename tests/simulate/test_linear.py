@@ -13,7 +13,7 @@ from impact_cases import CHEST, HEAD, POSE, peak_of_one_mass
 from oracles import configurations
 
 from softimpact.simulate import Approach, Fidelity, simulate_impact
-from softimpact.simulate.approach import arrival_of
+from softimpact.simulate.arrival import arrival_of
 from softimpact.simulate.events import SPAN, course_of
 from softimpact.simulate.linear import linear_system, modes
 from softimpact.simulate.linear_stages import linear_scene

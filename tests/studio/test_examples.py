@@ -29,6 +29,7 @@ def printed(script: Path, folder: Path) -> list[str]:
     return done.stdout.splitlines()
 
 
+@pytest.mark.slow
 def test_analyze_panda(tmp_path: Path) -> None:
     lines = printed(EXAMPLES / "01_analyze_panda.py", tmp_path)
     assert [float(line.split()[1]) for line in lines] == [3e4, 1e4, 3e3]

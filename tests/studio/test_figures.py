@@ -82,6 +82,7 @@ def _figures(report: DesignReport) -> list[Any]:
     ]
 
 
+@pytest.mark.slow
 def test_all_figures_are_written(panda: DesignReport, tmp_path: Path) -> None:
     names = ["force_over_time", "ranking", "postures", "springs", "gains"]
     assert draw_figures(panda, tmp_path) == [tmp_path / f"{name}.png" for name in names]
@@ -156,6 +157,7 @@ def test_peaks_late_in_the_contact_are_named_on_the_left(ur5: DesignReport) -> N
     assert [text.get_horizontalalignment() for text in axes.texts] == ["left", "left"]
 
 
+@pytest.mark.slow
 def test_ranking_shows_every_force_in_its_row(panda: DesignReport) -> None:
     figure = figure_of_ranking(panda)
     (axes,) = figure.axes
@@ -173,6 +175,7 @@ def test_ranking_shows_every_force_in_its_row(panda: DesignReport) -> None:
         assert low < min(forces) <= max(forces) < high
 
 
+@pytest.mark.slow
 def test_ranking_marks_recovered_and_turned_poses(panda: DesignReport) -> None:
     figure = figure_of_ranking(panda)
     rows = {label.get_text().split(".  ")[1] for label in figure.axes[0].get_yticklabels()}
@@ -209,6 +212,7 @@ def test_ranking_shows_a_limit_that_is_near(ur5: DesignReport) -> None:
     assert "beyond" not in axes.get_xlabel()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("force", [1e9, np.nan])
 def test_ranking_crosses_what_was_not_solved(panda: DesignReport, force: float) -> None:
     report = _with_first_free(panda, solved=False, force=force)
@@ -245,6 +249,7 @@ def test_postures_run_from_the_base_to_the_tip(name: str, request: pytest.Fixtur
             np.testing.assert_array_equal(np.array(stick)[plane], np.array(flat))
 
 
+@pytest.mark.slow
 def test_postures_show_the_files_own_joint_frames(panda: DesignReport) -> None:
     robot = panda.study.robot
     points = np.array(_sticks(figure_of_postures(panda), 0)[-1])
@@ -292,18 +297,21 @@ def test_springs_stand_over_their_joints(name: str, request: pytest.FixtureReque
     assert [label.get_text() for label in axes.get_xticklabels()] == list(study.robot.joint_names)
 
 
+@pytest.mark.slow
 def test_springs_of_the_others_leave_out_the_winner(panda: DesignReport) -> None:
     shown = _line(figure_of_springs(panda).axes[0], "other outcomes").get_ydata()
     others = [o for o in panda.design.outcomes("free") if o is not panda.design.winner]
     assert sorted(shown) == sorted(np.concatenate([outcome.springs for outcome in others]))
 
 
+@pytest.mark.slow
 def test_springs_leave_out_what_was_not_solved(panda: DesignReport) -> None:
     report = _with_first_free(panda, solved=False)
     shown = _line(figure_of_springs(report).axes[0], "other outcomes").get_ydata()
     assert len(shown) == 2 * panda.study.robot.n
 
 
+@pytest.mark.slow
 def test_gains_are_bars_from_zero(panda: DesignReport) -> None:
     gains = panda.design.gains
     assert gains is not None

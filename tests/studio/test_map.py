@@ -16,6 +16,7 @@ from softimpact.batch import NoCompiler
 from softimpact.simulate.sampled import Samples
 from softimpact.simulate.sampled_speeds import safe_speeds
 from softimpact.studio import worst_directions
+from softimpact.studio.page.opened import opened
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
@@ -47,7 +48,7 @@ def test_numbers_are_simulates(tmp_path: Path) -> None:
     count = len(found["q"])
     assert count == len(found["safe_speed"]) == len(found["place"]) == len(found["cells"]) > 8
     assert found["direction"] == [[0, 1, 0]] * count
-    for k in (0, count // 2, count - 1):
+    for k in (0, count - 1):
         told = run_json(
             "simulate", "panda", "--q", ",".join(map(str, found["q"][k])), "--direction", "0,1,0",
             "--joint-stiffness", 1e4, "--region", "chest", "--free", "--speed", 0.4,
@@ -60,6 +61,12 @@ def test_numbers_are_simulates(tmp_path: Path) -> None:
     assert [float(row["safe_speed"]) for row in rows] == pytest.approx(found["safe_speed"])
     assert (tmp_path / "map" / "map.png").read_bytes().startswith(b"\x89PNG")
     assert found["slowest"]["safe_speed"] == min(found["safe_speed"])
+    shown = opened(str(tmp_path / "map"))  # the page takes it
+    assert shown.map is not None
+    assert shown.map.axes == "xz"
+    assert len(shown.map.q) == len(shown.map.place) == count
+    assert shown.q.tolist() == found["q"][found["begun"]]
+    assert (shown.kind, shown.body.clamped, shown.horizon) == ("driven", False, 0.1)
 
 
 @pytest.mark.slow
@@ -68,23 +75,29 @@ def test_no_direction_is_worse_than_the_worst(tmp_path: Path) -> None:
     robot = load_robot("panda")
     model = ImpactModel(robot, "hand_tcp", drives(robot, joint_stiffness=1e4))
     source = np.random.default_rng(4)
+    rows, postures, directions, rates = [], [], [], []
     for k in range(0, len(found["q"]), 3):
-        q, rows, rates = np.array(found["q"][k]), [], []
-        J = np.array(model.jacobian(q))
-        for along in source.normal(size=(40, 3)):
+        q = np.array(found["q"][k])
+        for along in source.normal(size=(30, 3)):
             n = along / np.linalg.norm(along)
             try:
                 rates.append(approach_velocity(model, q, n))
             except SingularDirection:
                 continue
-            rows.append(n)
-        directions = np.array(rows)
-        reach = abs(directions @ J) @ robot.speed_limits
-        at = Samples(np.tile(q, (len(rows), 1)), directions, np.array(rates))
-        chest = Contact(body_region("chest"), clamped=False)
-        speeds = safe_speeds(model, at, np.full(len(rows), 8.0), chest, Motors("driven"), 0.1).safe
-        can = speeds < reach
-        assert found["safe_speed"][k] < 1.01 * speeds[can].min()
+            rows.append(k)
+            postures.append(q)
+            directions.append(n)
+    at = Samples(np.array(postures), np.array(directions), np.array(rates))
+    chest = Contact(body_region("chest"), clamped=False)
+    tried = np.full(len(rows), 8.0)
+    speeds = safe_speeds(model, at, tried, chest, Motors("driven"), 0.1).safe
+    compared = 0
+    for k, q, n, speed in zip(rows, postures, directions, speeds, strict=True):
+        reach = abs(n @ np.array(model.jacobian(q))) @ robot.speed_limits
+        if speed < reach:  # in other directions the joints keep the tip slower
+            assert found["safe_speed"][k] < 1.01 * speed
+            compared += 1
+    assert compared > len(rows) / 4
 
 
 @pytest.mark.slow
@@ -101,20 +114,33 @@ def test_self_motion_is_mapped_along_its_arc(tmp_path: Path) -> None:
 
 def test_what_cannot_be_mapped_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = ("--out", tmp_path / "map")
-    assert "step" in refusal("map", *PANDA, *out, "--step", 0)
-    assert "plane" in refusal("map", *PANDA, *out, "--over", "sphere")
-    assert "xy" in refusal("map", *PANDA, *out, "--plane", "zz")
-    assert "pose" in refusal("map", *PANDA, *out, "--hold", "nothing")
-    assert "no map can begin" in refusal("map", "panda", "--q", "0,0,0,1,0,2,0", *out)
+    bare = (
+        "map",
+        "rr",
+        "--q",
+        "0.3,0.8,-0.4,0.9",
+        *out,
+        "--joint-stiffness",
+        1e4,
+        "--motors",
+        "driven",
+    )
+    assert "behind a spring" in refusal(*bare)
+    rr = ("map", "rr", "--q", "0.3,0.8,-0.4,0.9", *out)
+    assert "step" in refusal(*rr, "--plane", "xy", "--step", 0)
+    assert "self-motion" in refusal(*rr, "--over", "sphere")
+    assert "xy" in refusal(*rr, "--plane", "zz")
+    assert "pose" in refusal(*rr, "--hold", "nothing")
+    assert "nose" in refusal(*rr, "--region", "nose")
+    assert "held" in refusal(*rr, "--motors", "held", "--position-gain", 10)
+    assert "moves nowhere" in refusal(*rr, "--direction", "0,0,1", "--step", 1)
+    assert "seven joints" in refusal(*rr, "--over", "self-motion")
     assert "closed loops" in refusal("map", "rmin", *out)
-    assert "nose" in refusal("map", *PANDA, *out, "--region", "nose")
-    assert "seven joints" in refusal("map", "ur5e", *out, "--over", "self-motion")
-    assert "moves nowhere" in refusal("map", "rr", *out, "--direction", "0,0,1", "--step", 0.5)
-    assert "held" in refusal("map", *PANDA, *out, "--motors", "held", "--position-gain", 10)
+    assert "no map can begin" in refusal("map", "panda", "--q", "0,0,0,1,0,2,0", *out)
 
     def missing(robot: Robot) -> None:
         raise NoCompiler
 
     monkeypatch.setattr(worst_directions, "compiled", missing)
-    assert "no C compiler" in refusal("map", "rr", *out, "--plane", "xy", "--step", 1)
+    assert "no C compiler" in refusal(*rr, "--plane", "xy", "--step", 1)
     assert not (tmp_path / "map").exists()

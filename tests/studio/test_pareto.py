@@ -86,6 +86,7 @@ def test_every_point_is_checked(results: tuple[Path, dict[str, Any]]) -> None:
             assert point["start"] in POSES
 
 
+@pytest.mark.slow
 def test_safe_speed_meets_the_limit_and_grows_with_deflection(
     results: tuple[Path, dict[str, Any]],
 ) -> None:
@@ -101,6 +102,7 @@ def test_safe_speed_meets_the_limit_and_grows_with_deflection(
         assert impact["peak_force"] == pytest.approx(record["limit"], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_the_table_of_numbers_is_that_of_the_record(
     results: tuple[Path, dict[str, Any]],
 ) -> None:

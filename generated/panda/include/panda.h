@@ -78,7 +78,7 @@ typedef enum {
 } panda_motors;
 
 /* What structs and functions look like, in this number type. */
-#define PANDA_LAYOUT (0x7cc603b0u + (unsigned int)sizeof(panda_real))
+#define PANDA_LAYOUT (0x9a696a0u + (unsigned int)sizeof(panda_real))
 
 typedef struct {
     unsigned int layout; /* PANDA_LAYOUT; panda_default_params sets it */
@@ -367,6 +367,10 @@ typedef struct {
 int panda_peak_force(const panda_real q[PANDA_JOINTS], const panda_real n[3], panda_real speed,
     const panda_region *region, const panda_params *p, panda_peak_force_t *out);
 
+/* The same of another contact point, a panda_point. */
+int panda_peak_force_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
+    panda_real speed, const panda_region *region, const panda_params *p, panda_peak_force_t *out);
+
 typedef struct {
     panda_real speed; /* m/s */
     panda_real force; /* N; largest at this speed, below the limit */
@@ -374,11 +378,15 @@ typedef struct {
 
 /*
  * Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the speed
- * that is returned is 0.25 to 2 % below the limit, or jumps over it with little more speed.
+ * that is returned is 0.5 to 2 % below the limit, or jumps over it with little more speed.
  * limit: N, > 0. PANDA_BOUNDED: the speed is safe, but slower ones only were looked at, or none.
  */
 int panda_safe_speed(const panda_real q[PANDA_JOINTS], const panda_real n[3], panda_real limit,
     const panda_region *region, const panda_params *p, panda_safe_speed_t *out);
+
+/* The same of another contact point, a panda_point. */
+int panda_safe_speed_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
+    panda_real limit, const panda_region *region, const panda_params *p, panda_safe_speed_t *out);
 
 typedef struct {
     panda_real factor; /* of all joint velocities, 0 to 1 */
@@ -394,6 +402,21 @@ typedef struct {
  */
 int panda_speed_factor(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
     panda_real limit, const panda_region *region, const panda_params *p, panda_speed_factor_t *out);
+
+typedef struct {
+    panda_real factor; /* of all joint velocities, 0 to 1 */
+    int entry; /* of the table that needs it, -1 if none moves */
+    panda_real speed; /* m/s; that its point may have */
+    panda_real force; /* N; largest at that speed */
+} panda_speed_factor_over_t;
+
+/*
+ * The same for a table of `count` entries: contact points (panda_point), what they may hit, and the
+ * limits of that. Entries of one point share its modes.
+ */
+int panda_speed_factor_over(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    const int points[], const panda_region regions[], const panda_real limits[], int count,
+    const panda_params *p, panda_speed_factor_over_t *out);
 
 /*
  * Built-in candidates for panda_select_configuration:

@@ -2,22 +2,16 @@
 /* Largest force of an impact of panda_ on a part of the body. */
 #include "panda_impact.h"
 
-int panda_peak_force(const panda_real q[PANDA_JOINTS], const panda_real n[3], panda_real speed,
-    const panda_region *region, const panda_params *p, panda_peak_force_t *out)
+int panda_peak_force_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
+    panda_real speed, const panda_region *region, const panda_params *p, panda_peak_force_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return PANDA_NULL_POINTER;
     }
-    int status = panda_check_positive(&speed, 1);
     panda_impact impact;
+    int status = panda_check_positive(&speed, 1);
     if (status == PANDA_OK) {
-        status = panda_check_impact(region, p);
-    }
-    if (status == PANDA_OK) {
-        status = panda_links(PANDA_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == PANDA_OK) {
-        status = panda_arrive(n, 0, &impact.arrival);
+        status = panda_approach(q, point, n, region, p, &impact);
     }
     if (status != PANDA_OK) {
         return status;
@@ -56,4 +50,10 @@ int panda_peak_force(const panda_real q[PANDA_JOINTS], const panda_real n[3], pa
     }
     *out = found;
     return bounded ? PANDA_BOUNDED : PANDA_OK;
+}
+
+int panda_peak_force(const panda_real q[PANDA_JOINTS], const panda_real n[3], panda_real speed,
+    const panda_region *region, const panda_params *p, panda_peak_force_t *out)
+{
+    return panda_peak_force_at(q, PANDA_POINT_TIP, n, speed, region, p, out);
 }

@@ -99,21 +99,6 @@ static bool are_weak(const panda_impact *impact, panda_real speed, panda_real fo
     return PANDA_STRUCTURED && speed*speed*panda_twice_energy(impact) <= needed;
 }
 
-/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
-static int prepare_end(const panda_region *region, const panda_params *p, int motors, panda_real limit,
-    bool again, panda_impact *impact)
-{
-    if (again && PANDA_STRUCTURED && impact->phase[PANDA_LOOSE].ready) {
-        panda_phase *const loose = &impact->phase[PANDA_LOOSE];
-        const panda_real steps = PANDA_HORIZON(p)/loose->level[0].h;
-        loose->steps = steps < (panda_real)p->steps ? (int)steps + 1 : p->steps;
-        impact->motors = motors;
-        impact->first = PANDA_LOOSE;
-        return PANDA_OK;
-    }
-    return panda_impact_prepare(region, p, motors, limit, impact);
-}
-
 int panda_find_speed(const panda_region *region, const panda_params *p, panda_real limit,
     panda_real cap, panda_impact *impact, panda_safe_speed_t *found)
 {
@@ -128,7 +113,7 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
         if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
             continue;
         }
-        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
+        const int status = panda_impact_prepare(region, p, motors, limit, impact);
         if (status != PANDA_OK) {
             return status;
         }
@@ -158,22 +143,16 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
     return bounded ? PANDA_BOUNDED : PANDA_OK;
 }
 
-int panda_safe_speed(const panda_real q[PANDA_JOINTS], const panda_real n[3], panda_real limit,
-    const panda_region *region, const panda_params *p, panda_safe_speed_t *out)
+int panda_safe_speed_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
+    panda_real limit, const panda_region *region, const panda_params *p, panda_safe_speed_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return PANDA_NULL_POINTER;
     }
-    int status = panda_check_positive(&limit, 1);
     panda_impact impact;
+    int status = panda_check_positive(&limit, 1);
     if (status == PANDA_OK) {
-        status = panda_check_impact(region, p);
-    }
-    if (status == PANDA_OK) {
-        status = panda_links(PANDA_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == PANDA_OK) {
-        status = panda_arrive(n, 0, &impact.arrival);
+        status = panda_approach(q, point, n, region, p, &impact);
     }
     if (status != PANDA_OK) {
         return status;
@@ -184,4 +163,10 @@ int panda_safe_speed(const panda_real q[PANDA_JOINTS], const panda_real n[3], pa
         *out = found;
     }
     return status;
+}
+
+int panda_safe_speed(const panda_real q[PANDA_JOINTS], const panda_real n[3], panda_real limit,
+    const panda_region *region, const panda_params *p, panda_safe_speed_t *out)
+{
+    return panda_safe_speed_at(q, PANDA_POINT_TIP, n, limit, region, p, out);
 }

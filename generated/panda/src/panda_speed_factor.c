@@ -30,56 +30,137 @@ static void arrive_as_it_moves(int point, const panda_real *rates, const panda_r
     }
 }
 
+/* What a search of the least factor knows. */
+typedef struct {
+    panda_impact impact;
+    panda_real rates[PANDA_N];
+    bool bounded;
+    int point; /* of impact.arrival, -1 for none */
+    panda_real speed; /* of that point, m/s */
+    panda_speed_factor_over_t found;
+} search;
+
+static int start(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    const panda_params *p, search *s)
+{
+    const int status = panda_check_finite(dq, PANDA_JOINTS);
+    for (int i = 0; i < PANDA_N; ++i) {
+        s->rates[i] = dq[PANDA_INDEPENDENT(i)];
+    }
+    const panda_speed_factor_over_t nothing = {PANDA_R(1.0), -1, PANDA_R(0.0), PANDA_R(0.0)};
+    s->found = nothing;
+    s->bounded = false;
+    s->point = -1;
+    (void)q;
+    (void)p;
+    return status == PANDA_OK ? panda_links(PANDA_LINKS_OF(q, p), &s->impact.arrival.links) : status;
+}
+
+/* Slows down until one point keeps the limit of one region. */
+static int watch(const panda_region *region, const panda_params *p, int point, panda_real limit,
+    int which, search *s)
+{
+    if (s->point != point) {
+        panda_real v[3];
+        s->point = point;
+        s->speed = velocity_of(&s->impact.arrival.links, point, s->rates, v);
+        if (s->speed > AT_REST) {
+            arrive_as_it_moves(point, s->rates, v, s->speed, &s->impact.arrival);
+        }
+        panda_impact_forget(&s->impact);
+    }
+    if (!(s->speed > AT_REST)) {
+        return PANDA_OK;
+    }
+    panda_safe_speed_t safe;
+    const panda_real allowed = s->found.factor*s->speed;
+    const int status = panda_find_speed(region, p, limit, allowed, &s->impact, &safe);
+    if (status != PANDA_OK && status != PANDA_BOUNDED) {
+        return status;
+    }
+    s->bounded = s->bounded || status == PANDA_BOUNDED;
+    if (safe.speed < allowed || s->found.entry < 0) {
+        s->found.factor = PANDA_FMIN(s->found.factor, safe.speed/s->speed);
+        s->found.entry = which;
+        s->found.speed = safe.speed;
+        s->found.force = safe.force;
+    }
+    return PANDA_OK;
+}
+
+/* Status of what was found. */
+static int said(const search *s)
+{
+    const panda_real numbers[3] = {s->found.factor, s->found.speed, s->found.force};
+    if (!(panda_check_share(numbers, 1) == PANDA_OK && panda_all_finite(numbers, 3))) {
+        return PANDA_SINGULAR;
+    }
+    return s->bounded ? PANDA_BOUNDED : PANDA_OK;
+}
+
 int panda_speed_factor(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
     panda_real limit, const panda_region *region, const panda_params *p, panda_speed_factor_t *out)
 {
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return PANDA_NULL_POINTER;
     }
-    int status = panda_check_finite(dq, PANDA_JOINTS);
-    panda_impact impact;
-    if (status == PANDA_OK) {
-        status = panda_check_positive(&limit, 1);
-    }
+    search s;
+    int status = panda_check_positive(&limit, 1);
     if (status == PANDA_OK) {
         status = panda_check_impact(region, p);
     }
     if (status == PANDA_OK) {
-        status = panda_links(PANDA_LINKS_OF(q, p), &impact.arrival.links);
+        status = start(q, dq, p, &s);
     }
-    if (status != PANDA_OK) {
-        return status;
+    for (int point = 0; point < PANDA_POINTS && status == PANDA_OK; ++point) {
+        status = watch(region, p, point, limit, point, &s);
     }
-    panda_real rates[PANDA_N];
-    for (int i = 0; i < PANDA_N; ++i) {
-        rates[i] = dq[PANDA_INDEPENDENT(i)];
+    if (status == PANDA_OK) {
+        status = said(&s);
     }
-    panda_speed_factor_t found = {PANDA_R(1.0), -1, PANDA_R(0.0), PANDA_R(0.0)};
-    bool bounded = false;
-    for (int point = 0; point < PANDA_POINTS; ++point) {
-        panda_real v[3];
-        const panda_real speed = velocity_of(&impact.arrival.links, point, rates, v);
-        if (!(speed > AT_REST)) {
-            continue;
+    if (status == PANDA_OK || status == PANDA_BOUNDED) {
+        out->factor = s.found.factor;
+        out->point = s.found.entry;
+        out->speed = s.found.speed;
+        out->force = s.found.force;
+    }
+    return status;
+}
+
+int panda_speed_factor_over(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    const int points[], const panda_region regions[], const panda_real limits[], int count,
+    const panda_params *p, panda_speed_factor_over_t *out)
+{
+    if (q == NULL || dq == NULL || points == NULL || regions == NULL || limits == NULL || p == NULL
+        || out == NULL) {
+        return PANDA_NULL_POINTER;
+    }
+    search s;
+    int status = count > 0 ? PANDA_OK : PANDA_OUT_OF_RANGE;
+    for (int i = 0; i < count && status == PANDA_OK; ++i) {
+        status = panda_check_impact(&regions[i], p);
+        if (status == PANDA_OK) {
+            status = panda_check_positive(&limits[i], 1);
         }
-        panda_safe_speed_t safe;
-        arrive_as_it_moves(point, rates, v, speed, &impact.arrival);
-        status = panda_find_speed(region, p, limit, found.factor*speed, &impact, &safe);
-        if (status != PANDA_OK && status != PANDA_BOUNDED) {
-            return status;
-        }
-        bounded = bounded || status == PANDA_BOUNDED;
-        if (safe.speed < found.factor*speed || found.point < 0) {
-            found.factor = PANDA_FMIN(found.factor, safe.speed/speed);
-            found.point = point;
-            found.speed = safe.speed;
-            found.force = safe.force;
+        if (status == PANDA_OK && !(points[i] >= 0 && points[i] < PANDA_POINTS)) {
+            status = PANDA_OUT_OF_RANGE;
         }
     }
-    const panda_real numbers[3] = {found.factor, found.speed, found.force};
-    if (!(panda_check_share(numbers, 1) == PANDA_OK && panda_all_finite(numbers, 3))) {
-        return PANDA_SINGULAR;
+    if (status == PANDA_OK) {
+        status = start(q, dq, p, &s);
     }
-    *out = found;
-    return bounded ? PANDA_BOUNDED : PANDA_OK;
+    for (int point = 0; point < PANDA_POINTS; ++point) { /* modes of a point serve all its regions */
+        for (int i = 0; i < count && status == PANDA_OK; ++i) {
+            if (points[i] == point) {
+                status = watch(&regions[i], p, point, limits[i], i, &s);
+            }
+        }
+    }
+    if (status == PANDA_OK) {
+        status = said(&s);
+    }
+    if (status == PANDA_OK || status == PANDA_BOUNDED) {
+        *out = s.found;
+    }
+    return status;
 }

@@ -148,6 +148,7 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
         }
         ++modes->count;
     }
+    phase->has_body = impact->gives_way;
     let_stand(impact, contact, released, phase);
     panda_real moving = PANDA_R(0.0);
     panda_real rate2 = PANDA_R(0.0);

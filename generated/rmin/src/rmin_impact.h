@@ -66,7 +66,9 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
-    bool ready;
+    bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
+    bool has_body;
+    bool ready; /* steps are */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* no energy enters but by the motors' drift: see rmin_settled.c */
     rmin_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -85,7 +87,7 @@ typedef struct {
     rmin_arrival arrival;
     const rmin_region *region;
     const rmin_params *p;
-    int motors;
+    int motors, led; /* what they do, and in the modes of the first phase */
     bool gives_way;
     rmin_real mobility; /* of the contact, 1/kg */
     rmin_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
@@ -123,6 +125,13 @@ int rmin_check_impact(const rmin_region *region, const rmin_params *p);
 
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival);
+
+/* Checks and links of an impact of one of the contact points. */
+int rmin_approach(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
+    const rmin_region *region, const rmin_params *p, rmin_impact *impact);
+
+/* To be called as impact->arrival changes: no modes are known. */
+void rmin_impact_forget(rmin_impact *impact);
 
 /*
  * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about

@@ -2,22 +2,16 @@
 /* Largest force of an impact of rmin_ on a part of the body. */
 #include "rmin_impact.h"
 
-int rmin_peak_force(const rmin_real q[RMIN_JOINTS], const rmin_real n[3], rmin_real speed,
-    const rmin_region *region, const rmin_params *p, rmin_peak_force_t *out)
+int rmin_peak_force_at(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
+    rmin_real speed, const rmin_region *region, const rmin_params *p, rmin_peak_force_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return RMIN_NULL_POINTER;
     }
-    int status = rmin_check_positive(&speed, 1);
     rmin_impact impact;
+    int status = rmin_check_positive(&speed, 1);
     if (status == RMIN_OK) {
-        status = rmin_check_impact(region, p);
-    }
-    if (status == RMIN_OK) {
-        status = rmin_links(RMIN_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == RMIN_OK) {
-        status = rmin_arrive(n, 0, &impact.arrival);
+        status = rmin_approach(q, point, n, region, p, &impact);
     }
     if (status != RMIN_OK) {
         return status;
@@ -56,4 +50,10 @@ int rmin_peak_force(const rmin_real q[RMIN_JOINTS], const rmin_real n[3], rmin_r
     }
     *out = found;
     return bounded ? RMIN_BOUNDED : RMIN_OK;
+}
+
+int rmin_peak_force(const rmin_real q[RMIN_JOINTS], const rmin_real n[3], rmin_real speed,
+    const rmin_region *region, const rmin_params *p, rmin_peak_force_t *out)
+{
+    return rmin_peak_force_at(q, RMIN_POINT_TIP, n, speed, region, p, out);
 }

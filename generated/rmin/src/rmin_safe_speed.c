@@ -99,21 +99,6 @@ static bool are_weak(const rmin_impact *impact, rmin_real speed, rmin_real force
     return RMIN_STRUCTURED && speed*speed*rmin_twice_energy(impact) <= needed;
 }
 
-/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
-static int prepare_end(const rmin_region *region, const rmin_params *p, int motors, rmin_real limit,
-    bool again, rmin_impact *impact)
-{
-    if (again && RMIN_STRUCTURED && impact->phase[RMIN_LOOSE].ready) {
-        rmin_phase *const loose = &impact->phase[RMIN_LOOSE];
-        const rmin_real steps = RMIN_HORIZON(p)/loose->level[0].h;
-        loose->steps = steps < (rmin_real)p->steps ? (int)steps + 1 : p->steps;
-        impact->motors = motors;
-        impact->first = RMIN_LOOSE;
-        return RMIN_OK;
-    }
-    return rmin_impact_prepare(region, p, motors, limit, impact);
-}
-
 int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real limit,
     rmin_real cap, rmin_impact *impact, rmin_safe_speed_t *found)
 {
@@ -128,7 +113,7 @@ int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real l
         if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
             continue;
         }
-        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
+        const int status = rmin_impact_prepare(region, p, motors, limit, impact);
         if (status != RMIN_OK) {
             return status;
         }
@@ -158,22 +143,16 @@ int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real l
     return bounded ? RMIN_BOUNDED : RMIN_OK;
 }
 
-int rmin_safe_speed(const rmin_real q[RMIN_JOINTS], const rmin_real n[3], rmin_real limit,
-    const rmin_region *region, const rmin_params *p, rmin_safe_speed_t *out)
+int rmin_safe_speed_at(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
+    rmin_real limit, const rmin_region *region, const rmin_params *p, rmin_safe_speed_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return RMIN_NULL_POINTER;
     }
-    int status = rmin_check_positive(&limit, 1);
     rmin_impact impact;
+    int status = rmin_check_positive(&limit, 1);
     if (status == RMIN_OK) {
-        status = rmin_check_impact(region, p);
-    }
-    if (status == RMIN_OK) {
-        status = rmin_links(RMIN_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == RMIN_OK) {
-        status = rmin_arrive(n, 0, &impact.arrival);
+        status = rmin_approach(q, point, n, region, p, &impact);
     }
     if (status != RMIN_OK) {
         return status;
@@ -184,4 +163,10 @@ int rmin_safe_speed(const rmin_real q[RMIN_JOINTS], const rmin_real n[3], rmin_r
         *out = found;
     }
     return status;
+}
+
+int rmin_safe_speed(const rmin_real q[RMIN_JOINTS], const rmin_real n[3], rmin_real limit,
+    const rmin_region *region, const rmin_params *p, rmin_safe_speed_t *out)
+{
+    return rmin_safe_speed_at(q, RMIN_POINT_TIP, n, limit, region, p, out);
 }

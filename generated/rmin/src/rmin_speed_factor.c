@@ -30,56 +30,137 @@ static void arrive_as_it_moves(int point, const rmin_real *rates, const rmin_rea
     }
 }
 
+/* What a search of the least factor knows. */
+typedef struct {
+    rmin_impact impact;
+    rmin_real rates[RMIN_N];
+    bool bounded;
+    int point; /* of impact.arrival, -1 for none */
+    rmin_real speed; /* of that point, m/s */
+    rmin_speed_factor_over_t found;
+} search;
+
+static int start(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
+    const rmin_params *p, search *s)
+{
+    const int status = rmin_check_finite(dq, RMIN_JOINTS);
+    for (int i = 0; i < RMIN_N; ++i) {
+        s->rates[i] = dq[RMIN_INDEPENDENT(i)];
+    }
+    const rmin_speed_factor_over_t nothing = {RMIN_R(1.0), -1, RMIN_R(0.0), RMIN_R(0.0)};
+    s->found = nothing;
+    s->bounded = false;
+    s->point = -1;
+    (void)q;
+    (void)p;
+    return status == RMIN_OK ? rmin_links(RMIN_LINKS_OF(q, p), &s->impact.arrival.links) : status;
+}
+
+/* Slows down until one point keeps the limit of one region. */
+static int watch(const rmin_region *region, const rmin_params *p, int point, rmin_real limit,
+    int which, search *s)
+{
+    if (s->point != point) {
+        rmin_real v[3];
+        s->point = point;
+        s->speed = velocity_of(&s->impact.arrival.links, point, s->rates, v);
+        if (s->speed > AT_REST) {
+            arrive_as_it_moves(point, s->rates, v, s->speed, &s->impact.arrival);
+        }
+        rmin_impact_forget(&s->impact);
+    }
+    if (!(s->speed > AT_REST)) {
+        return RMIN_OK;
+    }
+    rmin_safe_speed_t safe;
+    const rmin_real allowed = s->found.factor*s->speed;
+    const int status = rmin_find_speed(region, p, limit, allowed, &s->impact, &safe);
+    if (status != RMIN_OK && status != RMIN_BOUNDED) {
+        return status;
+    }
+    s->bounded = s->bounded || status == RMIN_BOUNDED;
+    if (safe.speed < allowed || s->found.entry < 0) {
+        s->found.factor = RMIN_FMIN(s->found.factor, safe.speed/s->speed);
+        s->found.entry = which;
+        s->found.speed = safe.speed;
+        s->found.force = safe.force;
+    }
+    return RMIN_OK;
+}
+
+/* Status of what was found. */
+static int said(const search *s)
+{
+    const rmin_real numbers[3] = {s->found.factor, s->found.speed, s->found.force};
+    if (!(rmin_check_share(numbers, 1) == RMIN_OK && rmin_all_finite(numbers, 3))) {
+        return RMIN_SINGULAR;
+    }
+    return s->bounded ? RMIN_BOUNDED : RMIN_OK;
+}
+
 int rmin_speed_factor(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
     rmin_real limit, const rmin_region *region, const rmin_params *p, rmin_speed_factor_t *out)
 {
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return RMIN_NULL_POINTER;
     }
-    int status = rmin_check_finite(dq, RMIN_JOINTS);
-    rmin_impact impact;
-    if (status == RMIN_OK) {
-        status = rmin_check_positive(&limit, 1);
-    }
+    search s;
+    int status = rmin_check_positive(&limit, 1);
     if (status == RMIN_OK) {
         status = rmin_check_impact(region, p);
     }
     if (status == RMIN_OK) {
-        status = rmin_links(RMIN_LINKS_OF(q, p), &impact.arrival.links);
+        status = start(q, dq, p, &s);
     }
-    if (status != RMIN_OK) {
-        return status;
+    for (int point = 0; point < RMIN_POINTS && status == RMIN_OK; ++point) {
+        status = watch(region, p, point, limit, point, &s);
     }
-    rmin_real rates[RMIN_N];
-    for (int i = 0; i < RMIN_N; ++i) {
-        rates[i] = dq[RMIN_INDEPENDENT(i)];
+    if (status == RMIN_OK) {
+        status = said(&s);
     }
-    rmin_speed_factor_t found = {RMIN_R(1.0), -1, RMIN_R(0.0), RMIN_R(0.0)};
-    bool bounded = false;
-    for (int point = 0; point < RMIN_POINTS; ++point) {
-        rmin_real v[3];
-        const rmin_real speed = velocity_of(&impact.arrival.links, point, rates, v);
-        if (!(speed > AT_REST)) {
-            continue;
+    if (status == RMIN_OK || status == RMIN_BOUNDED) {
+        out->factor = s.found.factor;
+        out->point = s.found.entry;
+        out->speed = s.found.speed;
+        out->force = s.found.force;
+    }
+    return status;
+}
+
+int rmin_speed_factor_over(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
+    const int points[], const rmin_region regions[], const rmin_real limits[], int count,
+    const rmin_params *p, rmin_speed_factor_over_t *out)
+{
+    if (q == NULL || dq == NULL || points == NULL || regions == NULL || limits == NULL || p == NULL
+        || out == NULL) {
+        return RMIN_NULL_POINTER;
+    }
+    search s;
+    int status = count > 0 ? RMIN_OK : RMIN_OUT_OF_RANGE;
+    for (int i = 0; i < count && status == RMIN_OK; ++i) {
+        status = rmin_check_impact(&regions[i], p);
+        if (status == RMIN_OK) {
+            status = rmin_check_positive(&limits[i], 1);
         }
-        rmin_safe_speed_t safe;
-        arrive_as_it_moves(point, rates, v, speed, &impact.arrival);
-        status = rmin_find_speed(region, p, limit, found.factor*speed, &impact, &safe);
-        if (status != RMIN_OK && status != RMIN_BOUNDED) {
-            return status;
-        }
-        bounded = bounded || status == RMIN_BOUNDED;
-        if (safe.speed < found.factor*speed || found.point < 0) {
-            found.factor = RMIN_FMIN(found.factor, safe.speed/speed);
-            found.point = point;
-            found.speed = safe.speed;
-            found.force = safe.force;
+        if (status == RMIN_OK && !(points[i] >= 0 && points[i] < RMIN_POINTS)) {
+            status = RMIN_OUT_OF_RANGE;
         }
     }
-    const rmin_real numbers[3] = {found.factor, found.speed, found.force};
-    if (!(rmin_check_share(numbers, 1) == RMIN_OK && rmin_all_finite(numbers, 3))) {
-        return RMIN_SINGULAR;
+    if (status == RMIN_OK) {
+        status = start(q, dq, p, &s);
     }
-    *out = found;
-    return bounded ? RMIN_BOUNDED : RMIN_OK;
+    for (int point = 0; point < RMIN_POINTS; ++point) { /* modes of a point serve all its regions */
+        for (int i = 0; i < count && status == RMIN_OK; ++i) {
+            if (points[i] == point) {
+                status = watch(&regions[i], p, point, limits[i], i, &s);
+            }
+        }
+    }
+    if (status == RMIN_OK) {
+        status = said(&s);
+    }
+    if (status == RMIN_OK || status == RMIN_BOUNDED) {
+        *out = s.found;
+    }
+    return status;
 }

@@ -148,6 +148,7 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
         }
         ++modes->count;
     }
+    phase->has_body = impact->gives_way;
     let_stand(impact, contact, released, phase);
     rmin_real moving = RMIN_R(0.0);
     rmin_real rate2 = RMIN_R(0.0);

@@ -77,7 +77,7 @@ typedef enum {
 } rr_motors;
 
 /* What structs and functions look like, in this number type. */
-#define RR_LAYOUT (0xbaef0be0u + (unsigned int)sizeof(rr_real))
+#define RR_LAYOUT (0x4bc5fce0u + (unsigned int)sizeof(rr_real))
 
 typedef struct {
     unsigned int layout; /* RR_LAYOUT; rr_default_params sets it */
@@ -251,6 +251,10 @@ typedef struct {
 int rr_peak_force(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real speed,
     const rr_region *region, const rr_params *p, rr_peak_force_t *out);
 
+/* The same of another contact point, a rr_point. */
+int rr_peak_force_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    rr_real speed, const rr_region *region, const rr_params *p, rr_peak_force_t *out);
+
 typedef struct {
     rr_real speed; /* m/s */
     rr_real force; /* N; largest at this speed, below the limit */
@@ -258,11 +262,15 @@ typedef struct {
 
 /*
  * Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the speed
- * that is returned is 0.25 to 2 % below the limit, or jumps over it with little more speed.
+ * that is returned is 0.5 to 2 % below the limit, or jumps over it with little more speed.
  * limit: N, > 0. RR_BOUNDED: the speed is safe, but slower ones only were looked at, or none.
  */
 int rr_safe_speed(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real limit,
     const rr_region *region, const rr_params *p, rr_safe_speed_t *out);
+
+/* The same of another contact point, a rr_point. */
+int rr_safe_speed_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    rr_real limit, const rr_region *region, const rr_params *p, rr_safe_speed_t *out);
 
 typedef struct {
     rr_real factor; /* of all joint velocities, 0 to 1 */
@@ -278,6 +286,21 @@ typedef struct {
  */
 int rr_speed_factor(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     rr_real limit, const rr_region *region, const rr_params *p, rr_speed_factor_t *out);
+
+typedef struct {
+    rr_real factor; /* of all joint velocities, 0 to 1 */
+    int entry; /* of the table that needs it, -1 if none moves */
+    rr_real speed; /* m/s; that its point may have */
+    rr_real force; /* N; largest at that speed */
+} rr_speed_factor_over_t;
+
+/*
+ * The same for a table of `count` entries: contact points (rr_point), what they may hit, and the
+ * limits of that. Entries of one point share its modes.
+ */
+int rr_speed_factor_over(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    const int points[], const rr_region regions[], const rr_real limits[], int count,
+    const rr_params *p, rr_speed_factor_over_t *out);
 
 typedef struct {
     int best;    /* row of the pose with the least peak force; the first of equals */

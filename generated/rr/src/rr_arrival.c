@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: 0BSD */
-/* Robot_ about to touch, and what its impacts are prepared with. */
+/* Robot_ about to touch. */
 #include "rr_impact.h"
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE RR_R(1e-6)
 #define MOST_STEPS 1000000
-/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
-#define BLURS RR_R(1.6e-2)
 
 int rr_check_impact(const rr_region *region, const rr_params *p)
 {
@@ -97,150 +95,19 @@ void rr_kinds_of_motors(const rr_params *p, int *first, int *last)
     *last = both ? RR_MOTORS_DRIVEN : p->motors;
 }
 
-/* Largest stiffness of the skin up to a force. */
-static rr_real skin_stiffness(const rr_region *region, rr_real force)
+int rr_approach(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    const rr_region *region, const rr_params *p, rr_impact *impact)
 {
-    const rr_real third = RR_R(1.0)/RR_R(3.0);
-    return RR_R(1.5)*RR_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
-}
-
-rr_real rr_two_body_force(const rr_region *region, rr_real mobility, rr_real speed)
-{
-    const rr_real spring = speed*RR_SQRT(region->stiffness/mobility);
-    const rr_real energy = RR_R(1.25)*speed*speed/mobility;
-    const rr_real skin = RR_POW(energy, RR_R(0.6))*RR_POW(region->hertz_stiffness, RR_R(0.4));
-    return RR_R(1.0)/(RR_R(1.0)/spring + RR_R(1.0)/skin);
-}
-
-rr_real rr_two_body_speed(const rr_region *region, rr_real mobility, rr_real force)
-{
-    const rr_real depth = RR_POW(force/region->hertz_stiffness, RR_R(2.0)/RR_R(3.0));
-    return RR_SQRT(mobility*force*(force/region->stiffness + RR_R(0.8)*depth));
-}
-
-/* Modes of a phase. */
-static int modes_of(rr_impact *impact, int which)
-{
-    rr_phase *const phase = &impact->phase[which];
-    phase->drift = RR_R(0.0);
-    phase->modes.noise = RR_R(0.0);
-    phase->damped = false;
-    for (int i = 0; i < RR_N; ++i) {
-        phase->damping[i] = RR_R(0.0);
+    int status = rr_check_impact(region, p);
+    if (status == RR_OK && !(point >= 0 && point < RR_POINTS)) {
+        status = RR_OUT_OF_RANGE;
     }
-    if (which == RR_LOOSE) {
-        return rr_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
+    if (status == RR_OK) {
+        status = rr_links(RR_LINKS_OF(q, p), &impact->arrival.links);
     }
-    if (impact->motors == RR_MOTORS_DRIVEN) {
-        return rr_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
+    if (status == RR_OK) {
+        status = rr_arrive(n, point, &impact->arrival);
     }
-    for (int i = 0; i < RR_N; ++i) {
-        phase->damping[i] = RR_DAMPING_GAIN(impact->p, i);
-        phase->damped = phase->damped || phase->damping[i] > RR_R(0.0);
-    }
-    return rr_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
-}
-
-#if !RR_STRUCTURED
-static rr_real mobility_of(const rr_modes *modes)
-{
-    rr_real sum = RR_R(0.0);
-    for (int i = 0; i < modes->count; ++i) {
-        sum += modes->row[i]*modes->row[i];
-    }
-    return sum;
-}
-#endif
-
-/* Times at which a phase begins and ends. */
-static rr_real time_of(const rr_impact *impact, int which)
-{
-    const rr_real horizon = RR_HORIZON(impact->p);
-    const rr_real until = which < impact->last ? RR_REACTION_TIME(impact->p) : horizon;
-    return which > impact->first ? horizon - RR_REACTION_TIME(impact->p) : until;
-}
-
-static void steps_of(rr_impact *impact, int which)
-{
-    rr_phase *const phase = &impact->phase[which];
-    const rr_real time = time_of(impact, which);
-    phase->blurred = phase->modes.noise*time*time > BLURS;
-    rr_phase_steps(impact, time, phase);
-    const rr_real numbers[2] = {phase->level[0].h, phase->level[RR_LEVELS - 1].h};
-    if (rr_check_positive(numbers, 2) != RR_OK) {
-        impact->status = RR_SINGULAR;
-    }
-}
-
-void rr_impact_let_go(rr_impact *impact)
-{
-    if (!impact->phase[RR_LOOSE].ready) {
-        impact->status = modes_of(impact, RR_LOOSE);
-        if (impact->status == RR_OK) {
-            steps_of(impact, RR_LOOSE);
-        }
-    }
-}
-
-/* Mobilities of the contact, and modes where those need them. */
-static void weigh(rr_impact *impact)
-{
-    const rr_real body = impact->gives_way ? RR_R(1.0)/impact->region->effective_mass : RR_R(0.0);
-    rr_real mobility = RR_R(0.0);
-#if RR_STRUCTURED
-    impact->status = rr_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
-#else
-    for (int k = impact->first; k <= impact->last && impact->status == RR_OK; ++k) {
-        impact->status = modes_of(impact, k);
-        mobility = RR_FMAX(mobility, mobility_of(&impact->phase[k].modes));
-    }
-    impact->rotors = RR_R(0.0);
-    const bool held = !RR_ELASTIC && impact->last == RR_LED && impact->motors == RR_MOTORS_DRIVEN;
-    if (!(mobility > RR_LEAST_MOBILITY) && !held) {
-        impact->status = RR_SINGULAR;
-    }
-#endif
-    impact->mobility = RR_FMAX(mobility, RR_LEAST_MOBILITY) + body;
-}
-
-int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
-    rr_real force, rr_impact *impact)
-{
-    const rr_real reaction = RR_REACTION_TIME(p);
-    const bool loose = motors == RR_MOTORS_FREE || !(reaction > RR_R(0.0));
-    impact->region = region;
-    impact->p = p;
-    impact->motors = motors;
-    impact->gives_way = region->clamped == 0;
-    impact->first = loose ? RR_LOOSE : RR_LED;
-    impact->last = loose || reaction < RR_HORIZON(p) ? RR_LOOSE : RR_LED;
-    impact->status = RR_OK;
-    impact->phase[RR_LED].ready = false;
-    impact->phase[RR_LOOSE].ready = false;
-    weigh(impact);
-    if (impact->status != RR_OK) {
-        return impact->status;
-    }
-    const rr_real size =
-        force > RR_R(0.0) ? force : rr_two_body_force(region, impact->mobility, -force);
-    impact->scale = RR_R(0.4)*size;
-    impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
-    const rr_real damped = region->damping*RR_SQRT(impact->mobility/region->stiffness);
-    impact->smooth = RR_R(1.0)/(RR_R(1.0) + RR_R(4.0)*damped);
-    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
-    const rr_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
-    if (!rr_all_finite(numbers, 3) || rr_check_positive(numbers, 3) != RR_OK) {
-        return RR_SINGULAR;
-    }
-#if RR_STRUCTURED
-    impact->status = modes_of(impact, impact->first);
-    if (impact->status == RR_OK) {
-        steps_of(impact, impact->first);
-    }
-#else
-    for (int k = impact->first; k <= impact->last; ++k) {
-        steps_of(impact, k);
-    }
-#endif
-    return impact->status;
+    rr_impact_forget(impact);
+    return status;
 }

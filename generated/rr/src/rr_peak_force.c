@@ -2,22 +2,16 @@
 /* Largest force of an impact of rr_ on a part of the body. */
 #include "rr_impact.h"
 
-int rr_peak_force(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real speed,
-    const rr_region *region, const rr_params *p, rr_peak_force_t *out)
+int rr_peak_force_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    rr_real speed, const rr_region *region, const rr_params *p, rr_peak_force_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return RR_NULL_POINTER;
     }
-    int status = rr_check_positive(&speed, 1);
     rr_impact impact;
+    int status = rr_check_positive(&speed, 1);
     if (status == RR_OK) {
-        status = rr_check_impact(region, p);
-    }
-    if (status == RR_OK) {
-        status = rr_links(RR_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == RR_OK) {
-        status = rr_arrive(n, 0, &impact.arrival);
+        status = rr_approach(q, point, n, region, p, &impact);
     }
     if (status != RR_OK) {
         return status;
@@ -56,4 +50,10 @@ int rr_peak_force(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real speed,
     }
     *out = found;
     return bounded ? RR_BOUNDED : RR_OK;
+}
+
+int rr_peak_force(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real speed,
+    const rr_region *region, const rr_params *p, rr_peak_force_t *out)
+{
+    return rr_peak_force_at(q, RR_POINT_TIP, n, speed, region, p, out);
 }

@@ -6,7 +6,7 @@
 #define BENDS RR_R(0.0125)
 #define BENDS_ROUGH RR_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
-#define STRAIGHT RR_R(0.2)
+#define STRAIGHT RR_R(0.12)
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (RR_LEVELS - 1)
 #define SHORTEST_ROUGH 2

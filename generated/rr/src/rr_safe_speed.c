@@ -99,21 +99,6 @@ static bool are_weak(const rr_impact *impact, rr_real speed, rr_real force)
     return RR_STRUCTURED && speed*speed*rr_twice_energy(impact) <= needed;
 }
 
-/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
-static int prepare_end(const rr_region *region, const rr_params *p, int motors, rr_real limit,
-    bool again, rr_impact *impact)
-{
-    if (again && RR_STRUCTURED && impact->phase[RR_LOOSE].ready) {
-        rr_phase *const loose = &impact->phase[RR_LOOSE];
-        const rr_real steps = RR_HORIZON(p)/loose->level[0].h;
-        loose->steps = steps < (rr_real)p->steps ? (int)steps + 1 : p->steps;
-        impact->motors = motors;
-        impact->first = RR_LOOSE;
-        return RR_OK;
-    }
-    return rr_impact_prepare(region, p, motors, limit, impact);
-}
-
 int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
     rr_real cap, rr_impact *impact, rr_safe_speed_t *found)
 {
@@ -128,7 +113,7 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
         if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
             continue;
         }
-        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
+        const int status = rr_impact_prepare(region, p, motors, limit, impact);
         if (status != RR_OK) {
             return status;
         }
@@ -158,22 +143,16 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
     return bounded ? RR_BOUNDED : RR_OK;
 }
 
-int rr_safe_speed(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real limit,
-    const rr_region *region, const rr_params *p, rr_safe_speed_t *out)
+int rr_safe_speed_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    rr_real limit, const rr_region *region, const rr_params *p, rr_safe_speed_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return RR_NULL_POINTER;
     }
-    int status = rr_check_positive(&limit, 1);
     rr_impact impact;
+    int status = rr_check_positive(&limit, 1);
     if (status == RR_OK) {
-        status = rr_check_impact(region, p);
-    }
-    if (status == RR_OK) {
-        status = rr_links(RR_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == RR_OK) {
-        status = rr_arrive(n, 0, &impact.arrival);
+        status = rr_approach(q, point, n, region, p, &impact);
     }
     if (status != RR_OK) {
         return status;
@@ -184,4 +163,10 @@ int rr_safe_speed(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real limit,
         *out = found;
     }
     return status;
+}
+
+int rr_safe_speed(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real limit,
+    const rr_region *region, const rr_params *p, rr_safe_speed_t *out)
+{
+    return rr_safe_speed_at(q, RR_POINT_TIP, n, limit, region, p, out);
 }

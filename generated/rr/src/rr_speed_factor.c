@@ -30,56 +30,137 @@ static void arrive_as_it_moves(int point, const rr_real *rates, const rr_real v[
     }
 }
 
+/* What a search of the least factor knows. */
+typedef struct {
+    rr_impact impact;
+    rr_real rates[RR_N];
+    bool bounded;
+    int point; /* of impact.arrival, -1 for none */
+    rr_real speed; /* of that point, m/s */
+    rr_speed_factor_over_t found;
+} search;
+
+static int start(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    const rr_params *p, search *s)
+{
+    const int status = rr_check_finite(dq, RR_JOINTS);
+    for (int i = 0; i < RR_N; ++i) {
+        s->rates[i] = dq[RR_INDEPENDENT(i)];
+    }
+    const rr_speed_factor_over_t nothing = {RR_R(1.0), -1, RR_R(0.0), RR_R(0.0)};
+    s->found = nothing;
+    s->bounded = false;
+    s->point = -1;
+    (void)q;
+    (void)p;
+    return status == RR_OK ? rr_links(RR_LINKS_OF(q, p), &s->impact.arrival.links) : status;
+}
+
+/* Slows down until one point keeps the limit of one region. */
+static int watch(const rr_region *region, const rr_params *p, int point, rr_real limit,
+    int which, search *s)
+{
+    if (s->point != point) {
+        rr_real v[3];
+        s->point = point;
+        s->speed = velocity_of(&s->impact.arrival.links, point, s->rates, v);
+        if (s->speed > AT_REST) {
+            arrive_as_it_moves(point, s->rates, v, s->speed, &s->impact.arrival);
+        }
+        rr_impact_forget(&s->impact);
+    }
+    if (!(s->speed > AT_REST)) {
+        return RR_OK;
+    }
+    rr_safe_speed_t safe;
+    const rr_real allowed = s->found.factor*s->speed;
+    const int status = rr_find_speed(region, p, limit, allowed, &s->impact, &safe);
+    if (status != RR_OK && status != RR_BOUNDED) {
+        return status;
+    }
+    s->bounded = s->bounded || status == RR_BOUNDED;
+    if (safe.speed < allowed || s->found.entry < 0) {
+        s->found.factor = RR_FMIN(s->found.factor, safe.speed/s->speed);
+        s->found.entry = which;
+        s->found.speed = safe.speed;
+        s->found.force = safe.force;
+    }
+    return RR_OK;
+}
+
+/* Status of what was found. */
+static int said(const search *s)
+{
+    const rr_real numbers[3] = {s->found.factor, s->found.speed, s->found.force};
+    if (!(rr_check_share(numbers, 1) == RR_OK && rr_all_finite(numbers, 3))) {
+        return RR_SINGULAR;
+    }
+    return s->bounded ? RR_BOUNDED : RR_OK;
+}
+
 int rr_speed_factor(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     rr_real limit, const rr_region *region, const rr_params *p, rr_speed_factor_t *out)
 {
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return RR_NULL_POINTER;
     }
-    int status = rr_check_finite(dq, RR_JOINTS);
-    rr_impact impact;
-    if (status == RR_OK) {
-        status = rr_check_positive(&limit, 1);
-    }
+    search s;
+    int status = rr_check_positive(&limit, 1);
     if (status == RR_OK) {
         status = rr_check_impact(region, p);
     }
     if (status == RR_OK) {
-        status = rr_links(RR_LINKS_OF(q, p), &impact.arrival.links);
+        status = start(q, dq, p, &s);
     }
-    if (status != RR_OK) {
-        return status;
+    for (int point = 0; point < RR_POINTS && status == RR_OK; ++point) {
+        status = watch(region, p, point, limit, point, &s);
     }
-    rr_real rates[RR_N];
-    for (int i = 0; i < RR_N; ++i) {
-        rates[i] = dq[RR_INDEPENDENT(i)];
+    if (status == RR_OK) {
+        status = said(&s);
     }
-    rr_speed_factor_t found = {RR_R(1.0), -1, RR_R(0.0), RR_R(0.0)};
-    bool bounded = false;
-    for (int point = 0; point < RR_POINTS; ++point) {
-        rr_real v[3];
-        const rr_real speed = velocity_of(&impact.arrival.links, point, rates, v);
-        if (!(speed > AT_REST)) {
-            continue;
+    if (status == RR_OK || status == RR_BOUNDED) {
+        out->factor = s.found.factor;
+        out->point = s.found.entry;
+        out->speed = s.found.speed;
+        out->force = s.found.force;
+    }
+    return status;
+}
+
+int rr_speed_factor_over(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    const int points[], const rr_region regions[], const rr_real limits[], int count,
+    const rr_params *p, rr_speed_factor_over_t *out)
+{
+    if (q == NULL || dq == NULL || points == NULL || regions == NULL || limits == NULL || p == NULL
+        || out == NULL) {
+        return RR_NULL_POINTER;
+    }
+    search s;
+    int status = count > 0 ? RR_OK : RR_OUT_OF_RANGE;
+    for (int i = 0; i < count && status == RR_OK; ++i) {
+        status = rr_check_impact(&regions[i], p);
+        if (status == RR_OK) {
+            status = rr_check_positive(&limits[i], 1);
         }
-        rr_safe_speed_t safe;
-        arrive_as_it_moves(point, rates, v, speed, &impact.arrival);
-        status = rr_find_speed(region, p, limit, found.factor*speed, &impact, &safe);
-        if (status != RR_OK && status != RR_BOUNDED) {
-            return status;
-        }
-        bounded = bounded || status == RR_BOUNDED;
-        if (safe.speed < found.factor*speed || found.point < 0) {
-            found.factor = RR_FMIN(found.factor, safe.speed/speed);
-            found.point = point;
-            found.speed = safe.speed;
-            found.force = safe.force;
+        if (status == RR_OK && !(points[i] >= 0 && points[i] < RR_POINTS)) {
+            status = RR_OUT_OF_RANGE;
         }
     }
-    const rr_real numbers[3] = {found.factor, found.speed, found.force};
-    if (!(rr_check_share(numbers, 1) == RR_OK && rr_all_finite(numbers, 3))) {
-        return RR_SINGULAR;
+    if (status == RR_OK) {
+        status = start(q, dq, p, &s);
     }
-    *out = found;
-    return bounded ? RR_BOUNDED : RR_OK;
+    for (int point = 0; point < RR_POINTS; ++point) { /* modes of a point serve all its regions */
+        for (int i = 0; i < count && status == RR_OK; ++i) {
+            if (points[i] == point) {
+                status = watch(&regions[i], p, point, limits[i], i, &s);
+            }
+        }
+    }
+    if (status == RR_OK) {
+        status = said(&s);
+    }
+    if (status == RR_OK || status == RR_BOUNDED) {
+        *out = s.found;
+    }
+    return status;
 }

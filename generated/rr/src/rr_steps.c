@@ -148,6 +148,7 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
         }
         ++modes->count;
     }
+    phase->has_body = impact->gives_way;
     let_stand(impact, contact, released, phase);
     rr_real moving = RR_R(0.0);
     rr_real rate2 = RR_R(0.0);

@@ -79,7 +79,7 @@ typedef enum {
 } ur5e_motors;
 
 /* What structs and functions look like, in this number type. */
-#define UR5E_LAYOUT (0xc0e25320u + (unsigned int)sizeof(ur5e_real))
+#define UR5E_LAYOUT (0x9c243d50u + (unsigned int)sizeof(ur5e_real))
 
 typedef struct {
     unsigned int layout; /* UR5E_LAYOUT; ur5e_default_params sets it */
@@ -358,6 +358,10 @@ typedef struct {
 int ur5e_peak_force(const ur5e_real q[UR5E_JOINTS], const ur5e_real n[3], ur5e_real speed,
     const ur5e_region *region, const ur5e_params *p, ur5e_peak_force_t *out);
 
+/* The same of another contact point, a ur5e_point. */
+int ur5e_peak_force_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    ur5e_real speed, const ur5e_region *region, const ur5e_params *p, ur5e_peak_force_t *out);
+
 typedef struct {
     ur5e_real speed; /* m/s */
     ur5e_real force; /* N; largest at this speed, below the limit */
@@ -365,11 +369,15 @@ typedef struct {
 
 /*
  * Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the speed
- * that is returned is 0.25 to 2 % below the limit, or jumps over it with little more speed.
+ * that is returned is 0.5 to 2 % below the limit, or jumps over it with little more speed.
  * limit: N, > 0. UR5E_BOUNDED: the speed is safe, but slower ones only were looked at, or none.
  */
 int ur5e_safe_speed(const ur5e_real q[UR5E_JOINTS], const ur5e_real n[3], ur5e_real limit,
     const ur5e_region *region, const ur5e_params *p, ur5e_safe_speed_t *out);
+
+/* The same of another contact point, a ur5e_point. */
+int ur5e_safe_speed_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    ur5e_real limit, const ur5e_region *region, const ur5e_params *p, ur5e_safe_speed_t *out);
 
 typedef struct {
     ur5e_real factor; /* of all joint velocities, 0 to 1 */
@@ -385,6 +393,21 @@ typedef struct {
  */
 int ur5e_speed_factor(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
     ur5e_real limit, const ur5e_region *region, const ur5e_params *p, ur5e_speed_factor_t *out);
+
+typedef struct {
+    ur5e_real factor; /* of all joint velocities, 0 to 1 */
+    int entry; /* of the table that needs it, -1 if none moves */
+    ur5e_real speed; /* m/s; that its point may have */
+    ur5e_real force; /* N; largest at that speed */
+} ur5e_speed_factor_over_t;
+
+/*
+ * The same for a table of `count` entries: contact points (ur5e_point), what they may hit, and the
+ * limits of that. Entries of one point share its modes.
+ */
+int ur5e_speed_factor_over(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    const int points[], const ur5e_region regions[], const ur5e_real limits[], int count,
+    const ur5e_params *p, ur5e_speed_factor_over_t *out);
 
 typedef struct {
     int best;    /* row of the pose with the least peak force; the first of equals */

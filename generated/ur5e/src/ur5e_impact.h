@@ -66,7 +66,9 @@ typedef struct {
 
 /* A time in which the motors follow one law. */
 typedef struct {
-    bool ready;
+    bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
+    bool has_body;
+    bool ready; /* steps are */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* no energy enters but by the motors' drift: see ur5e_settled.c */
     ur5e_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -85,7 +87,7 @@ typedef struct {
     ur5e_arrival arrival;
     const ur5e_region *region;
     const ur5e_params *p;
-    int motors;
+    int motors, led; /* what they do, and in the modes of the first phase */
     bool gives_way;
     ur5e_real mobility; /* of the contact, 1/kg */
     ur5e_real rotors; /* of rotors alone, all links being locked to them, 1/kg */
@@ -123,6 +125,13 @@ int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p);
 
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival);
+
+/* Checks and links of an impact of one of the contact points. */
+int ur5e_approach(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    const ur5e_region *region, const ur5e_params *p, ur5e_impact *impact);
+
+/* To be called as impact->arrival changes: no modes are known. */
+void ur5e_impact_forget(ur5e_impact *impact);
 
 /*
  * Prepares impacts of impact->arrival with motors of one kind, not the bracket, for forces of about

@@ -2,22 +2,16 @@
 /* Largest force of an impact of ur5e_ on a part of the body. */
 #include "ur5e_impact.h"
 
-int ur5e_peak_force(const ur5e_real q[UR5E_JOINTS], const ur5e_real n[3], ur5e_real speed,
-    const ur5e_region *region, const ur5e_params *p, ur5e_peak_force_t *out)
+int ur5e_peak_force_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    ur5e_real speed, const ur5e_region *region, const ur5e_params *p, ur5e_peak_force_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return UR5E_NULL_POINTER;
     }
-    int status = ur5e_check_positive(&speed, 1);
     ur5e_impact impact;
+    int status = ur5e_check_positive(&speed, 1);
     if (status == UR5E_OK) {
-        status = ur5e_check_impact(region, p);
-    }
-    if (status == UR5E_OK) {
-        status = ur5e_links(UR5E_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == UR5E_OK) {
-        status = ur5e_arrive(n, 0, &impact.arrival);
+        status = ur5e_approach(q, point, n, region, p, &impact);
     }
     if (status != UR5E_OK) {
         return status;
@@ -56,4 +50,10 @@ int ur5e_peak_force(const ur5e_real q[UR5E_JOINTS], const ur5e_real n[3], ur5e_r
     }
     *out = found;
     return bounded ? UR5E_BOUNDED : UR5E_OK;
+}
+
+int ur5e_peak_force(const ur5e_real q[UR5E_JOINTS], const ur5e_real n[3], ur5e_real speed,
+    const ur5e_region *region, const ur5e_params *p, ur5e_peak_force_t *out)
+{
+    return ur5e_peak_force_at(q, UR5E_POINT_TIP, n, speed, region, p, out);
 }

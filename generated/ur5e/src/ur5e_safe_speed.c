@@ -99,21 +99,6 @@ static bool are_weak(const ur5e_impact *impact, ur5e_real speed, ur5e_real force
     return UR5E_STRUCTURED && speed*speed*ur5e_twice_energy(impact) <= needed;
 }
 
-/* Prepares the next end of the bracket; what comes after the motors' release serves for free ones, too. */
-static int prepare_end(const ur5e_region *region, const ur5e_params *p, int motors, ur5e_real limit,
-    bool again, ur5e_impact *impact)
-{
-    if (again && UR5E_STRUCTURED && impact->phase[UR5E_LOOSE].ready) {
-        ur5e_phase *const loose = &impact->phase[UR5E_LOOSE];
-        const ur5e_real steps = UR5E_HORIZON(p)/loose->level[0].h;
-        loose->steps = steps < (ur5e_real)p->steps ? (int)steps + 1 : p->steps;
-        impact->motors = motors;
-        impact->first = UR5E_LOOSE;
-        return UR5E_OK;
-    }
-    return ur5e_impact_prepare(region, p, motors, limit, impact);
-}
-
 int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real limit,
     ur5e_real cap, ur5e_impact *impact, ur5e_safe_speed_t *found)
 {
@@ -128,7 +113,7 @@ int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real l
         if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
             continue;
         }
-        const int status = prepare_end(region, p, motors, limit, motors < last, impact);
+        const int status = ur5e_impact_prepare(region, p, motors, limit, impact);
         if (status != UR5E_OK) {
             return status;
         }
@@ -158,22 +143,16 @@ int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real l
     return bounded ? UR5E_BOUNDED : UR5E_OK;
 }
 
-int ur5e_safe_speed(const ur5e_real q[UR5E_JOINTS], const ur5e_real n[3], ur5e_real limit,
-    const ur5e_region *region, const ur5e_params *p, ur5e_safe_speed_t *out)
+int ur5e_safe_speed_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    ur5e_real limit, const ur5e_region *region, const ur5e_params *p, ur5e_safe_speed_t *out)
 {
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return UR5E_NULL_POINTER;
     }
-    int status = ur5e_check_positive(&limit, 1);
     ur5e_impact impact;
+    int status = ur5e_check_positive(&limit, 1);
     if (status == UR5E_OK) {
-        status = ur5e_check_impact(region, p);
-    }
-    if (status == UR5E_OK) {
-        status = ur5e_links(UR5E_LINKS_OF(q, p), &impact.arrival.links);
-    }
-    if (status == UR5E_OK) {
-        status = ur5e_arrive(n, 0, &impact.arrival);
+        status = ur5e_approach(q, point, n, region, p, &impact);
     }
     if (status != UR5E_OK) {
         return status;
@@ -184,4 +163,10 @@ int ur5e_safe_speed(const ur5e_real q[UR5E_JOINTS], const ur5e_real n[3], ur5e_r
         *out = found;
     }
     return status;
+}
+
+int ur5e_safe_speed(const ur5e_real q[UR5E_JOINTS], const ur5e_real n[3], ur5e_real limit,
+    const ur5e_region *region, const ur5e_params *p, ur5e_safe_speed_t *out)
+{
+    return ur5e_safe_speed_at(q, UR5E_POINT_TIP, n, limit, region, p, out);
 }

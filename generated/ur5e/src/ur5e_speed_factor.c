@@ -30,56 +30,137 @@ static void arrive_as_it_moves(int point, const ur5e_real *rates, const ur5e_rea
     }
 }
 
+/* What a search of the least factor knows. */
+typedef struct {
+    ur5e_impact impact;
+    ur5e_real rates[UR5E_N];
+    bool bounded;
+    int point; /* of impact.arrival, -1 for none */
+    ur5e_real speed; /* of that point, m/s */
+    ur5e_speed_factor_over_t found;
+} search;
+
+static int start(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    const ur5e_params *p, search *s)
+{
+    const int status = ur5e_check_finite(dq, UR5E_JOINTS);
+    for (int i = 0; i < UR5E_N; ++i) {
+        s->rates[i] = dq[UR5E_INDEPENDENT(i)];
+    }
+    const ur5e_speed_factor_over_t nothing = {UR5E_R(1.0), -1, UR5E_R(0.0), UR5E_R(0.0)};
+    s->found = nothing;
+    s->bounded = false;
+    s->point = -1;
+    (void)q;
+    (void)p;
+    return status == UR5E_OK ? ur5e_links(UR5E_LINKS_OF(q, p), &s->impact.arrival.links) : status;
+}
+
+/* Slows down until one point keeps the limit of one region. */
+static int watch(const ur5e_region *region, const ur5e_params *p, int point, ur5e_real limit,
+    int which, search *s)
+{
+    if (s->point != point) {
+        ur5e_real v[3];
+        s->point = point;
+        s->speed = velocity_of(&s->impact.arrival.links, point, s->rates, v);
+        if (s->speed > AT_REST) {
+            arrive_as_it_moves(point, s->rates, v, s->speed, &s->impact.arrival);
+        }
+        ur5e_impact_forget(&s->impact);
+    }
+    if (!(s->speed > AT_REST)) {
+        return UR5E_OK;
+    }
+    ur5e_safe_speed_t safe;
+    const ur5e_real allowed = s->found.factor*s->speed;
+    const int status = ur5e_find_speed(region, p, limit, allowed, &s->impact, &safe);
+    if (status != UR5E_OK && status != UR5E_BOUNDED) {
+        return status;
+    }
+    s->bounded = s->bounded || status == UR5E_BOUNDED;
+    if (safe.speed < allowed || s->found.entry < 0) {
+        s->found.factor = UR5E_FMIN(s->found.factor, safe.speed/s->speed);
+        s->found.entry = which;
+        s->found.speed = safe.speed;
+        s->found.force = safe.force;
+    }
+    return UR5E_OK;
+}
+
+/* Status of what was found. */
+static int said(const search *s)
+{
+    const ur5e_real numbers[3] = {s->found.factor, s->found.speed, s->found.force};
+    if (!(ur5e_check_share(numbers, 1) == UR5E_OK && ur5e_all_finite(numbers, 3))) {
+        return UR5E_SINGULAR;
+    }
+    return s->bounded ? UR5E_BOUNDED : UR5E_OK;
+}
+
 int ur5e_speed_factor(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
     ur5e_real limit, const ur5e_region *region, const ur5e_params *p, ur5e_speed_factor_t *out)
 {
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return UR5E_NULL_POINTER;
     }
-    int status = ur5e_check_finite(dq, UR5E_JOINTS);
-    ur5e_impact impact;
-    if (status == UR5E_OK) {
-        status = ur5e_check_positive(&limit, 1);
-    }
+    search s;
+    int status = ur5e_check_positive(&limit, 1);
     if (status == UR5E_OK) {
         status = ur5e_check_impact(region, p);
     }
     if (status == UR5E_OK) {
-        status = ur5e_links(UR5E_LINKS_OF(q, p), &impact.arrival.links);
+        status = start(q, dq, p, &s);
     }
-    if (status != UR5E_OK) {
-        return status;
+    for (int point = 0; point < UR5E_POINTS && status == UR5E_OK; ++point) {
+        status = watch(region, p, point, limit, point, &s);
     }
-    ur5e_real rates[UR5E_N];
-    for (int i = 0; i < UR5E_N; ++i) {
-        rates[i] = dq[UR5E_INDEPENDENT(i)];
+    if (status == UR5E_OK) {
+        status = said(&s);
     }
-    ur5e_speed_factor_t found = {UR5E_R(1.0), -1, UR5E_R(0.0), UR5E_R(0.0)};
-    bool bounded = false;
-    for (int point = 0; point < UR5E_POINTS; ++point) {
-        ur5e_real v[3];
-        const ur5e_real speed = velocity_of(&impact.arrival.links, point, rates, v);
-        if (!(speed > AT_REST)) {
-            continue;
+    if (status == UR5E_OK || status == UR5E_BOUNDED) {
+        out->factor = s.found.factor;
+        out->point = s.found.entry;
+        out->speed = s.found.speed;
+        out->force = s.found.force;
+    }
+    return status;
+}
+
+int ur5e_speed_factor_over(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    const int points[], const ur5e_region regions[], const ur5e_real limits[], int count,
+    const ur5e_params *p, ur5e_speed_factor_over_t *out)
+{
+    if (q == NULL || dq == NULL || points == NULL || regions == NULL || limits == NULL || p == NULL
+        || out == NULL) {
+        return UR5E_NULL_POINTER;
+    }
+    search s;
+    int status = count > 0 ? UR5E_OK : UR5E_OUT_OF_RANGE;
+    for (int i = 0; i < count && status == UR5E_OK; ++i) {
+        status = ur5e_check_impact(&regions[i], p);
+        if (status == UR5E_OK) {
+            status = ur5e_check_positive(&limits[i], 1);
         }
-        ur5e_safe_speed_t safe;
-        arrive_as_it_moves(point, rates, v, speed, &impact.arrival);
-        status = ur5e_find_speed(region, p, limit, found.factor*speed, &impact, &safe);
-        if (status != UR5E_OK && status != UR5E_BOUNDED) {
-            return status;
-        }
-        bounded = bounded || status == UR5E_BOUNDED;
-        if (safe.speed < found.factor*speed || found.point < 0) {
-            found.factor = UR5E_FMIN(found.factor, safe.speed/speed);
-            found.point = point;
-            found.speed = safe.speed;
-            found.force = safe.force;
+        if (status == UR5E_OK && !(points[i] >= 0 && points[i] < UR5E_POINTS)) {
+            status = UR5E_OUT_OF_RANGE;
         }
     }
-    const ur5e_real numbers[3] = {found.factor, found.speed, found.force};
-    if (!(ur5e_check_share(numbers, 1) == UR5E_OK && ur5e_all_finite(numbers, 3))) {
-        return UR5E_SINGULAR;
+    if (status == UR5E_OK) {
+        status = start(q, dq, p, &s);
     }
-    *out = found;
-    return bounded ? UR5E_BOUNDED : UR5E_OK;
+    for (int point = 0; point < UR5E_POINTS; ++point) { /* modes of a point serve all its regions */
+        for (int i = 0; i < count && status == UR5E_OK; ++i) {
+            if (points[i] == point) {
+                status = watch(&regions[i], p, point, limits[i], i, &s);
+            }
+        }
+    }
+    if (status == UR5E_OK) {
+        status = said(&s);
+    }
+    if (status == UR5E_OK || status == UR5E_BOUNDED) {
+        *out = s.found;
+    }
+    return status;
 }

@@ -148,6 +148,7 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
         }
         ++modes->count;
     }
+    phase->has_body = impact->gives_way;
     let_stand(impact, contact, released, phase);
     ur5e_real moving = UR5E_R(0.0);
     ur5e_real rate2 = UR5E_R(0.0);

@@ -89,14 +89,16 @@ export function writeNumbers(place, found, band, unknown) {
 }
 
 /** What to know of the answer. */
-export function writeNotes(place, found, state, content) {
+export function writeNotes(place, found, state, content, unknown) {
   const notes = [];
   const warn = (text) => notes.push(`<li class="warn">${escaped(text)}</li>`);
   const say = (text) => notes.push(`<li>${escaped(text)}</li>`);
-  if (content.unknown_rotors.length) say(`Rotor inertia of ${content.unknown_rotors.join(", ")} is unknown: motors are taken to keep their speed without an end, the worse case. Enter it under Hardware.`);
+  const changed = state.springs.some((k, i) => k !== content.start.springs[i]);
+  if (!changed) content.assumed.forEach(say);
+  if (unknown.length) say(`Rotor inertia of ${unknown.join(", ")} is unknown: motors are taken to keep their speed without an end, the worse case. Enter it under “Rotor inertia”.`);
   (found.worst?.rates ?? []).forEach((rate, i) => {
-    const { name, speed } = content.joints[i];
-    if (speed !== null && Math.abs(rate) > speed * 1.0001) warn(`${name} would turn at ${shown(Math.abs(rate))}, beyond its limit of ${shown(speed)} rad/s.`);
+    const { name, speed, turns } = content.joints[i];
+    if (speed !== null && Math.abs(rate) > speed * 1.0001) warn(`${name} would move at ${shown(Math.abs(rate))}, beyond its limit of ${shown(speed)} ${turns ? "rad/s" : "m/s"}.`);
   });
   state.q.forEach((x, i) => {
     const { name, lower, upper } = content.joints[i];
@@ -108,7 +110,11 @@ export function writeNotes(place, found, state, content) {
   place.innerHTML = notes.join("");
 }
 
-export function captionOf(found) {
-  const curves = found.ends?.map((end) => MOTORS[end.kind]).join(" (lower bound) and ") ?? "";
-  return found.failed ? "" : `Contact force with ${found.ends.length > 1 ? curves.replace(" (lower bound)", "") : curves}.`;
+export function captionOf(found, kept) {
+  if (found.failed) return "";
+  const curves = `Contact force with ${found.ends.map((end) => MOTORS[end.kind]).join(" and ")}${found.lumped ? "; dotted: two masses and a spring, the rung below, which knows nothing of motors" : ""}.`;
+  if (!kept) return curves;
+  const change = (100 * (found.worst.force - kept.worst.force)) / kept.worst.force;
+  const safe = kept.keeping ? `, safe up to ${downwards(kept.keeping.speed)} m/s` : "";
+  return `${curves} Dashed: kept, ${kept.worst.force.toFixed(0)} N${safe}; now ${Math.abs(change).toFixed(1)} % ${change > 0 ? "more" : "less"}.`;
 }

@@ -2,6 +2,7 @@
 // The arm as capsules on a canvas, and what of it is under the pointer.
 import { projection } from "./camera.js";
 import { partsOf } from "./parts.js";
+import { sizeOf } from "./sizes.js";
 import { add, minus, times } from "./vectors.js";
 
 const ARROW = 0.3; // of the reach
@@ -9,7 +10,7 @@ const HANDLE = 15; // pixels around the arrow's tip that grab it
 
 /** Paint everything; returns the picture's parts as they lie on the canvas, for `underPointer`. */
 export function paint(canvas, camera, content, scene, state, looks) {
-  const { width, height } = canvas.getBoundingClientRect();
+  const { width, height } = sizeOf(canvas);
   const dense = Math.min(window.devicePixelRatio || 1, 2);
   if (canvas.width !== Math.round(width * dense) || canvas.height !== Math.round(height * dense)) {
     canvas.width = Math.round(width * dense);

@@ -32,7 +32,7 @@ function slider(name, label, { low, high, step, read, write, logarithmic = false
       if (row.hidden) return;
       if (document.activeElement !== range) range.value = logarithmic ? Math.log10(Math.max(now, low)) : now;
       range.setAttribute("aria-valuetext", shown(now, digits));
-      if (document.activeElement !== number) number.value = shown(now, digits + 1);
+      if (document.activeElement !== number) number.value = logarithmic ? shown(now, digits + 1) : Number(now.toFixed(4));
     },
   };
 }
@@ -222,7 +222,9 @@ export function controlsOf(form, content, solver, changed) {
     group("Hardware", hardwareParts(content)),
   ];
   if (content.elastic) groups.push(group("Joint stiffness, each (N·m/rad)", eachJoint(content, "springs", "Stiffness", { low: SOFTEST, high: STIFFEST, logarithmic: true }), { folded: true }));
-  groups.push(group("Rotor inertia, each (kg·m²)", eachJoint(content, "rotors", "Reflected rotor inertia", { low: 0.001, high: 10, logarithmic: true }), { folded: !content.unknown_rotors.length }));
+  const inertia = { low: 0.001, high: 10, logarithmic: true };
+  const together = slider("rotors", "all", { ...inertia, title: "Reflected rotor inertia of all joints", read: (s) => s.rotors.reduce((a, b) => a + b) / s.rotors.length, write: (b) => ({ rotors: all(content, b) }) });
+  groups.push(group("Rotor inertia (kg·m²)", [together, ...eachJoint(content, "rotors", "Reflected rotor inertia", inertia)], { folded: !content.unknown_rotors.length }));
   form.append(...groups.map(({ box }) => box));
   const parts = groups.flatMap((g) => g.parts);
   parts.forEach((part) => part.watch(changed));

@@ -6,7 +6,8 @@ import { paint, underPointer } from "./arm.js";
 import { cameraOn, orbit, zoomBy } from "./camera.js";
 import { controlsOf } from "./controls.js";
 import { plotForce } from "./plot.js";
-import { asHash, firstState, fromHash, withinLimits } from "./state.js";
+import { asHash, cautious, firstState, fromHash, unknownRotors, withinLimits } from "./state.js";
+import { mapStrip } from "./map.js";
 import { solverOf } from "./solver.js";
 import { designStrip, programStrip, trendStrip } from "./strip.js";
 import { worstDirection } from "./worst.js";
@@ -22,7 +23,7 @@ const fail = (words) => {
 
 function looksOf() {
   const style = getComputedStyle(document.documentElement);
-  const names = ["ground", "ink", "soft", "line", "free", "driven", "servo", "good", "bad", "limit", "arm", "arm-edge", "arm-light", "joint", "arrow", "shadow", "band"];
+  const names = ["ground", "ink", "soft", "line", "free", "driven", "servo", "two_mass", "good", "bad", "limit", "arm", "arm-edge", "arm-light", "joint", "arrow", "shadow", "band"];
   return Object.fromEntries(names.map((name) => [name.replace(/-(.)/, (_, c) => c.toUpperCase()), style.getPropertyValue(`--${name}`).trim()]));
 }
 
@@ -36,7 +37,7 @@ function start(pkg, content) {
   solver.worst = (state) => worstDirection(solver, state);
   let state = fromHash(location.hash, content);
   let looks = looksOf();
-  let found = null, picture = null, plotted = null, band = null, reading = null, pending = false, quiet = null;
+  let found = null, picture = null, plotted = null, band = null, reading = null, kept = null, pending = false, quiet = null;
   const times_ = [];
   const camera = cameraOn(content, solver.scene(state));
   const canvas = byId("arm");
@@ -44,7 +45,7 @@ function start(pkg, content) {
   function changed(what) {
     const change = typeof what === "function" ? what(state) : what;
     if (!change) return;
-    state = { ...state, ...change, q: withinLimits(change.q ?? state.q, content) };
+    state = cautious({ ...state, ...change, q: withinLimits(change.q ?? state.q, content) }, content);
     band = null;
     redraw();
     clearTimeout(quiet);
@@ -67,8 +68,8 @@ function start(pkg, content) {
     byId("said").textContent = headline(found, state);
     writeBrief(byId("brief"), found);
     writeVerdict(byId("verdict"), found, state);
-    writeNumbers(byId("numbers"), found, band, solver.unknown);
-    writeNotes(byId("notes"), found, state, content);
+    writeNumbers(byId("numbers"), found, band, solver.unknown(state));
+    writeNotes(byId("notes"), found, state, content, unknownRotors(state, content));
     drawPlot();
     controls.show(state);
     strips.filter((strip) => !strip.idle).forEach((strip) => strip.draw(looks, state, found));
@@ -77,9 +78,9 @@ function start(pkg, content) {
 
   function drawPlot() {
     byId("force").style.visibility = found.failed ? "hidden" : "";
-    byId("force-caption").textContent = captionOf(found);
+    byId("force-caption").textContent = captionOf(found, kept);
     if (found.failed) return;
-    plotted = plotForce(byId("force"), found, state, looks, band, reading);
+    plotted = plotForce(byId("force"), found, state, looks, band, reading, kept);
     byId("force").setAttribute("aria-label", `Contact force over time. ${sentence(found, state)}`);
   }
 
@@ -99,7 +100,7 @@ function start(pkg, content) {
       peaks.sort((a, b) => a - b);
       const at = (share) => { const x = share * (peaks.length - 1), k = Math.floor(x); return peaks[k] + (x - k) * ((peaks[k + 1] ?? peaks[k]) - peaks[k]); };
       band = peaks.length > 40 ? { low: at(0.025), high: at(0.975) } : null;
-      writeNumbers(byId("numbers"), found, band, solver.unknown);
+      writeNumbers(byId("numbers"), found, band, solver.unknown(state));
       drawPlot();
     }
   }
@@ -107,10 +108,16 @@ function start(pkg, content) {
   const controls = controlsOf(byId("controls"), content, solver, changed);
   const strips = [programStrip(content, changed, solver, fail), trendStrip(content, solver)];
   if (content.designs.length) strips.unshift(designStrip(content, changed));
+  if (content.map) strips.unshift(mapStrip(content, changed));
   byId("strip").append(...strips.map((strip) => strip.box));
   watchCanvas();
   watchPlot();
   watchPage();
+  if (content.warnings.length) {
+    byId("ignored").hidden = false;
+    byId("ignored").querySelector("summary").textContent = `What to know of the robot's file (${content.warnings.length})`;
+    byId("ignored").querySelector("ul").append(...content.warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+  }
   byId("main").hidden = false;
   draw();
   settle();
@@ -201,9 +208,15 @@ function start(pkg, content) {
       }
       setTimeout(() => { byId("copy").textContent = "Copy link"; }, 1500);
     });
+    byId("keep").addEventListener("click", () => {
+      kept = kept || found.failed ? null : found;
+      byId("keep").setAttribute("aria-pressed", String(Boolean(kept)));
+      byId("keep").textContent = kept ? "Let go" : "Keep to compare";
+      drawPlot();
+    });
     byId("reset").addEventListener("click", () => changed(firstState(content)));
     window.addEventListener("hashchange", () => changed(fromHash(location.hash, content)));
-    window.addEventListener("resize", redraw);
+    window.addEventListener("laid-out", redraw);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { looks = looksOf(); draw(); settle(); });
   }
 }

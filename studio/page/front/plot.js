@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plots as SVG.
+import { sizeOf } from "./sizes.js";
 
-const WORDS = { free: "motors free", driven: "motors drive on", servo: "servo" };
+const WORDS = { free: "motors free", driven: "motors drive on", servo: "servo", two_mass: "two masses" };
 
 /** A few round numbers from 0 to at least `most`. */
 export function ticksTo(most, count = 4) {
@@ -16,14 +17,15 @@ const tag = (name, attributes, text = "") =>
   `<${name} ${Object.entries(attributes).map(([k, v]) => `${k}="${v}"`).join(" ")}>${text}</${name}>`;
 
 /** Force over time of each end of what motors may do, and the limits. */
-export function plotForce(svg, found, state, looks, band, at) {
-  const { width, height } = svg.getBoundingClientRect();
+export function plotForce(svg, found, state, looks, band, at, kept) {
+  const { width, height } = sizeOf(svg);
   const box = { left: 44, right: width - 8, top: 20, bottom: height - 30 };
   const ends = found.ends.filter((end) => end.ok);
-  const last = Math.max(0.02, ...ends.map(lastPressed)) * 1.08;
+  const drawn = found.lumped ? [...ends, found.lumped] : ends;
+  const last = Math.max(0.02, ...[...drawn, ...(kept ? [kept.worst] : [])].map(lastPressed)) * 1.08;
   const times = ticksTo(1e3 * Math.min(last, state.horizon), 5);
   const { force_limit: limit, quasi_static_limit: pressed } = found.region;
-  const top = Math.max(...ends.map((end) => end.force), band?.high ?? 0);
+  const top = Math.max(...drawn.map((end) => end.force), band?.high ?? 0, kept?.worst.force ?? 0);
   const showLimit = limit < 2.2 * top;
   const forces = ticksTo(1.06 * Math.max(top, showLimit ? limit : 0), 5);
   const [long, high] = [times.at(-1), forces.at(-1)];
@@ -35,7 +37,7 @@ export function plotForce(svg, found, state, looks, band, at) {
     parts.push(tag("text", { x: box.left - 6, y: y(N) + 4, "text-anchor": "end", class: "tick" }, N));
   });
   times.forEach((ms) => parts.push(tag("text", { x: x(ms), y: box.bottom + 16, "text-anchor": "middle", class: "tick" }, ms)));
-  parts.push(tag("text", { x: box.left - 36, y: 10, class: "tick" }, "force, N"));
+  parts.push(tag("text", { x: box.left - 42, y: 10, class: "tick" }, "force, N"));
   parts.push(tag("text", { x: box.right, y: box.bottom + 28, "text-anchor": "end", class: "tick" }, "time since first touch, ms"));
   if (band) {
     parts.push(tag("rect", { x: box.left, width: box.right - box.left, y: y(Math.min(band.high, high)), height: y(band.low) - y(Math.min(band.high, high)), fill: looks.band }));
@@ -45,22 +47,23 @@ export function plotForce(svg, found, state, looks, band, at) {
   const released = 1e3 * (state.reaction_time ?? Infinity);
   if (released > 0 && released < long && ends.some((end) => end.kind !== "free")) {
     parts.push(tag("line", { x1: x(released), x2: x(released), y1: box.top, y2: box.bottom, stroke: looks.soft, "stroke-dasharray": "2 4" }));
-    parts.push(tag("text", { x: x(released), y: box.top - 6, "text-anchor": "middle", class: "tick" }, "motors released"));
+    parts.push(tag("text", { x: Math.max(x(released), box.left + 52), y: box.top - 6, "text-anchor": "middle", class: "tick" }, "motors released"));
   }
   if (showLimit) parts.push(limitLine(box, y(limit), looks, `limit ${limit.toFixed(0)} N`));
-  if (state.clamped && long > 499 && pressed < high) parts.push(limitLine(box, y(pressed), looks, `from 500 ms on ${pressed.toFixed(0)} N`));
-  ends.forEach((end) => parts.push(curve(end, x, y, long, looks[end.kind])));
-  parts.push(...labels(ends, x, y, box, looks, long, showLimit ? y(limit) : -99));
+  if (state.clamped && long > 499 && pressed < high) parts.push(limitLine(box, y(pressed), looks, `from 500 ms on ${pressed.toFixed(0)} N`, "start"));
+  if (kept) parts.push(curve(kept.worst, x, y, long, looks.soft, "5 3"));
+  [...drawn].reverse().forEach((end) => parts.push(curve(end, x, y, long, looks[end.kind], end.kind === "two_mass" ? "1.5 3.5" : "none")));
+  parts.push(...labels(drawn, x, y, box, looks, long, showLimit ? y(limit) : -99));
   if (at !== null) parts.push(...reading(ends, at, box, x, y, long, looks));
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.innerHTML = parts.join("");
   return { timeAt: (px) => Math.min(long, Math.max(0, ((px - box.left) / (box.right - box.left)) * long)) };
 }
 
-function limitLine(box, at, looks, words) {
+function limitLine(box, at, looks, words, end = "end") {
   return (
     tag("line", { x1: box.left, x2: box.right, y1: at, y2: at, stroke: looks.limit, "stroke-width": 1.4, "stroke-dasharray": "6 4" }) +
-    tag("text", { x: box.right - 4, y: at - 5, "text-anchor": "end", "font-weight": 600 }, words)
+    tag("text", { x: end === "end" ? box.right - 4 : box.left + 5, y: at - 5, "text-anchor": end, "font-weight": 600 }, words)
   );
 }
 
@@ -69,12 +72,12 @@ function lastPressed({ time, over_time: force, count, force: peak }) {
   return 0;
 }
 
-function curve({ time, over_time: force, count }, x, y, long, colour) {
+function curve({ time, over_time: force, count }, x, y, long, colour, dashes = "none") {
   let path = "";
   for (let k = 0; k < count && 1e3 * time[Math.max(k - 1, 0)] <= long; ++k) {
     path += `${k ? "L" : "M"}${x(Math.min(1e3 * time[k], long)).toFixed(1)} ${y(force[k]).toFixed(1)}`;
   }
-  return tag("path", { d: path, fill: "none", stroke: colour, "stroke-width": 2.2, "stroke-linejoin": "round" });
+  return tag("path", { d: path, fill: "none", stroke: colour, "stroke-width": 2.2, "stroke-linejoin": "round", "stroke-dasharray": dashes });
 }
 
 /* A dot at each peak, and its words where they meet neither the limit's line nor other words. */
@@ -117,7 +120,7 @@ export function forceAt({ time, over_time: force, count }, t) {
 
 /** A curve of safe speeds over something, with the present one marked; `points` are [x, y or null]. */
 export function plotTrend(svg, points, now, looks, { logarithmic, label, unit }) {
-  const { width, height } = svg.getBoundingClientRect();
+  const { width, height } = sizeOf(svg);
   const box = { left: 40, right: width - 10, top: 22, bottom: height - 28 };
   const speeds = ticksTo(1.05 * Math.max(0.01, ...points.map(([, v]) => v ?? 0)), 3);
   const scaled = logarithmic ? Math.log10 : (value) => value;

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What an impact does: asks the robot's C package, and computes nothing itself.
+import { unknownRotors } from "./state.js";
 
 /** Kinds of motors by what the page calls them, in C's numbers. */
 export const KINDS = { free: 1, driven: 2, servo: 3 };
 
 const NEVER = 1e9; // s; a reaction that comes after every horizon
-const ANY_ROTOR = 1; // kg m²; stands in where rotors are unknown and nothing reads them
+const ANY_ROTOR = 1; // kg m²; stands in where rotors are unknown and motors drive on: nothing reads it
 const WRITTEN = [0, 9]; // OK and BOUNDED
 
 /** Return functions of a state, which `state.js` describes. */
 export function solverOf(pkg, content) {
   const joints = content.joints.length;
-  const unknown = content.unknown_rotors.length > 0;
+  const unknown = (state) => unknownRotors(state, content).length > 0;
 
   function region(state, scale = {}) {
     const found = content.regions.find((r) => r.name === state.region);
@@ -29,7 +30,8 @@ export function solverOf(pkg, content) {
 
   function parameters(state, contact, motors, scale = {}) {
     const scaled = (values, name) => values.map((x, i) => x * (scale[name]?.[i] ?? 1));
-    const rotors = state.rotors.map((b) => (unknown && !(b > 0) ? ANY_ROTOR : b));
+    if (unknown(state) && (state.motors !== "driven" || state.reaction_time !== null)) throw new Error("rotors are unknown");
+    const rotors = state.rotors.map((b) => (b > 0 || !unknown(state) ? b : ANY_ROTOR));
     const given = {
       ...pkg.default_params(),
       rotor_inertia: scaled(rotors, "rotors"),
@@ -69,6 +71,7 @@ export function solverOf(pkg, content) {
       const found = pkg.follow({ q, n, speed, region: what, p: { ...all, motors: KINDS[kind] } });
       return { kind, ...found, ok: WRITTEN.includes(found.status) };
     });
+    const lumped = unknown(state) || state.motors === "servo" ? null : pkg.follow_two_masses({ q, n, speed, region: what, p: all });
     const failed = ends.find((end) => !end.ok);
     const keeping = pkg.keeping({ q, n, region: what, p: all });
     const worst = ends.reduce((a, b) => (b.ok && (!a || b.force > a.force) ? b : a), null);
@@ -77,6 +80,7 @@ export function solverOf(pkg, content) {
       region: what,
       ends,
       worst,
+      lumped: lumped?.status === 0 ? { kind: "two_mass", ok: true, ...lumped } : null,
       failed: failed && pkg.status_text({ status: failed.status }),
       keeping: WRITTEN.includes(keeping.status) ? keeping : null,
       masses: pkg.masses({ q, n, p: all }),

@@ -8,12 +8,17 @@ const MOTORS = ["bracket", "free", "driven", "servo"];
 
 /** Where the page begins: q, n, body and place of the contact, speed, region, motors and so on. */
 export function firstState(content) {
-  const state = structuredClone(content.start);
-  if (content.unknown_rotors.length > 0) {
-    state.motors = "driven";
-    state.reaction_time = null;
-  }
-  return state;
+  return cautious(structuredClone(content.start), content);
+}
+
+/** Names of the joints whose rotors nobody has stated yet. */
+export function unknownRotors(state, content) {
+  return content.joints.map((joint, i) => (state.rotors[i] > 0 ? "" : joint.name)).filter((name) => content.unknown_rotors.includes(name));
+}
+
+/** A state whose motors drive on without an end as long as a rotor is unknown: the worse case. */
+export function cautious(state, content) {
+  return unknownRotors(state, content).length > 0 ? { ...state, motors: "driven", reaction_time: null } : state;
 }
 
 const short = (x) => String(Number(x.toPrecision(6)));
@@ -38,7 +43,7 @@ export function fromHash(hash, content) {
     if (value !== undefined) state[name] = value;
   });
   state.n = unit(state.n);
-  return state;
+  return cautious(state, content);
 }
 
 function readValue(name, text, state, content) {

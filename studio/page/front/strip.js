@@ -3,12 +3,15 @@
 import { shown } from "./answers.js";
 import { plotTrend } from "./plot.js";
 import { readMotion } from "./motion.js";
+import { sizeOf } from "./sizes.js";
 
 function section(title, html) {
   const box = document.createElement("section");
   box.innerHTML = `<h2>${title}</h2>${html}`;
   return box;
 }
+
+const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 
 /** A program: scrubbing sets posture, direction and speed as the contact point really moves. */
 export function programStrip(content, changed, solver, fail) {
@@ -42,7 +45,9 @@ export function programStrip(content, changed, solver, fail) {
     box.querySelector(".play").hidden = !motion;
     if (!motion) return;
     range.max = motion.t.length - 1;
-    output.textContent = `${motion.t[0].toFixed(2)} s`;
+    const away = motion.q.map((q) => apart(q, content.start.q));
+    range.value = away.indexOf(Math.min(...away));
+    output.textContent = `${motion.t[Number(range.value)].toFixed(2)} s`;
   }
   button.addEventListener("click", () => {
     if (timer) return stop();
@@ -87,7 +92,7 @@ export function designStrip(content, changed) {
     changed({ q: [...design.q], springs: [...design.springs] });
   };
   function draw(looks, state) {
-    const { width, height } = svg.getBoundingClientRect();
+    const { width, height } = sizeOf(svg);
     if (!known.length || !width) return;
     const colours = [looks.driven, looks.free, looks.good, looks.soft];
     const bends = known.map((d) => 1e3 * Math.max(d.deflection, 1e-6));
@@ -146,7 +151,8 @@ export function trendStrip(content, solver) {
   let last = null;
   function draw(looks, state, found) {
     last = [looks, state, found];
-    if (!found.scene?.contact || !svg.getBoundingClientRect().width) return;
+    if (!found.scene?.contact || !sizeOf(svg).width) return;
+    if (select.value === "reaction" && solver.unknown(state)) select.value = "payload"; // motors that let go need their rotors
     const how = over[select.value];
     const points = how.values.map((value) => [value, solver.safeSpeed(how.at(state, value), found.scene.contact)]);
     if (points.every(([, v]) => v === null)) { svg.innerHTML = ""; return; }

@@ -7,6 +7,8 @@
 #define HALVINGS 24
 /* Until when it is followed what still presses on a clamped body, s: as simulate has it. */
 #define PRESSED_UNTIL ROBOT_R(0.6)
+/* Steps in which an impact is followed to its end: p->steps are for what ends once it is decided. */
+#define FOLLOWED 20000
 /* Speed of a contact point that counts as rest, m/s. */
 #define AT_REST ROBOT_R(1e-6)
 
@@ -83,7 +85,7 @@ static robot_real pressing_at(const robot_real *q, const robot_real *n, robot_re
         return ROBOT_R(0.0);
     }
     return prepare(q, n, speed, region, &longer, motors, &impact) == ROBOT_OK
-        ? robot_run_seen(&impact, speed, p->steps, &peak, NULL) : ROBOT_REAL_MAX;
+        ? robot_run_seen(&impact, speed, FOLLOWED, &peak, NULL) : ROBOT_REAL_MAX;
 }
 
 int robot_follow(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real speed,
@@ -101,7 +103,7 @@ int robot_follow(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_
         return prepared;
     }
     out->count = 0;
-    (void)robot_run_seen(&impact, speed, p->steps, &peak, out);
+    (void)robot_run_seen(&impact, speed, FOLLOWED, &peak, out);
     out->force = found.force;
     out->peak_time = found.time;
     out->contact = peak.contact;
@@ -110,6 +112,62 @@ int robot_follow(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_
         out->rates[i] = impact.arrival.rates[i]*speed;
     }
     return status;
+}
+
+#if ROBOT_HAS_REDUCED_MODEL
+/* Puts two masses and a spring in the place of the robot's own modes. */
+static void lump(const robot_reduced_model_t *reduced, robot_impact *impact)
+{
+    robot_modes *const modes = &impact->phase[ROBOT_LOOSE].modes;
+    const robot_real one = ROBOT_R(1.0);
+    const robot_real both = reduced->m_c + reduced->m_a;
+    modes->count = 2;
+    modes->rigid = 1;
+    modes->squared[0] = ROBOT_R(0.0);
+    modes->squared[1] = reduced->k_r*(one/reduced->m_c + one/reduced->m_a);
+    modes->fastest = ROBOT_REAL_MAX; /* all frequencies are known */
+    modes->row[0] = one/ROBOT_SQRT(both);
+    modes->row[1] = ROBOT_SQRT(reduced->m_a/(reduced->m_c*both));
+    modes->start[0] = ROBOT_SQRT(both);
+    modes->start[1] = ROBOT_R(0.0);
+    robot_phase_steps(impact, ROBOT_HORIZON(impact->p), &impact->phase[ROBOT_LOOSE]);
+}
+#endif
+
+int robot_follow_two_masses(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real speed,
+    const robot_region *region, const robot_params *p, robot_follow_t *out)
+{
+#if ROBOT_HAS_REDUCED_MODEL
+    robot_impact impact;
+    robot_peak peak;
+    robot_reduced_model_t reduced;
+    int status = robot_reduced_model(q, n, p, &reduced);
+    if (status == ROBOT_OK) {
+        status = prepare(q, n, speed, region, p, ROBOT_MOTORS_FREE, &impact);
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    lump(&reduced, &impact);
+    out->count = 0;
+    (void)robot_run_seen(&impact, speed, FOLLOWED, &peak, out);
+    out->force = peak.force;
+    out->peak_time = peak.time;
+    out->contact = peak.contact;
+    out->pressing = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_JOINTS; ++i) {
+        out->rates[i] = impact.arrival.rates[i]*speed;
+    }
+    return peak.ended ? ROBOT_OK : ROBOT_UNRESOLVED;
+#else
+    (void)q;
+    (void)n;
+    (void)speed;
+    (void)region;
+    (void)p;
+    (void)out;
+    return ROBOT_SINGULAR;
+#endif
 }
 
 /* Whether what presses in the end keeps its limit at a speed, whatever motors do. */

@@ -46,6 +46,13 @@ typedef struct {
 int robot_follow(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real speed,
     const robot_region *region, const robot_params *p, robot_follow_t *out);
 
+/*
+ * The same of two masses and a spring that stand for the robot along n (MSM Eq. 36-38): a rung below,
+ * which knows nothing of motors. ROBOT_SINGULAR where a robot has none.
+ */
+int robot_follow_two_masses(const robot_real q[ROBOT_JOINTS], const robot_real n[3], robot_real speed,
+    const robot_region *region, const robot_params *p, robot_follow_t *out);
+
 typedef struct {
     robot_real speed; /* m/s */
     int pressed; /* whether what presses in the end decides, not the peak */

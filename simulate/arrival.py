@@ -15,10 +15,8 @@ from softimpact.symbolic import (
     require_closed_at,
     unit_direction,
 )
+from softimpact.symbolic.impact.approach import REACHED
 from softimpact.symbolic.robot.rigid import Array
-
-REACHED = 1e-6
-"""Error of the contact point's velocity along n that a given link velocity may have."""
 
 
 @dataclass(frozen=True, eq=False)

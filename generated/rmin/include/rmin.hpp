@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * rmin in C++17, over rmin.h: no exceptions, no allocation.
+ *
+ *     rmin::params p; // the defaults
+ *     const auto found = rmin::safe_speed(
+ *         q, n, limit, region, p);
+ *     if (found) use(found.value);
+ */
+#ifndef RMIN_HPP
+#define RMIN_HPP
+
+#include <array>
+#include <cstddef>
+
+#include "rmin.h"
+
+namespace rmin {
+
+using real = rmin_real;
+
+template <std::size_t N>
+using vector = std::array<real, N>;
+
+/* Rows. */
+template <std::size_t M, std::size_t N>
+using matrix = std::array<std::array<real, N>, M>;
+
+/* What a function says, and what it has written if that is good. */
+template <typename T>
+struct [[nodiscard]] result {
+    int status{RMIN_NULL_POINTER};
+    T value{};
+
+    /* Whether there is a value: the status is RMIN_OK, or RMIN_BOUNDED. */
+    explicit operator bool() const noexcept
+    {
+        return status == RMIN_OK || status == RMIN_BOUNDED;
+    }
+
+    const char *text() const noexcept { return rmin_status_text(status); }
+};
+
+/* Parameters, filled in with what is known of the model. */
+struct params : rmin_params {
+    params() noexcept : rmin_params{}
+    {
+        rmin_default_params(this);
+    }
+};
+
+/* A body region of ISO/TS 15066; OUT_OF_RANGE for others. */
+inline result<rmin_region> body_region(rmin_body_part part, bool clamped) noexcept
+{
+    result<rmin_region> found;
+    found.status = rmin_body_region(static_cast<int>(part), clamped ? 1 : 0, &found.value);
+    return found;
+}
+
+/* Mass matrix M(q) of the links, without rotors.
+ * M: kg m^2; links only.
+ * 224 operations, 12 sines and cosines. Error: 1e-12 in double, 2e-06 in float. */
+inline result<matrix<4, 4>> mass_matrix(
+    const vector<6> &q) noexcept
+{
+    result<matrix<4, 4>> found;
+    real m[4][4];
+    found.status = rmin_mass_matrix(q.data(), m);
+    if (found) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = 0; j < 4; ++j) {
+                found.value[i][j] = m[i][j];
+            }
+        }
+    }
+    return found;
+}
+
+/* Translational Jacobian J(q) of the contact point: velocity = J dq/dt.
+ * J: m/rad; base axes.
+ * 132 operations, 12 sines and cosines. Error: 1e-12 in double, 3e-06 in float. */
+inline result<matrix<3, 4>> jacobian(
+    const vector<6> &q) noexcept
+{
+    result<matrix<3, 4>> found;
+    real m[3][4];
+    found.status = rmin_jacobian(q.data(), m);
+    if (found) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 4; ++j) {
+                found.value[i][j] = m[i][j];
+            }
+        }
+    }
+    return found;
+}
+
+/* Mass matrix M0 over the generalised coordinates (MSM Eq. 42).
+ * M0: kg m^2.
+ * Of p it reads rotor_inertia.
+ * 276 operations, 12 sines and cosines. Error: 1e-12 in double, 3e-06 in float. */
+inline result<matrix<4, 4>> generalised_mass_matrix(
+    const vector<6> &q,
+    const rmin_params &p) noexcept
+{
+    result<matrix<4, 4>> found;
+    real m[4][4];
+    found.status = rmin_generalised_mass_matrix(q.data(), &p, m);
+    if (found) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = 0; j < 4; ++j) {
+                found.value[i][j] = m[i][j];
+            }
+        }
+    }
+    return found;
+}
+
+/* Stiffness matrix K0 over the generalised coordinates (MSM Eq. 45).
+ * K0: N m/rad.
+ * Of p it reads position_gain.
+ * 496 operations, 12 sines and cosines. Error: 1e-12 in double, 5e-07 in float. */
+inline result<matrix<4, 4>> stiffness_matrix(
+    const vector<6> &q,
+    const rmin_params &p) noexcept
+{
+    result<matrix<4, 4>> found;
+    real m[4][4];
+    found.status = rmin_stiffness_matrix(q.data(), &p, m);
+    if (found) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = 0; j < 4; ++j) {
+                found.value[i][j] = m[i][j];
+            }
+        }
+    }
+    return found;
+}
+
+/* Row J_c = n'J over the generalised coordinates (MSM Eq. 4).
+ * J_c: m/rad.
+ * 130 operations, 12 sines and cosines. Error: 1e-12 in double, 3e-06 in float. */
+inline result<vector<4>> contact_jacobian(
+    const vector<6> &q,
+    const vector<3> &n) noexcept
+{
+    result<vector<4>> found;
+    found.status = rmin_contact_jacobian(q.data(), n.data(), found.value.data());
+    return found;
+}
+
+/* Mass m_c that the contact point feels along n (MSM Eq. 36).
+ * m_c: kg; mass felt at the contact point.
+ * Of p it reads rotor_inertia.
+ * 355 operations, 12 sines and cosines. Error: 1e-12 in double, 4e-06 in float. */
+inline result<real> reflected_mass(
+    const vector<6> &q,
+    const vector<3> &n,
+    const rmin_params &p) noexcept
+{
+    result<real> found;
+    found.status = rmin_reflected_mass(q.data(), n.data(), &p, &found.value);
+    return found;
+}
+
+/* Two masses and a spring that stand for the robot along n (MSM Eq. 36-38).
+ * Of p it reads rotor_inertia and position_gain.
+ * 998 operations, 12 sines and cosines. Error: 1e-12 in double, 7e-05 in float. */
+inline result<rmin_reduced_model_t> reduced_model(
+    const vector<6> &q,
+    const vector<3> &n,
+    const rmin_params &p) noexcept
+{
+    result<rmin_reduced_model_t> found;
+    found.status = rmin_reduced_model(q.data(), n.data(), &p, &found.value);
+    return found;
+}
+
+/* Chain of 3 masses that stands for the robot along n.
+ * Of p it reads rotor_inertia and position_gain.
+ * 987 operations, 12 sines and cosines. Error: 1e-12 in double, 0.0003 in float. */
+inline result<rmin_chain_t> chain(
+    const vector<6> &q,
+    const vector<3> &n,
+    const rmin_params &p) noexcept
+{
+    result<rmin_chain_t> found;
+    found.status = rmin_chain(q.data(), n.data(), &p, &found.value);
+    return found;
+}
+
+/* Largest force over all contacts with a body region, from first touch to p->horizon.
+ * speed: m/s, > 0; of the contact point along n. Motors arrive with the velocities of least norm
+ * that move it along n alone; springs are at rest. Motors do as p->motors and p->reaction_time
+ * say.
+ * Error: 0.002 in double and in float. RMIN_BOUNDED: the force is a bound that none exceeds. */
+inline result<rmin_peak_force_t> peak_force(
+    const vector<6> &q,
+    const vector<3> &n,
+    real speed,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_peak_force_t> found;
+    found.status = rmin_peak_force(q.data(), n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+/* The same of another contact point, a rmin_point. */
+inline result<rmin_peak_force_t> peak_force_at(
+    const vector<6> &q,
+    int point,
+    const vector<3> &n,
+    real speed,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_peak_force_t> found;
+    found.status = rmin_peak_force_at(q.data(), point, n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+/* Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the
+ * speed
+ * that is returned is 0.5 to 2 % below the limit, or jumps over it with little more speed.
+ * limit: N, > 0. RMIN_BOUNDED: the speed is safe, but slower ones only were looked at, or none. */
+inline result<rmin_safe_speed_t> safe_speed(
+    const vector<6> &q,
+    const vector<3> &n,
+    real limit,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_safe_speed_t> found;
+    found.status = rmin_safe_speed(q.data(), n.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
+/* The same of another contact point, a rmin_point. */
+inline result<rmin_safe_speed_t> safe_speed_at(
+    const vector<6> &q,
+    int point,
+    const vector<3> &n,
+    real limit,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_safe_speed_t> found;
+    found.status = rmin_safe_speed_at(q.data(), point, n.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
+/* By how much to slow down the present motion so that no contact point exceeds a limit, each
+ * hitting in
+ * the direction in which it moves. One call a control cycle.
+ * dq: joint velocities. limit: N, > 0. RMIN_BOUNDED: as for rmin_safe_speed. */
+inline result<rmin_speed_factor_t> speed_factor(
+    const vector<6> &q,
+    const vector<6> &dq,
+    real limit,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_speed_factor_t> found;
+    found.status = rmin_speed_factor(q.data(), dq.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
+} // namespace rmin
+
+#endif

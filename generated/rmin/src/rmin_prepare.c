@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What impacts of rmin_ are prepared with: modes, mobilities and steps. */
+#include "rmin_impact.h"
+
+/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+#define BLURS RMIN_R(1.6e-2)
+
+/* Largest stiffness of the skin up to a force. */
+static rmin_real skin_stiffness(const rmin_region *region, rmin_real force)
+{
+    const rmin_real third = RMIN_R(1.0)/RMIN_R(3.0);
+    return RMIN_R(1.5)*RMIN_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
+}
+
+rmin_real rmin_two_body_force(const rmin_region *region, rmin_real mobility, rmin_real speed)
+{
+    const rmin_real spring = speed*RMIN_SQRT(region->stiffness/mobility);
+    const rmin_real energy = RMIN_R(1.25)*speed*speed/mobility;
+    const rmin_real skin = RMIN_POW(energy, RMIN_R(0.6))*RMIN_POW(region->hertz_stiffness, RMIN_R(0.4));
+    return RMIN_R(1.0)/(RMIN_R(1.0)/spring + RMIN_R(1.0)/skin);
+}
+
+rmin_real rmin_two_body_speed(const rmin_region *region, rmin_real mobility, rmin_real force)
+{
+    const rmin_real depth = RMIN_POW(force/region->hertz_stiffness, RMIN_R(2.0)/RMIN_R(3.0));
+    return RMIN_SQRT(mobility*force*(force/region->stiffness + RMIN_R(0.8)*depth));
+}
+
+void rmin_impact_forget(rmin_impact *impact)
+{
+    impact->phase[RMIN_LED].known = false;
+    impact->phase[RMIN_LOOSE].known = false;
+}
+
+/* Takes the body out of modes that are known, whose order does not matter. */
+static void take_body_out(rmin_phase *phase)
+{
+    rmin_modes *const modes = &phase->modes;
+    const int last = modes->count - 1;
+    const int body = phase->active - 1;
+    if (phase->has_body && body >= 0 && body <= last) {
+        modes->squared[body] = modes->squared[last];
+        modes->row[body] = modes->row[last];
+        modes->start[body] = modes->start[last];
+        for (int k = 0; k < RMIN_SYSTEM; ++k) {
+            modes->shape[body][k] = modes->shape[last][k];
+        }
+        modes->count = last;
+    }
+    phase->has_body = false;
+}
+
+static int led_modes(rmin_impact *impact, rmin_phase *phase)
+{
+    if (impact->motors == RMIN_MOTORS_DRIVEN) {
+        return rmin_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
+    }
+    for (int i = 0; i < RMIN_N; ++i) {
+        phase->damping[i] = RMIN_DAMPING_GAIN(impact->p, i);
+        phase->damped = phase->damped || phase->damping[i] > RMIN_R(0.0);
+    }
+    return rmin_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
+}
+
+/* Modes of a phase. */
+static int modes_of(rmin_impact *impact, int which)
+{
+    rmin_phase *const phase = &impact->phase[which];
+    if (phase->known && (which == RMIN_LOOSE || impact->led == impact->motors)) {
+        take_body_out(phase);
+        return RMIN_OK;
+    }
+    phase->has_body = false;
+    phase->drift = RMIN_R(0.0);
+    phase->damped = false;
+    phase->modes.noise = RMIN_R(0.0);
+    for (int i = 0; i < RMIN_N; ++i) {
+        phase->damping[i] = RMIN_R(0.0);
+    }
+    const int status = which == RMIN_LED ? led_modes(impact, phase)
+        : rmin_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
+    phase->known = status == RMIN_OK;
+    impact->led = which == RMIN_LED ? impact->motors : impact->led;
+    return status;
+}
+
+#if !RMIN_STRUCTURED
+static rmin_real mobility_of(const rmin_modes *modes)
+{
+    rmin_real sum = RMIN_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        sum += modes->row[i]*modes->row[i];
+    }
+    return sum;
+}
+#endif
+
+/* Times at which a phase begins and ends. */
+static rmin_real time_of(const rmin_impact *impact, int which)
+{
+    const rmin_real horizon = RMIN_HORIZON(impact->p);
+    const rmin_real until = which < impact->last ? RMIN_REACTION_TIME(impact->p) : horizon;
+    return which > impact->first ? horizon - RMIN_REACTION_TIME(impact->p) : until;
+}
+
+static void steps_of(rmin_impact *impact, int which)
+{
+    rmin_phase *const phase = &impact->phase[which];
+    const rmin_real time = time_of(impact, which);
+    phase->blurred = phase->modes.noise*time*time > BLURS;
+    rmin_phase_steps(impact, time, phase);
+    const rmin_real numbers[2] = {phase->level[0].h, phase->level[RMIN_LEVELS - 1].h};
+    if (rmin_check_positive(numbers, 2) != RMIN_OK) {
+        impact->status = RMIN_SINGULAR;
+    }
+}
+
+void rmin_impact_let_go(rmin_impact *impact)
+{
+    if (!impact->phase[RMIN_LOOSE].ready) {
+        impact->status = modes_of(impact, RMIN_LOOSE);
+        if (impact->status == RMIN_OK) {
+            steps_of(impact, RMIN_LOOSE);
+        }
+    }
+}
+
+/* Mobilities of the contact, and modes where those need them. */
+static void weigh(rmin_impact *impact)
+{
+    const rmin_real body = impact->gives_way ? RMIN_R(1.0)/impact->region->effective_mass : RMIN_R(0.0);
+    rmin_real mobility = RMIN_R(0.0);
+#if RMIN_STRUCTURED
+    impact->status = rmin_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
+#else
+    for (int k = impact->first; k <= impact->last && impact->status == RMIN_OK; ++k) {
+        impact->status = modes_of(impact, k);
+        mobility = RMIN_FMAX(mobility, mobility_of(&impact->phase[k].modes));
+    }
+    impact->rotors = RMIN_R(0.0);
+    const bool held = !RMIN_ELASTIC && impact->last == RMIN_LED && impact->motors == RMIN_MOTORS_DRIVEN;
+    if (!(mobility > RMIN_LEAST_MOBILITY) && !held) {
+        impact->status = RMIN_SINGULAR;
+    }
+#endif
+    impact->mobility = RMIN_FMAX(mobility, RMIN_LEAST_MOBILITY) + body;
+}
+
+int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int motors,
+    rmin_real force, rmin_impact *impact)
+{
+    const rmin_real reaction = RMIN_REACTION_TIME(p);
+    const bool loose = motors == RMIN_MOTORS_FREE || !(reaction > RMIN_R(0.0));
+    impact->region = region;
+    impact->p = p;
+    impact->motors = motors;
+    impact->gives_way = region->clamped == 0;
+    impact->first = loose ? RMIN_LOOSE : RMIN_LED;
+    impact->last = loose || reaction < RMIN_HORIZON(p) ? RMIN_LOOSE : RMIN_LED;
+    impact->status = RMIN_OK;
+    impact->phase[RMIN_LED].ready = false;
+    impact->phase[RMIN_LOOSE].ready = false;
+    weigh(impact);
+    if (impact->status != RMIN_OK) {
+        return impact->status;
+    }
+    const rmin_real size =
+        force > RMIN_R(0.0) ? force : rmin_two_body_force(region, impact->mobility, -force);
+    impact->scale = RMIN_R(0.2)*size;
+    impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
+    const rmin_real damped = region->damping*RMIN_SQRT(impact->mobility/region->stiffness);
+    impact->smooth = RMIN_R(1.0)/(RMIN_R(1.0) + RMIN_R(4.0)*damped);
+    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    const rmin_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
+    if (!rmin_all_finite(numbers, 3) || rmin_check_positive(numbers, 3) != RMIN_OK) {
+        return RMIN_SINGULAR;
+    }
+#if RMIN_STRUCTURED
+    impact->status = modes_of(impact, impact->first);
+    if (impact->status == RMIN_OK) {
+        steps_of(impact, impact->first);
+    }
+#else
+    for (int k = impact->first; k <= impact->last; ++k) {
+        steps_of(impact, k);
+    }
+#endif
+    return impact->status;
+}
