@@ -61,12 +61,14 @@ def figure_of_ranking(report: DesignReport) -> Figure:
 
 def _message(report: DesignReport) -> str:
     """Return where the poses' forces lie before and after."""
-    before = [pose.result.force_before for pose in report.poses]
-    after = [pose.best.force for pose in report.poses]
-    return (
-        f"Peak force of {len(before)} poses: {min(before):.0f} to {max(before):.0f} N before, "
-        f"{min(after):.0f} to {max(after):.0f} N after the design"
-    )
+
+    def ends(forces: list[float]) -> str:
+        low, high = f"{min(forces):.0f}", f"{max(forces):.0f}"
+        return low if low == high else f"{low} to {high}"
+
+    before = ends([pose.result.force_before for pose in report.poses])
+    after = ends([pose.best.force for pose in report.poses])
+    return f"Peak force of {len(report.poses)} poses: {before} N before, {after} N after the design"
 
 
 def _range(report: DesignReport) -> tuple[float, float]:
