@@ -61,15 +61,17 @@ def figure_of_ranking(report: DesignReport) -> Figure:
 
 def _message(report: DesignReport) -> str:
     """Return where the poses' forces lie before and after."""
-    before = [pose.result.force_before for pose in report.poses]
-    after = [pose.best.force for pose in report.poses]
-    if len(before) == 1:
-        name = report.poses[0].result.candidate.pose.name
-        return f"Peak force of {name}: {before[0]:.1f} N before, {after[0]:.1f} N after the design"
-    return (
-        f"Peak force of {len(before)} poses: {min(before):.0f} to {max(before):.0f} N before, "
-        f"{min(after):.0f} to {max(after):.0f} N after the design"
-    )
+
+    def ends(forces: list[float]) -> str:
+        digits = 1 if len(forces) == 1 else 0
+        low, high = f"{min(forces):.{digits}f}", f"{max(forces):.{digits}f}"
+        return low if low == high else f"{low} to {high}"
+
+    before = ends([pose.result.force_before for pose in report.poses])
+    after = ends([pose.best.force for pose in report.poses])
+    poses = report.poses
+    whose = poses[0].result.candidate.pose.name if len(poses) == 1 else f"{len(poses)} poses"
+    return f"Peak force of {whose}: {before} N before, {after} N after the design"
 
 
 def _range(report: DesignReport) -> tuple[float, float]:
