@@ -22,9 +22,9 @@ typedef struct {
     robot_matrix S;
     robot_real R[ROBOT_N];
     robot_real b[ROBOT_N];
-} scaled;
+} spring_scaled;
 
-static void scale_model(const robot_arrival *arrival, const robot_params *p, scaled *out)
+static void scale_by_springs(const robot_arrival *arrival, const robot_params *p, spring_scaled *out)
 {
     robot_real soft[ROBOT_N];
     for (int i = 0; i < ROBOT_N; ++i) {
@@ -39,7 +39,7 @@ static void scale_model(const robot_arrival *arrival, const robot_params *p, sca
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int modes_of(robot_square C, const robot_real b[ROBOT_N], robot_modes *modes)
+static int spring_modes(robot_square C, const robot_real b[ROBOT_N], robot_modes *modes)
 {
     robot_real squares[ROBOT_N];
     robot_square vectors;
@@ -76,9 +76,9 @@ static int modes_of(robot_square C, const robot_real b[ROBOT_N], robot_modes *mo
 int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real *drift)
 {
-    scaled s;
+    spring_scaled s;
     robot_square C;
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     for (int i = 0; i < ROBOT_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -87,18 +87,18 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     }
     *drift = ROBOT_R(1.0);
     modes->rigid = 0;
-    return modes_of(C, s.b, modes);
+    return spring_modes(C, s.b, modes);
 }
 
 int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real carried[ROBOT_N])
 {
-    scaled s;
+    spring_scaled s;
     robot_matrix G;
     robot_square Y; /* columns of L_G^-1 L' */
     robot_square C;
     robot_real z[ROBOT_N];
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     if (!robot_cholesky(ROBOT_N, s.S)) {
         return ROBOT_SINGULAR;
     }
@@ -153,11 +153,11 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     for (int j = 0; j < ROBOT_SYSTEM; ++j) {
         modes->shape[0][j] = ROBOT_R(0.0);
     }
-    return modes_of(C, carried, modes);
+    return spring_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
-static robot_real mobility_of(robot_matrix mass, const robot_real row[ROBOT_N])
+static robot_real mobility_through(robot_matrix mass, const robot_real row[ROBOT_N])
 {
     robot_real z[ROBOT_N];
     robot_real sum = ROBOT_R(0.0);
@@ -185,7 +185,7 @@ int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_
         *rotors += arrival->row[i]*arrival->row[i]/ROBOT_ROTOR(p, i);
     }
     (void)p;
-    *links = mobility_of(mass, arrival->row);
+    *links = mobility_through(mass, arrival->row);
     return *links > ROBOT_LEAST_MOBILITY ? ROBOT_OK : ROBOT_SINGULAR;
 }
 
@@ -199,6 +199,6 @@ robot_real robot_together(const robot_arrival *arrival, const robot_params *p)
         mass[i][i] += ROBOT_ROTOR(p, i);
     }
     (void)p;
-    return mobility_of(mass, arrival->row);
+    return mobility_through(mass, arrival->row);
 }
 #endif

@@ -72,8 +72,7 @@ def undecided(alarm: str) -> bool:
 @pytest.mark.xfail(
     strict=True,
     raises=AssertionError,
-    reason="Eva finds no bound of the count of modes in robot_phase_steps, so of 3 indices: the "
-    "body's there, and i in let_stand and exchange; the invariant it misses is still to be found",
+    reason="one index is left for which Eva finds no bound; which one is still to be looked up",
 )
 # the others take Eva minutes since packages have the new runtime, and its bounds are open for all
 @pytest.mark.parametrize("robot", ["rr"])
