@@ -39,7 +39,7 @@ static void scale_model(const robot_arrival *arrival, const robot_params *p, sca
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int modes_of(robot_square C, const robot_real b[ROBOT_N], robot_modes *modes)
+static int swinging_modes(robot_square C, const robot_real b[ROBOT_N], robot_modes *modes)
 {
     robot_real squares[ROBOT_N];
     robot_square vectors;
@@ -87,7 +87,7 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     }
     *drift = ROBOT_R(1.0);
     modes->rigid = 0;
-    return modes_of(C, s.b, modes);
+    return swinging_modes(C, s.b, modes);
 }
 
 int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
@@ -104,9 +104,9 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     }
     for (int i = 0; i < ROBOT_N; ++i) {
         z[i] = s.b[i];
-        robot_real stiff[ROBOT_N] = {ROBOT_R(0.0)};
-        for (int l = i; l < ROBOT_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        robot_real stiff[ROBOT_N];
+        for (int l = 0; l < ROBOT_N; ++l) {
+            stiff[l] = l < i ? ROBOT_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             robot_real sum = i == j ? ROBOT_R(1.0) : ROBOT_R(0.0);
@@ -153,7 +153,7 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     for (int j = 0; j < ROBOT_SYSTEM; ++j) {
         modes->shape[0][j] = ROBOT_R(0.0);
     }
-    return modes_of(C, carried, modes);
+    return swinging_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

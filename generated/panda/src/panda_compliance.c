@@ -39,7 +39,7 @@ static void scale_model(const panda_arrival *arrival, const panda_params *p, sca
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int modes_of(panda_square C, const panda_real b[PANDA_N], panda_modes *modes)
+static int swinging_modes(panda_square C, const panda_real b[PANDA_N], panda_modes *modes)
 {
     panda_real squares[PANDA_N];
     panda_square vectors;
@@ -87,7 +87,7 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     }
     *drift = PANDA_R(1.0);
     modes->rigid = 0;
-    return modes_of(C, s.b, modes);
+    return swinging_modes(C, s.b, modes);
 }
 
 int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
@@ -104,9 +104,9 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     }
     for (int i = 0; i < PANDA_N; ++i) {
         z[i] = s.b[i];
-        panda_real stiff[PANDA_N] = {PANDA_R(0.0)};
-        for (int l = i; l < PANDA_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        panda_real stiff[PANDA_N];
+        for (int l = 0; l < PANDA_N; ++l) {
+            stiff[l] = l < i ? PANDA_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             panda_real sum = i == j ? PANDA_R(1.0) : PANDA_R(0.0);
@@ -153,7 +153,7 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     for (int j = 0; j < PANDA_SYSTEM; ++j) {
         modes->shape[0][j] = PANDA_R(0.0);
     }
-    return modes_of(C, carried, modes);
+    return swinging_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

@@ -39,7 +39,7 @@ static void scale_model(const rmin_arrival *arrival, const rmin_params *p, scale
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int modes_of(rmin_square C, const rmin_real b[RMIN_N], rmin_modes *modes)
+static int swinging_modes(rmin_square C, const rmin_real b[RMIN_N], rmin_modes *modes)
 {
     rmin_real squares[RMIN_N];
     rmin_square vectors;
@@ -87,7 +87,7 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     }
     *drift = RMIN_R(1.0);
     modes->rigid = 0;
-    return modes_of(C, s.b, modes);
+    return swinging_modes(C, s.b, modes);
 }
 
 int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
@@ -104,9 +104,9 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     }
     for (int i = 0; i < RMIN_N; ++i) {
         z[i] = s.b[i];
-        rmin_real stiff[RMIN_N] = {RMIN_R(0.0)};
-        for (int l = i; l < RMIN_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        rmin_real stiff[RMIN_N];
+        for (int l = 0; l < RMIN_N; ++l) {
+            stiff[l] = l < i ? RMIN_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             rmin_real sum = i == j ? RMIN_R(1.0) : RMIN_R(0.0);
@@ -153,7 +153,7 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     for (int j = 0; j < RMIN_SYSTEM; ++j) {
         modes->shape[0][j] = RMIN_R(0.0);
     }
-    return modes_of(C, carried, modes);
+    return swinging_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

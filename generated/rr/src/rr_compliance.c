@@ -39,7 +39,7 @@ static void scale_model(const rr_arrival *arrival, const rr_params *p, scaled *o
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int modes_of(rr_square C, const rr_real b[RR_N], rr_modes *modes)
+static int swinging_modes(rr_square C, const rr_real b[RR_N], rr_modes *modes)
 {
     rr_real squares[RR_N];
     rr_square vectors;
@@ -87,7 +87,7 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     }
     *drift = RR_R(1.0);
     modes->rigid = 0;
-    return modes_of(C, s.b, modes);
+    return swinging_modes(C, s.b, modes);
 }
 
 int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
@@ -104,9 +104,9 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     }
     for (int i = 0; i < RR_N; ++i) {
         z[i] = s.b[i];
-        rr_real stiff[RR_N] = {RR_R(0.0)};
-        for (int l = i; l < RR_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        rr_real stiff[RR_N];
+        for (int l = 0; l < RR_N; ++l) {
+            stiff[l] = l < i ? RR_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             rr_real sum = i == j ? RR_R(1.0) : RR_R(0.0);
@@ -153,7 +153,7 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     for (int j = 0; j < RR_SYSTEM; ++j) {
         modes->shape[0][j] = RR_R(0.0);
     }
-    return modes_of(C, carried, modes);
+    return swinging_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

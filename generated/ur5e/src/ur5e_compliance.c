@@ -39,7 +39,7 @@ static void scale_model(const ur5e_arrival *arrival, const ur5e_params *p, scale
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int modes_of(ur5e_square C, const ur5e_real b[UR5E_N], ur5e_modes *modes)
+static int swinging_modes(ur5e_square C, const ur5e_real b[UR5E_N], ur5e_modes *modes)
 {
     ur5e_real squares[UR5E_N];
     ur5e_square vectors;
@@ -87,7 +87,7 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     }
     *drift = UR5E_R(1.0);
     modes->rigid = 0;
-    return modes_of(C, s.b, modes);
+    return swinging_modes(C, s.b, modes);
 }
 
 int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
@@ -104,9 +104,9 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     }
     for (int i = 0; i < UR5E_N; ++i) {
         z[i] = s.b[i];
-        ur5e_real stiff[UR5E_N] = {UR5E_R(0.0)};
-        for (int l = i; l < UR5E_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        ur5e_real stiff[UR5E_N];
+        for (int l = 0; l < UR5E_N; ++l) {
+            stiff[l] = l < i ? UR5E_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             ur5e_real sum = i == j ? UR5E_R(1.0) : UR5E_R(0.0);
@@ -153,7 +153,7 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     for (int j = 0; j < UR5E_SYSTEM; ++j) {
         modes->shape[0][j] = UR5E_R(0.0);
     }
-    return modes_of(C, carried, modes);
+    return swinging_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
