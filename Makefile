@@ -61,7 +61,7 @@ bench-c: $(VENV)/installed-test $(OTHERS)/installed
 
 # one robust design by us and by general optimisers, some ten minutes
 bench-opt: $(VENV)/installed-test
-	$(BIN)/python benchmarks/design/run.py --budget 2000 --out docs/benchmarks-design.md
+	$(BIN)/python benchmarks/design/run.py --budget 1500 --out docs/benchmarks-design.md
 
 # libFuzzer on every package, float and double; needs clang
 fuzz: $(VENV)/installed-test

@@ -14,9 +14,11 @@ from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
+from .branches import branches
 from .evaluation import largest_deflection, largest_share
 from .failure import SolverFailure
 from .ipopt import IN_TURN, minimise
+from .optima import Optimum, distinct
 from .poses import Candidate, candidates, leaves_a_choice
 from .problem import Problem, felt_numbers, peak_force, prepare, study_impacts
 from .reach import infeasible, reach, reachable
@@ -121,6 +123,8 @@ class Design(Record):
         answers: what the winner's numbers mean.
         timing: of the impacts simulated.
         compiled: whether the NLP ran as machine code.
+        optima: different ones that free searches ended in before those that lag began again.
+        branches: pieces of the self-motion that were searched; 0 where there is none.
     """
 
     UNSHOWN = ("study", "timing")
@@ -132,6 +136,8 @@ class Design(Record):
     answers: Answers
     timing: Timing
     compiled: bool
+    optima: tuple[Optimum, ...] = ()
+    branches: int = 0
 
     def rows(self) -> list[Row]:
         """Return a line for each search: the pose it began with, posture, springs and force."""
@@ -191,6 +197,12 @@ def design(
                 outcomes[outcome.name, outcome.mode] = outcome
                 if on_outcome is not None:
                     on_outcome(outcome)
+        found = branches(problem) if "free" in modes else []
+        elsewhere = [Start(study.task_pose.name, "free", ((b.q, b.springs),)) for b in found]
+        for outcome in _run(problem, elsewhere, pool):
+            key = outcome.name, outcome.mode
+            outcomes[key] = better(outcomes[key], outcome)
+        optima = distinct([o for (_, mode), o in outcomes.items() if mode == "free"])
         for begin in (_stiffest_of, _best_of) if "free" in modes else ():
             for outcome in _run(problem, _laggards(study, poses, outcomes, begin), pool):
                 key = outcome.name, outcome.mode
@@ -212,7 +224,9 @@ def design(
     gains = _gains(study, results, winner.force)
     answers = _answers(problem, winner, results)
     compiled = problem.program.library
-    return Design(study, results, winner, gains, answers, problem.timing, compiled)
+    return Design(
+        study, results, winner, gains, answers, problem.timing, compiled, optima, len(found)
+    )
 
 
 def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -> Answers:

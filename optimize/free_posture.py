@@ -9,6 +9,7 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+from .branches import branches
 from .front import WORTH
 from .levels import NO_BOUND
 from .searches import Searches
@@ -84,6 +85,8 @@ def free_outcomes(
     best: dict[int, Outcome] = {}
     mode = searches.problem.freest
     first = [(0, Start(name, mode, ((end.q, end.springs),))), *_from_held(held, mode)]
+    if mode == "free":
+        first += _from_branches(searches, levels)
     changed = _improve(searches, "free posture", levels, first, best)
     for _ in levels:
         tasks = _from_neighbours(searches, levels, best, changed)
@@ -100,6 +103,16 @@ def _from_held(held: Sequence[Sequence[Outcome | None]], mode: Mode) -> list[Tas
         for outcome in solved[:FIRST]:
             tasks.append((i, Start(outcome.name, mode, ((outcome.q, outcome.springs),))))
     return tasks
+
+
+def _from_branches(searches: Searches, levels: Sequence[Level]) -> list[Task]:
+    """Start on every piece of the self-motion, where forces are least before any search."""
+    name = searches.problem.study.task_pose.name
+    return [
+        (i, Start(name, "free", ((found.q, found.springs),)))
+        for i, level in enumerate(levels)
+        for found in branches(searches.problem, level.bound)
+    ]
 
 
 def _from_neighbours(

@@ -6,12 +6,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from .evaluation import largest_deflection
 from .solve import Outcome
 from .study import Study
 
 WORTH = 1e-4
 """Share of the force that a less accurate design must save to be kept: what forces are known to."""
+
+
+FLAT = 1e-6
+"""Share of a front's height below the straight line from which it counts as bent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,3 +78,20 @@ def undominated(points: Iterable[ParetoPoint]) -> tuple[ParetoPoint, ...]:
         if not kept or point.force < kept[-1].force * (1 - WORTH):
             kept.append(point)
     return tuple(kept)
+
+
+def knee(points: Sequence[ParetoPoint]) -> int | None:
+    """Return the number of the point after which more deflection buys least for what it costs.
+
+    It is the point farthest below the straight line between the ends of the front, in force over
+    the logarithm of the deflection, each from 0 to 1. None for fronts of two points or less, and
+    for those that are nowhere below it.
+    """
+    if len(points) < 3:
+        return None
+    x = np.log([point.deflection for point in points])
+    y = np.array([point.force for point in points])
+    x, y = (x - x[0]) / (x[-1] - x[0]), (y - y[-1]) / (y[0] - y[-1])
+    below = 1 - x - y
+    best = int(np.argmax(below))
+    return best if below[best] > FLAT else None

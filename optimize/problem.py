@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import Matrix
+from softimpact.symbolic import InvalidValue, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
 from .evaluation import equipped
 from .impact_program import PARTS, ImpactProgram, Parts, impact_numbers, impact_program
 from .ipopt import Bounds, Instance, one_posture
 from .nlp import Program, hardware_function, task_function, task_numbers
+from .objectives import WorstForce
 from .poses import Candidate, candidates, leaves_a_choice
 from .solve import Mode
 from .study import Study
@@ -69,6 +70,7 @@ def prepare(study: Study, *, elsewhere: bool = False) -> Problem:
     Raises:
         InvalidValue: as ``candidates`` and ``impact_timing``.
     """
+    _require_forces_alone(study)
     poses = tuple(candidates(study))
     timing = impact_timing(study, [pose.q for pose in poses])
     parts = sought_parts(study)
@@ -83,6 +85,21 @@ def prepare(study: Study, *, elsewhere: bool = False) -> Problem:
     program = study_program(study, (impact,))
     before = tuple(peak_force(study, impact, timing, pose.q, study.nominal) for pose in poses)
     return Problem(study, poses, before, timing, program, Bounds.of(study))
+
+
+def _require_forces_alone(study: Study) -> None:
+    """Refuse what only a design for scenarios can do: nothing of a study is left out in silence."""
+    tables = [f"hardware.{variable.kind}" for variable in study.other_variables]
+    if study.catalogue:
+        tables.append("hardware.catalogue")
+    if study.objective.kind != WorstForce.kind:
+        tables.append("objective")
+    if tables:
+        raise InvalidValue(
+            f"{study.source}: {tables[0]}",
+            "needs 'softimpact design' and a table [scenarios], which may be empty; poses by "
+            "themselves and fronts have springs and forces alone",
+        )
 
 
 def sought_parts(study: Study) -> Parts:

@@ -14,8 +14,8 @@ from .nlp import Program
 from .scenarios import Indices, Scenario, Scenarios
 from .study import transient_limit
 
-CHUNK = 100
-"""Impacts simulated in one call."""
+CHUNK = 128
+"""Most impacts simulated in one call."""
 
 PIECE = 1000
 """Scenarios in one job."""
@@ -121,11 +121,12 @@ def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Ar
         numbers: of the impacts, m×``NUMBERS``.
     """
     count = len(x)
-    padding = (-count) % CHUNK  # one shape, so that CasADi maps the function once
+    chunk = min(CHUNK, 1 << (count - 1).bit_length())  # few sizes, so that maps are made once
+    padding = (-count) % chunk
     x, numbers = (np.pad(a, ((0, padding), (0, 0)), mode="edge") for a in (x, numbers))
-    peaks = program.impacts[point]["peaks"].map(CHUNK)
+    peaks = program.impacts[point]["peaks"].map(chunk)
     found = [
-        np.array(peaks(x[i : i + CHUNK].T, numbers[i : i + CHUNK].T, np.zeros((1, CHUNK)))).max(0)
-        for i in range(0, count + padding, CHUNK)
+        np.array(peaks(x[i : i + chunk].T, numbers[i : i + chunk].T, np.zeros((1, chunk)))).max(0)
+        for i in range(0, count + padding, chunk)
     ]
     return np.concatenate(found)[:count]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -222,7 +223,9 @@ Fault = tuple[tuple[str | int, ...], str]
 
 def fault_in_words(fault: Mapping[str, Any]) -> Fault:
     """Words for a field of the wrong form, with the name that may have been meant."""
-    place, reason = tuple(fault["loc"]), str(fault["msg"]).removeprefix("Value error, ")
+    # of a table that may have two forms, pydantic names the form, too
+    place = tuple(part for part in fault["loc"] if not re.search(r"Section|\[", str(part)))
+    reason = str(fault["msg"]).removeprefix("Value error, ")
     if not place:  # a check of the whole, which names its field itself
         field, _, words = reason.partition(": ")
         return tuple(field.split(".")), words

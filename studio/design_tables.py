@@ -124,6 +124,13 @@ def _notes(report: DesignReport) -> list[str]:
             notes.append(
                 f"{mode}: {len(forces)} of {len(outcomes)} solved, {near} within 0.5 % of the best"
             )
+    if report.design.optima:
+        ended = ", ".join(f"{each.best.force:.1f}" for each in report.design.optima[:5])
+        count, pieces = len(report.design.optima), report.design.branches
+        notes.append(
+            f"free: {count} different local optima ({ended}{', …' if count > 5 else ''} N)"
+            + (f"; {pieces} pieces of the self-motion searched" if pieces else "")
+        )
     if not leaves_a_choice(report.study):
         notes.append("free: left out, because the task leaves this arm no other posture")
     return notes

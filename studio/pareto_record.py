@@ -41,7 +41,11 @@ def as_record(report: ParetoReport) -> dict[str, Any]:
             "safe_speed": report.reference_speed,
         },
         "fronts": {
-            name: [_checked(point, report) for point in report.fronts[name]] for name in FRONTS
+            name: [
+                {**_checked(point, report), "knee": i == report.knee(name)}
+                for i, point in enumerate(report.fronts[name])
+            ]
+            for name in FRONTS
         },
         "held": {
             name: [_point(point) for point in front.points] for name, front in pareto.held.items()
@@ -98,21 +102,23 @@ def write_table(report: ParetoReport, path: Path) -> None:
     """Write the fronts as CSV, a row a point, in SI units."""
     joints = report.study.robot.joint_names
     header = ["front", "bound_m", "deflection_m", "force_N", "safe_speed_m_per_s", "meets_limit"]
-    header += ["linearised_N", "full_N", "status", "mode", "start"]
+    header += ["knee", "linearised_N", "full_N", "status", "mode", "start"]
     header += [f"k_s_{joint}" for joint in joints] + [f"q_{joint}" for joint in joints]
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(header)
         for name in FRONTS:
-            for checked in report.fronts[name]:
-                table.writerow([name, *_row(checked, report)])
+            for i, checked in enumerate(report.fronts[name]):
+                is_knee = str(i == report.knee(name)).lower()
+                table.writerow([name, *_row(checked, report, is_knee)])
 
 
-def _row(checked: CheckedPoint, report: ParetoReport) -> list[object]:
+def _row(checked: CheckedPoint, report: ParetoReport, is_knee: str) -> list[object]:
     point, outcome = checked.point, checked.point.outcome
     return [
         *(point.bound, point.deflection, point.force, checked.safe_speed),
         str(point.force <= report.limit).lower(),
+        is_knee,
         *(checked.check.linearised, checked.check.full),
         *(outcome.status, outcome.mode, outcome.name),
         *map(float, outcome.springs),

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from softimpact.optimize import Front, Pareto, ParetoPoint, Study
+from softimpact.optimize.front import knee
 from softimpact.optimize.searches import Progress
 
 from .checks import Check, checked, safe_speed
@@ -52,6 +53,10 @@ class ParetoReport:
     def limit(self) -> float:
         """Force limit of the body region [N]."""
         return self.study.limit
+
+    def knee(self, front: str) -> int | None:
+        """Return the number of a front's knee, None where it has none."""
+        return knee([checked.point for checked in self.fronts[front]])
 
     def at(self, front: str, level: float) -> CheckedPoint | None:
         """Return the point that was sought with a bound [m], None if another beats it."""

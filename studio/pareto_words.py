@@ -114,6 +114,13 @@ def _trade_off(report: ParetoReport) -> list[str]:
             f"{a.force - b.force:.1f} N for {100 * (b.deflection / a.deflection - 1):.0f} % more "
             "deflection."
         )
+    bend = report.knee("free")
+    if bend is not None:
+        at = points[bend]
+        lines.append(
+            f"The knee is at {MM * at.deflection:.3g} mm and {at.force:.1f} N: more deflection "
+            "buys less for what it costs, more accuracy costs more."
+        )
     return lines
 
 

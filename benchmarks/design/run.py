@@ -266,13 +266,22 @@ def measured(region: str, budget: int) -> tuple[list[str], RobustDesign]:
     """Return the rows of a region's table."""
     study, scenarios = study_for(region)
     robust_design(study, scenarios, Here())  # compiles what is not in the cache
+    heard: list[float] = []
+
+    def hear(what: str, done: int, total: int) -> None:
+        heard.append(time.process_time())
+
     began = time.process_time()
-    ours = robust_design(study, scenarios, Here())
-    spent = time.process_time() - began
+    ours = robust_design(study, scenarios, Here(), hear)
+    whole = time.process_time() - began
+    spent = heard[-1] - heard[0]  # from the first screening to the last
     share = ours.worst.share
     timing = ours.timing
     program = impact_program(study.model, timing.nodes, timing.substeps, compiled=True)
-    rows = [f"| softimpact, everything | {ours.worst.force:.2f} | {spent:.1f} s | | 1 |"]
+    rows = [
+        f"| softimpact: search and certificate | {ours.worst.force:.2f} | {spent:.2f} s | | 1 |",
+        f"| softimpact: from study to prices | | {whole:.2f} s | | {whole / spent:.1f} |",
+    ]
     for name, run in CONTENDERS.items():
         problem = Problem(study, scenarios, program, timing.step, share, budget)
         with contextlib.suppress(Enough):
@@ -296,8 +305,8 @@ Written by `make bench-opt`: one set of seven springs for the Panda in {poses} p
 hit along 9 directions, free motors, 1 m/s, at most 1 mm under 30 N everywhere. All contenders call
 the same compiled forces, {scenarios} scenarios at once, on one core; times are the processor's.
 "Reached" is when a design that keeps the accuracy came within 0.1 % of ours; all get {budget}
-evaluations. Our time includes the timing of impacts, screening of all scenarios, the ranges and
-the prices; compiled functions are in the cache for all.
+evaluations. The others are given what we first find out, how long and finely impacts must be
+stepped; our second row has that, ranges and prices in it. Compiled functions are in the cache.
 
 {machine}.
 """

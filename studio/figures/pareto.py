@@ -63,6 +63,12 @@ def figure_of_fronts(report: ParetoReport) -> Figure:
     handles = [*_draw_held(axes, report)]
     handles += _draw_fronts(axes, report, lambda checked: checked.point.force)
     handles += _draw_reference(axes, report, reference.force)
+    bend = report.knee("free")
+    if bend is not None:
+        point = report.fronts["free"][bend].point
+        at = [MM * point.deflection], [point.force]
+        look: dict[str, Any] = {"marker": "*", "markersize": 17, "linestyle": "none", "zorder": 5}
+        handles += axes.plot(*at, color=BLACK, label="knee of the free front", **look)
     low, high = axes.get_ylim()
     near = low - 0.5 * (high - low) <= report.limit <= high + 0.5 * (high - low)
     if near:

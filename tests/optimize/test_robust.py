@@ -11,9 +11,11 @@ import pytest
 from studies import InProcess, changed, study_of, written
 
 from softimpact.optimize import Infeasible, Study, design, load_study
+from softimpact.optimize.evaluation import largest_deflection
 from softimpact.optimize.impact_program import impact_numbers, impact_program
 from softimpact.optimize.robust import RobustDesign, robust_design
 from softimpact.optimize.study_scenarios import scenarios_of
+from softimpact.optimize.tip_pose import tip_pose
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import InvalidValue, impact_model, limits_of, with_load
 from softimpact.symbolic.robot.rigid import Array
@@ -105,8 +107,7 @@ def test_it_is_compared_with_what_keeps_the_bounds(found: RobustDesign) -> None:
 @pytest.mark.slow
 def test_ranges_cost_less_than_half_a_percent(found: RobustDesign) -> None:
     least = found.worst.share
-    for joints in (slice(0, 4), slice(4, 7)):
-        low, high = found.indifferent[joints][0]
+    for joints, (low, high) in zip((slice(0, 4), slice(4, 7)), found.indifferent, strict=True):
         assert low <= found.springs[joints][0] * (1 + 1e-9)
         assert high >= found.springs[joints][0] * (1 - 1e-9)
         for end in (low, high):
@@ -222,3 +223,22 @@ def test_without_a_table_the_worse_end_counts(tmp_path: Path) -> None:
     assert [m.kind for m in study_of(tmp_path, None, ("q9",)).motors] == ["free", "driven"]
     gains: dict[str, dict[str, Any]] = {"robot": {"position_gain": 2000.0}}
     assert [m.kind for m in study_of(tmp_path, gains, ("q9",)).motors] == ["servo"]
+
+
+@pytest.mark.slow
+def test_free_postures_hold_their_tasks_and_never_hurt(
+    tmp_path: Path, study: Study, found: RobustDesign
+) -> None:
+    moved = robust_design(study, found.scenarios, InProcess(), free=True)
+    assert moved.worst.share <= found.worst.share * (1 + 1e-3)
+    assert np.abs(moved.postures - found.postures).max() > 1e-2
+    lower, upper = study.robot.limits
+    for pose, q in zip(moved.scenarios.poses, moved.postures, strict=True):
+        position, rotation = tip_pose(study.model, pose.q)
+        at = tip_pose(study.model, q)
+        np.testing.assert_allclose(at[0], position, atol=2e-5)
+        np.testing.assert_allclose(at[1], rotation, atol=2e-5)
+        assert np.all((lower <= q) & (q <= upper))
+        assert largest_deflection(study, q, moved.springs) <= study.max_deflection * (1 + 1e-5)
+    shares = [simulated(moved, i, moved.springs) for i in range(len(moved.scenarios))]
+    assert max(shares) == pytest.approx(moved.worst.share, rel=1e-3)

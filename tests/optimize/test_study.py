@@ -299,7 +299,7 @@ def test_a_misspelt_field_is_named_before_the_missing_one(tmp_path: Path) -> Non
 def test_built_in_studies_go_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert load_study("panda_24_poses").source == PANDA_24
-    refused(Path("panda_24"), "no such study file; built in: panda_24_poses")
+    refused(Path("panda_24"), "no such study file; built in: cover_panda, panda_24_poses")
 
 
 def test_joints_that_are_locked_leave_the_arm(tmp_path: Path) -> None:

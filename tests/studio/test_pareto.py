@@ -28,12 +28,19 @@ from softimpact.studio.figures.pareto import (
 )
 from softimpact.studio.figures.pareto_designs import figure_of_designs
 from softimpact.studio.pareto_report import ParetoReport, pareto_report
+from softimpact.studio.pareto_schema import ParetoResults
 from softimpact.studio.pareto_words import in_words, markdown, rows
 from softimpact.studio.report.pareto_pages import write_pareto_report
 
 POSES = ("q9", "q18")
 HEAD: dict[str, dict[str, Any]] = {"impact": {"region": "head"}, "pareto": {"points": 3}}
 FRONTS = ("free", "given", "task")
+
+
+def test_the_published_schema_is_that_of_the_results() -> None:
+    published = Path(__file__).parents[2] / "docs/pareto.schema.json"
+    schema = json.loads(published.read_text(encoding="utf-8"))
+    assert schema == ParetoResults.model_json_schema()
 
 
 @pytest.fixture(scope="module")
@@ -61,6 +68,7 @@ def test_results_are_complete(results: tuple[Path, dict[str, Any]]) -> None:
     assert {**record, "out": str(out)} == printed
     assert record["generator"] == "softimpact pareto"
     assert {"versions", "study", "levels", "reference", "held", "unsolved"} <= set(record)
+    ParetoResults.model_validate(record)
     assert record["study"]["pareto"] == {"points": 3, "lower": 2e-4, "upper": None}
     assert (record["region"], record["limit"], record["study"]["speed"]) == ("head", 130, 0.5)
     assert record["levels"][0] == 2e-4

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The form of the Pareto command's ``results.json``, published as docs/pareto.schema.json."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class Point(_Part):
+    """A design on a front."""
+
+    bound: float = Field(description="on the deflection, with which it was sought [m]")
+    deflection: float = Field(description="largest of the tip by the springs [m]")
+    force: float = Field(description="largest peak [N]")
+    start: str = Field(description="pose that the search began with")
+    mode: str = Field(description="table: posture held; free: sought")
+    status: str = Field(description="Ipopt's")
+    iterations: int
+    attempts: int
+    violation: float = Field(description="largest of a constraint, in the NLP's units")
+    q: list[float] = Field(description="posture [rad]")
+    springs: list[float] = Field(description="joint stiffness [N·m/rad]")
+
+
+class Checked(_Part):
+    """A force by independent simulation [N]."""
+
+    nlp: float
+    linearised: float
+    full: float
+
+
+class CheckedPoint(Point):
+    """A design on a front, simulated."""
+
+    meets_limit: bool
+    safe_speed: float = Field(description="at which the force is the limit [m/s]")
+    check: Checked
+    knee: bool = Field(description="whether the front bends there")
+
+
+class Unsolved(_Part):
+    """A level at which Ipopt failed."""
+
+    bound: float
+    status: str
+    force: float
+    violation: float
+
+
+class Reference(_Part):
+    """The design to improve on."""
+
+    name: str
+    q: list[float]
+    springs: list[float]
+    deflection: float
+    force: float
+    safe_speed: float
+
+
+class Fronts(_Part):
+    """Fronts, the most accurate design first; none of a front beats another in both."""
+
+    free: list[CheckedPoint]
+    given: list[CheckedPoint]
+    task: list[CheckedPoint]
+
+
+class Solver(_Part):
+    """How the impacts were integrated, and how many searches there were."""
+
+    compiled: bool
+    searches: int
+    impact_duration: float = Field(description="[s]")
+    impact_steps: int
+
+
+class ParetoResults(_Part):
+    """Everything that ``softimpact pareto`` found."""
+
+    generator: str
+    versions: dict[str, str]
+    study: dict[str, Any] = Field(description="what was asked")
+    region: str
+    limit: float = Field(description="force that reaches a limit of the region [N]")
+    limit_kind: str
+    peak_definition: str
+    accuracy: str
+    solver: Solver
+    levels: list[float] = Field(description="bounds on the deflection [m]")
+    reference: Reference
+    fronts: Fronts
+    held: dict[str, list[Point]] = Field(description="front of each given pose")
+    unsolved: dict[str, list[Unsolved]]
