@@ -51,6 +51,7 @@ class ImpactRecord:
         horizon: default time in which forces count [s].
         reaction_time: default time until motors are released [s].
         steps: default budget of steps of a call.
+        searched: what search for safe speeds that are none there was, and the worst that it found.
     """
 
     points: tuple[str, ...]
@@ -59,6 +60,7 @@ class ImpactRecord:
     horizon: float
     reaction_time: float
     steps: int
+    searched: str = ""
 
 
 @dataclass(frozen=True)

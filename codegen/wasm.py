@@ -18,6 +18,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from softimpact.symbolic import SoftImpactError
+
 from .errors import NoCrossCompiler
 from .interface import SIZES, Interface, Variable, read_interface
 from .manifest import Real
@@ -112,5 +114,19 @@ def _count(number: int) -> bytes:
     return bytes([low | 0x80]) + _count(rest) if rest else bytes([low])
 
 
+def main(words: list[str]) -> int:
+    """Compile a package from the command line; return the exit code."""
+    if len(words) not in (2, 3) or words[2:] not in ([], ["double"], ["float"]):
+        print("usage: python -m softimpact.codegen.wasm PACKAGE OUT.wasm [float]", file=sys.stderr)
+        return 2
+    try:
+        module = web_assembly(words[0], "float" if words[2:] == ["float"] else "double")
+        Path(words[1]).write_bytes(module)
+    except (SoftImpactError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
 if __name__ == "__main__":
-    Path(sys.argv[2]).write_bytes(web_assembly(sys.argv[1]))
+    sys.exit(main(sys.argv[1:]))

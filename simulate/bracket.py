@@ -6,6 +6,8 @@ from __future__ import annotations
 from dataclasses import replace
 from math import inf
 
+import numpy as np
+
 from softimpact.symbolic import ImpactModel, InvalidValue, Motors
 from softimpact.symbolic.impact.motors import KINDS
 
@@ -59,9 +61,31 @@ def bracket(
             f"{f' (the model has the sets {sets})' if sets else ''}"
         )
         return {"driven": replace(how, kind="driven", reaction_time=inf)}, [line]
-    if kind is None:
-        return {k: replace(how, kind=k) for k in KINDS if k in ("free", "driven")}, []
-    return {kind: replace(how, kind=kind)}, []
+    kinds = [k for k in KINDS if k in ("free", "driven")] if kind is None else [kind]
+    ends = {k: replace(how, kind=k) for k in kinds}
+    for end in ends.values():
+        require_rotors_behind_springs(model, end)
+    return dict(ends), []
+
+
+def require_rotors_behind_springs(model: ImpactModel, motors: Motors) -> None:
+    """Raise InvalidValue for a rotor of nothing that moves by itself behind a spring.
+
+    Args:
+        model: the robot.
+        motors: what they do; those that keep their speed, or are stopped, need no inertia.
+    """
+    if not any(law in ("free", "servo", "held") for _, law in motors.laws):
+        return
+    rotors = np.array(model.drives.rotors, dtype=float).ravel()
+    none = np.array(model.drives.elastic) & np.array(model.robot.actuated) & (rotors == 0)
+    if none.any():
+        name = model.robot.joint_names[int(none.argmax())]
+        raise InvalidValue(
+            "rotor_inertia",
+            f"of joint '{name}' is 0, which no motor behind a spring has; give it, or choose "
+            "driven motors with a reaction time of inf",
+        )
 
 
 def unknown_rotors(model: ImpactModel) -> list[str]:

@@ -244,7 +244,7 @@ def _at_point(model: ImpactModel, met: Passes, point: str) -> _AtPoint:
     own = ImpactModel(model.robot, model.robot.frame(point).name, model.drives, model.gravity)
     count, rate = len(met.q), met.velocity[:, list(own.independent)]
     symbol = ca.SX.sym("q", met.q.shape[1])
-    place = frame_pose(own.robot, own.tip, symbol).position
+    place: ca.SX = frame_pose(own.robot, own.tip, symbol).position
     wanted = [ca.densify(own.jacobian(symbol)), ca.densify(place)]
     found = ca.Function("point", [symbol], wanted).map(count).call([met.q.T])
     J = np.array(found[0]).reshape(3, count, -1).transpose(1, 0, 2)

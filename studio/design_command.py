@@ -52,7 +52,7 @@ def design(
     from .design_report import GENERATOR, as_record, design_report
     from .execution import running
     from .output import failures_as_json, print_json
-    from .results_folder import replaced_folder, require_replaceable
+    from .results_folder import replaced_folder, require_folder_of, require_replaceable
     from .values import given
 
     changed = {
@@ -62,6 +62,7 @@ def design(
     problem = load_study(study, {name: part for name, part in changed.items() if part})
     folder = out or Path("results") / problem.source.stem
     require_replaceable(folder, GENERATOR)
+    require_folder_of(page)
     how = Execution(workers, dask, resume)
     if problem.scenarios is not None:
         _robust(problem, folder, page, how, json)

@@ -256,6 +256,11 @@ def _pose(pose: RankedPose, max_deflection: float) -> dict[str, Any]:
     }
 
 
+def has_other_postures(report: DesignReport) -> bool:
+    """Whether posture was part of the design: other poses, or one that was sought."""
+    return len(report.poses) > 1 or any(pose.result.free for pose in report.poses)
+
+
 def gains_in_words(gains: Gains, report: DesignReport) -> Sequence[str]:
     """Return what springs, posture and speed buy, a sentence each."""
 
@@ -263,13 +268,17 @@ def gains_in_words(gains: Gains, report: DesignReport) -> Sequence[str]:
         return f"{100 * (gains.before - force) / gains.before:.1f} %"
 
     limit = report.limit
+    posture = (
+        f"Posture alone, with the nominal stiffness: {gains.before:.1f} → {gains.posture:.1f} N "
+        f"({share(gains.posture)} less).",
+    )
+    both = "Both" if has_other_postures(report) else "All, as there is no other posture"
     verdict = "meets" if gains.both <= limit else f"is {gains.both / limit:.1f} times"
     return (
         f"Springs alone, in the task's pose: {gains.before:.1f} → {gains.springs:.1f} N "
         f"({share(gains.springs)} less).",
-        f"Posture alone, with the nominal stiffness: {gains.before:.1f} → {gains.posture:.1f} N "
-        f"({share(gains.posture)} less).",
-        f"Both: {gains.before:.1f} → {gains.both:.1f} N ({share(gains.both)} less), which "
+        *(posture if len(report.poses) > 1 else ()),
+        f"{both}: {gains.before:.1f} → {gains.both:.1f} N ({share(gains.both)} less), which "
         f"{verdict} the limit of {limit:g} N.",
         f"Speed: the limit is met at {report.speed_after:.3f} m/s "
         f"({report.speed_before:.3f} m/s before the design).",

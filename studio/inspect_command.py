@@ -42,18 +42,20 @@ def _print_tables(found: Mapping[str, Any]) -> None:
     )
     print_table(
         "Joints",
-        ("joint", "kind", "on", "lower", "upper", "speed", "torque", "motor", "moves [kg]"),
+        ("joint", "kind", "on", "moves [kg]"),
+        [(j["name"], j["kind"], j["parent"], j["mass"]) for j in found["joints"]],
+    )
+    print_table(
+        "Limits (rad, rad/s, N·m; or m, m/s, N)",
+        ("joint", "lower", "upper", "speed", "torque", "motor"),
         [
             (
                 joint["name"],
-                joint["kind"],
-                joint["parent"],
                 joint["lower"],
                 joint["upper"],
                 joint["speed_limit"],
                 joint["torque_limit"],
                 "yes" if joint["motor"] else "no",
-                joint["mass"],
             )
             for joint in found["joints"]
         ],

@@ -93,7 +93,8 @@ class MotionTable:
             reason = str(error).split(";")[0].rstrip(".")
             if self.delimiter != "," and re.search(r"'[-\d]*,\d*'", reason):
                 reason += "; decimals need a point, not a comma"
-            reason = re.sub(r"row (\d+)", lambda m: f"row {int(m[1]) + first - 1}", reason)
+            skipped = first if "columns changed" in reason else first + 1  # NumPy counts both ways
+            reason = re.sub(r"at row (\d+)", lambda m: f"in line {int(m[1]) + skipped}", reason)
             raise MotionFileError(self.path, f"below its first line: {reason}") from None
         if table.size and table.shape[1] != len(self.columns):
             names, numbers = len(self.columns), table.shape[1]

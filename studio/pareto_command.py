@@ -46,13 +46,14 @@ def pareto(
     from .execution import running
     from .output import failures_as_json, print_json
     from .pareto_record import GENERATOR, as_record
-    from .results_folder import replaced_folder, require_replaceable
+    from .results_folder import replaced_folder, require_folder_of, require_replaceable
     from .values import given
 
     overrides = {"impact": given(region=region, speed=speed), "pareto": given(points=points)}
     problem = load_study(study, overrides)
     folder = out or Path("results") / f"{problem.source.stem}_pareto"
     require_replaceable(folder, GENERATOR)
+    require_folder_of(page)
     how = Execution(workers, dask, resume)
     with failures_as_json(json), running(how, folder) as pool:
         report = _search(problem, pool)

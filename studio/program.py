@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 
 from softimpact.simulate import HORIZON, bracket
+from softimpact.simulate.program import STILL
 from softimpact.simulate.zones import Somebody
 from softimpact.symbolic import (
     Contact,
@@ -123,11 +124,11 @@ def _watched(
     if named:
         require_all_move(points, seen)
         return points, seen
-    moves = [i for i, point in enumerate(points) if seen.reach[i] > 0 or point == robot.tip]
+    moves = [i for i, reach in enumerate(seen.reach) if reach > STILL]
     points = tuple(points[i] for i in moves)
-    seen = replace(seen, reach=seen.reach[moves])
-    require_all_move(points, seen)
-    return points, seen
+    if not (seen.reach > STILL).any():
+        raise InvalidValue("motion", "moves no point of the arm; give one in which a joint moves")
+    return points, replace(seen, reach=seen.reach[moves])
 
 
 @contextmanager

@@ -135,10 +135,11 @@ def program(
     from .output import print_json, print_warnings
     from .program import TypedProgram, run_program
     from .program_record import GENERATOR, print_program
-    from .results_folder import replaced_folder, require_replaceable
+    from .results_folder import replaced_folder, require_folder_of, require_replaceable
     from .situation import TypedArm, TypedDrives
     from .typed_motors import TypedMotors
 
+    require_folder_of(report)
     if out is not None:
         require_replaceable(out, GENERATOR)
     how = TypedProgram(

@@ -185,39 +185,42 @@ class CompiledEngine:
                 "point": np.zeros(len(rows)),
                 "status": np.zeros(len(rows)),
             }
+        options = self._options(body, kind, end, horizon)
+        slowed = factor[rows, None] * met.velocity[rows]
+        return dict(self.package.speed_factor(met.q[rows], slowed, allowed, **options))
+
+    def _options(self, body: Somebody, kind: str, end: Motors, horizon: float) -> dict[str, Any]:
         region = body.contact.region
-        return dict(
-            self.package.speed_factor(
-                met.q[rows],
-                factor[rows, None] * met.velocity[rows],
-                allowed,
-                region={
-                    "stiffness": region.stiffness,
-                    "damping": region.damping,
-                    "effective_mass": region.effective_mass,
-                    "hertz_stiffness": body.contact.series_stiffness,
-                },
-                clamped=body.contact.clamped,
-                motors=kind,
-                reaction_time=min(end.reaction_time, 2 * horizon),
-                horizon=horizon,
-                steps=STEPS,
-            )
-        )
+        return {
+            "region": {
+                "stiffness": region.stiffness,
+                "damping": region.damping,
+                "effective_mass": region.effective_mass,
+                "hertz_stiffness": body.contact.series_stiffness,
+            },
+            "clamped": body.contact.clamped,
+            "motors": kind,
+            "reaction_time": min(end.reaction_time, 2 * horizon),
+            "horizon": horizon,
+            "steps": STEPS,
+        }
 
     def _may_press(
         self, met: Passes, rows: NDArray[np.intp], factor: Array, body: Somebody
     ) -> NDArray[np.bool_]:
-        """Return which passes could reach a quasi-static limit, which C does not know."""
-        pressing = body.limits.quasi_static
+        """Return which passes might reach a quasi-static limit."""
+        pressing, could = body.limits.quasi_static, np.zeros(len(rows), dtype=bool)
         if pressing is None or pressing.force == np.inf:
-            return np.zeros(len(rows), dtype=bool)
+            return could
         until, allowed = max(self.horizon, PRESSED_UNTIL), self._allowed(pressing.force)
-        could = np.zeros(len(rows), dtype=bool)
         for kind, end in self.ends.items():
             left = np.flatnonzero(~could)
-            found = self._call(met, rows[left], factor, allowed, body, kind, end, until)
-            could[left] = (found["factor"] < 1) | (found["status"] != OK)
+            at = rows[left]
+            if not at.size:
+                continue
+            slowed = factor[at, None] * met.velocity[at]
+            options = self._options(body, kind, end, until)
+            could[left] = self.package.may_press(met.q[at], slowed, allowed, **options)
         return could
 
 

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -34,6 +36,12 @@ def replaced_folder(folder: Path, generator: str) -> Iterator[Path]:
 def require_replaceable(folder: Path, generator: str) -> None:
     """Raise ForeignFolder or FolderNotWritable if results could not be written."""
     place.require_replaceable(folder.resolve(), partial(_require_own, generator))
+
+
+def require_folder_of(file: Path | None) -> None:
+    """Raise FileNotFoundError before a long search if a file could not be written after it."""
+    if file is not None and not file.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(file))
 
 
 def _require_own(generator: str, folder: Path) -> None:

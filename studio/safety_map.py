@@ -182,7 +182,6 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         raise InvalidValue("q", f"is where no map can begin: {told[0]}")
     found, assumed = bracket(model, motors, reaction)
     ends = {kind: end for kind, end in found.items() if isinstance(end, Motors)}
-    _require_rotors(model, ends, horizon)
     ground = _ground(model, q, over, how)
     if asked is None:
         direction, guess = worst_directions(model, ground.postures, body, ends, seen)
@@ -222,20 +221,6 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         hold=ground.hold,
         warnings=(*arm.warnings, *told, *assumed, *_cautions(model, body, len(rows), direction)),
     )
-
-
-def _require_rotors(model: ImpactModel, ends: Mapping[str, Motors], horizon: float) -> None:
-    """Refuse rotors of nothing behind springs where motors are free or let go."""
-    rotors = np.array(model.drives.rotors, dtype=float).ravel()
-    none = np.array(model.drives.elastic) & np.array(model.robot.actuated) & (rotors == 0)
-    led = all(end.kind == "driven" and end.reaction_time >= horizon for end in ends.values())
-    if none.any() and not led:
-        name = model.robot.joint_names[int(none.argmax())]
-        raise InvalidValue(
-            "rotor_inertia",
-            f"of joint '{name}' is 0, which no motor behind a spring has; give it, or choose "
-            "driven motors with --reaction-time inf",
-        )
 
 
 def _body(how: TypedMap) -> Contact:

@@ -41,7 +41,7 @@ def second_opinions(robot: Robot, path: Path) -> dict[str, float | str]:
             continue
         except Exception as error:  # whatever a reader of files runs into
             words = " ".join(str(error).split()) or type(error).__name__
-            found[name] = f"does not read it: {words[:200]}"
+            found[name] = f"does not read it: {words[:80]}"
             continue
         mine = ours + np.diag(robot.armature) if name == "MuJoCo" else ours
         scale = max(float(abs(theirs).max(initial=0.0)), np.finfo(float).tiny)

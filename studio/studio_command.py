@@ -18,9 +18,9 @@ PAGE = "index.html"
 What = Annotated[
     str,
     typer.Argument(
-        metavar="[MODEL|STUDY|RESULTS]",
+        metavar="MODEL|STUDY|RESULTS",
         help="Built-in robot, model file, study (.toml), or folder that design, pareto, program "
-        "or map wrote.",
+        "or map wrote; default the Panda.",
         show_default=False,
     ),
 ]
@@ -41,9 +41,10 @@ def studio(
     json: o.Json = False,
 ) -> None:
     """Explore impacts in the browser: posture, direction, springs, motors; the C computes there."""
+    import tempfile
     import webbrowser
 
-    from platformdirs import user_cache_path
+    from softimpact.toolchain import cache_folder
 
     from .output import print_json, print_warnings, say
     from .page.opened import opened
@@ -57,7 +58,7 @@ def studio(
     shown = opened(what, None if asked == TypedArm(what) else asked)
     text = page_of(shown)
     print_warnings(shown.warnings)
-    folder = out or user_cache_path("softimpact") / "studio"
+    folder = out or (cache_folder() or Path(tempfile.mkdtemp())) / "studio"
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(text, fresh, what)
     page = (folder / PAGE).resolve()

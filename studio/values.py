@@ -23,6 +23,8 @@ def vector(field: str, text: str, length: int | None = None) -> list[float]:
         length: that it must have, if any.
     """
     values = _parsed(field, text)
+    if isinstance(values, int | float) and not isinstance(values, bool):
+        values = [values]  # of an arm with one joint
     if not isinstance(values, list):
         raise InvalidValue(field, f"needs a JSON list of numbers such as [0, 0.5], not '{text}'")
     numbers = [_number(field, value, f"entry {i + 1}") for i, value in enumerate(values)]

@@ -1,5 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The physics as CasADi expressions: robot, dynamics, compliance, reduction, impact factors."""
+"""The physics as CasADi expressions.
+
+- ``robot``: what a robot is, reading files, welding, payload
+- ``dynamics``: kinematics, mass matrix, bias, potential energy, rest
+- ``loops``: closed chains and couplings
+- ``impact``: motors, springs, the linear model, its reductions
+- ``body``: what is hit, and what it may bear
+- ``factors``: GIAF and its family
+
+``docs/python.md`` lists the names so grouped, each with a line.
+"""
 
 from .body.bodies import body_region
 from .body.contact import Contact

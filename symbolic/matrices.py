@@ -3,18 +3,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 LEAST_SQUARE = float(np.finfo(np.float32).tiny)
 """Keeps the share of a row of zeros finite; it is lost in the square of any other."""
 
 Matrix = Any
-"""A CasADi matrix: SX, MX or DM. CasADi's types have no name for whichever of them is given."""
+"""A CasADi matrix: SX, MX or DM, in formulas that mix them with each other and with numbers.
+
+CasADi's types have no common base that can be calculated with, so a checker learns nothing here;
+public functions of a robot say by overloads that they return the kind they are given (``Kind``),
+and DM for ``Numbers``.
+"""
+
+Kind = TypeVar("Kind", ca.SX, ca.MX, ca.DM)
+"""The kind of matrix that is given, and returned."""
+
+Numbers = Sequence[float] | NDArray[Any]
+"""Numbers that become a DM."""
 
 
 @lru_cache(maxsize=256)
@@ -31,7 +43,8 @@ def on_scalars(build: Callable[..., Matrix], key: tuple[Any, ...], *arguments: M
     SX arguments enter the expression itself; MX and DM arguments go through a cached Function.
     """
     if any(isinstance(argument, ca.SX) for argument in arguments):
-        return build(*key, *arguments)
+        found = build(*key, *arguments)
+        return found if isinstance(found, ca.SX) else ca.SX(found)  # what depends on no argument
     columns = [
         argument if isinstance(argument, ca.MX) else ca.DM(argument) for argument in arguments
     ]

@@ -7,6 +7,7 @@ import importlib
 import math
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from html import escape
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -56,6 +57,18 @@ class Record:
             raise NeedsPackage("a data frame", "pandas") from None
         return pandas.DataFrame(self.rows())
 
+    def _repr_html_(self) -> str:
+        """Return ``rows`` as a table, which notebooks show."""
+        rows = self.rows()
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        heads = "".join(f"<th>{escape(name)}</th>" for name in names)
+        lines = "".join(
+            f"<tr>{''.join(f'<td>{_shown(row.get(name))}</td>' for name in names)}</tr>"
+            for row in rows
+        )
+        title = f"<caption>{escape(type(self).__name__)}</caption>"
+        return f"<table>{title}<thead><tr>{heads}</tr></thead><tbody>{lines}</tbody></table>"
+
     def plot(self, axes: Any = None) -> Any:
         """Draw the result, see ``softimpact.plots``.
 
@@ -67,6 +80,13 @@ class Record:
         """
         # by name, as nothing here may depend on what draws
         return importlib.import_module("softimpact.plots").plot(self, axes)
+
+
+def _shown(cell: Any) -> str:
+    """Return a cell of HTML: numbers to four digits, a dash for what does not apply."""
+    if cell is None:
+        return "–"
+    return f"{cell:.4g}" if isinstance(cell, float) else escape(str(cell))
 
 
 def plain(value: Any) -> Any:

@@ -24,7 +24,7 @@ typedef struct {
     robot_real b[ROBOT_N];
 } scaled;
 
-static void scale(const robot_arrival *arrival, const robot_params *p, scaled *out)
+static void scale_model(const robot_arrival *arrival, const robot_params *p, scaled *out)
 {
     robot_real soft[ROBOT_N];
     for (int i = 0; i < ROBOT_N; ++i) {
@@ -78,7 +78,7 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
 {
     scaled s;
     robot_square C;
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     for (int i = 0; i < ROBOT_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -98,13 +98,13 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     robot_square Y; /* columns of L_G^-1 L' */
     robot_square C;
     robot_real z[ROBOT_N];
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     if (!robot_cholesky(ROBOT_N, s.S)) {
         return ROBOT_SINGULAR;
     }
     for (int i = 0; i < ROBOT_N; ++i) {
         z[i] = s.b[i];
-        robot_real stiff[ROBOT_N];
+        robot_real stiff[ROBOT_N] = {ROBOT_R(0.0)};
         for (int l = i; l < ROBOT_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

@@ -127,7 +127,7 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
             const robot_real bound = robot_bound(impact);
             if (bound > ROBOT_R(0.0) && s.low < limit/bound) {
                 s.low = ROBOT_FMIN(limit/bound, found->speed > ROBOT_R(0.0) ? found->speed : ROBOT_REAL_MAX);
-                s.low_force = s.low*bound;
+                s.low_force = ROBOT_FMIN(s.low*bound, limit);
             }
             if (!(s.low > ROBOT_R(0.0))) {
                 return ROBOT_UNRESOLVED;

@@ -38,10 +38,10 @@ typedef struct {
     int point; /* of impact.arrival, -1 for none */
     robot_real speed; /* of that point, m/s */
     robot_speed_factor_over_t found;
-} search;
+} least_factor;
 
-static int start(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
-    const robot_params *p, search *s)
+static int begin(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
+    const robot_params *p, least_factor *s)
 {
     const int status = robot_check_finite(dq, ROBOT_JOINTS);
     for (int i = 0; i < ROBOT_N; ++i) {
@@ -58,7 +58,7 @@ static int start(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOI
 
 /* Slows down until one point keeps the limit of one region. */
 static int watch(const robot_region *region, const robot_params *p, int point, robot_real limit,
-    int which, search *s)
+    int which, least_factor *s)
 {
     if (s->point != point) {
         robot_real v[3];
@@ -89,7 +89,7 @@ static int watch(const robot_region *region, const robot_params *p, int point, r
 }
 
 /* Status of what was found. */
-static int said(const search *s)
+static int said(const least_factor *s)
 {
     const robot_real numbers[3] = {s->found.factor, s->found.speed, s->found.force};
     if (!(robot_check_share(numbers, 1) == ROBOT_OK && robot_all_finite(numbers, 3))) {
@@ -104,13 +104,13 @@ int robot_speed_factor(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROB
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return ROBOT_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = robot_check_positive(&limit, 1);
     if (status == ROBOT_OK) {
         status = robot_check_impact(region, p);
     }
     if (status == ROBOT_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < ROBOT_POINTS && status == ROBOT_OK; ++point) {
         status = watch(region, p, point, limit, point, &s);
@@ -135,7 +135,7 @@ int robot_speed_factor_over(const robot_real q[ROBOT_JOINTS], const robot_real d
         || out == NULL) {
         return ROBOT_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = count > 0 ? ROBOT_OK : ROBOT_OUT_OF_RANGE;
     for (int i = 0; i < count && status == ROBOT_OK; ++i) {
         status = robot_check_impact(&regions[i], p);
@@ -147,7 +147,7 @@ int robot_speed_factor_over(const robot_real q[ROBOT_JOINTS], const robot_real d
         }
     }
     if (status == ROBOT_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < ROBOT_POINTS; ++point) { /* modes of a point serve all its regions */
         for (int i = 0; i < count && status == ROBOT_OK; ++i) {

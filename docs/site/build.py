@@ -19,6 +19,9 @@ from pathlib import Path
 
 from latex2mathml.converter import convert
 
+from softimpact.studio.page.opened import opened
+from softimpact.studio.page.write import page_of
+
 SITE = Path(__file__).resolve().parent
 DOCS = SITE.parent
 ROOT = DOCS.parent
@@ -41,6 +44,10 @@ FROM_ROOT = {
     "CONTRIBUTING.md": "contributing.md",
 }
 """Pages of the root folder, and what the site calls them."""
+
+
+TRIED = "panda.html"
+"""The interactive page on the site."""
 
 
 def with_formulas(text: str) -> str:
@@ -157,12 +164,23 @@ def assemble(folder: Path) -> None:
     (folder / "zensical.toml").write_text(settings, encoding="utf-8")
 
 
+def try_it(pages: Path) -> None:
+    """Write the interactive page of a study beside the page that explains it, and lead there."""
+    study = ROOT / "robots" / "studies" / "panda_24_poses.toml"
+    (pages / TRIED).write_text(page_of(opened(str(study))), encoding="utf-8")
+    text = (pages / "studio.md").read_text(encoding="utf-8")
+    before, picture, after = text.partition("![The page")
+    led = f"**[Try it]({TRIED})**: the Panda in its 24 poses.\n\n"
+    (pages / "studio.md").write_text(before + led + picture + after, encoding="utf-8")
+
+
 def main() -> int:
     """Build the site; return an exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "site")
     folder = parser.parse_args().out
     assemble(folder)
+    try_it(folder / "pages")
     command = [sys.executable, "-m", "zensical", "build", "--strict", "--clean"]
     done = subprocess.run(command, cwd=folder, check=False)
     if done.returncode == 0:

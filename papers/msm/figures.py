@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from textwrap import fill
 
 import matplotlib as mpl
 import numpy as np
@@ -34,6 +35,9 @@ Drawing = tuple[str, str, Callable[[], Figure]]
 
 STYLES = {"full": "-", "two_mass": "--", "chain_controlled": ":"}
 MODEL_COLOURS = {"full": "C0", "two_mass": "C3", "chain_controlled": "C2"}
+TITLE = 9
+"""Size of figures' titles [pt], of which some 12 letters take an inch."""
+
 STIFFNESS_AXIS = "joint stiffness $k_s$ [N·m/rad]"
 
 STYLE = {
@@ -55,7 +59,10 @@ def draw(results: Results, folder: Path) -> dict[str, str]:
     drawn: dict[str, str] = {}
     with mpl.rc_context(STYLE):
         for name, caption, build in _figures(results):
-            build().savefig(folder / name)
+            figure = build()
+            letters = int(12 * figure.get_figwidth())
+            figure.suptitle(fill(caption, letters), fontsize=TITLE)
+            figure.savefig(folder / name)
             drawn[name] = caption
     return drawn
 
@@ -184,10 +191,11 @@ def _time_figure(results: Results, name: str) -> Figure:
         axes.set_xlim(0, 1e3 * max(t.time[-1] for t in models.values()))
     for axes in panels[len(traces) :]:
         axes.remove()
-    figure.supxlabel("time since first touch [ms]", fontsize=9)
+    for axes in figure.axes[-3:]:  # one label of the figure would lie under its legend
+        axes.set_xlabel("time since first touch [ms]")
     figure.supylabel("contact force [N]", fontsize=9)
     handles = [_key(rung, MODEL_COLOURS[rung]) for rung in COMPARED]
-    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
     return figure
 
 

@@ -46,7 +46,8 @@ def ladder_figure(results: Results, region: str = "head") -> Figure:
     names = list(results.sweeps)
     columns = min(3, len(names))
     rows = -(-len(names) // columns)
-    figure = Figure(figsize=(3.1 * columns, 2.6 * rows), layout="constrained")
+    width = 3.1 * max(columns, 2)  # the legend's
+    figure = Figure(figsize=(width, 2.6 * rows + 0.6), layout="constrained")
     for i, name in enumerate(names):
         axes = figure.add_subplot(rows, columns, i + 1)
         points = results.sweeps[name]
@@ -57,9 +58,12 @@ def ladder_figure(results: Results, region: str = "head") -> Figure:
         axes.set_ylim(bottom=0)
     for drawn, rung in zip(figure.axes[0].lines, LINES, strict=True):
         drawn.set_label(LADDER[rung].title)
-    figure.supxlabel("joint stiffness $k_s$ [N·m/rad]", fontsize=9)
+    for axes in figure.axes[-columns:]:  # one label of the figure would lie under its legend
+        axes.set_xlabel("joint stiffness $k_s$ [N·m/rad]")
     figure.supylabel(f"largest force of the first contact, {region} [N]", fontsize=9)
-    figure.legend(handles=figure.axes[0].lines, loc="outside upper center", ncols=3)
+    figure.legend(
+        handles=figure.axes[0].lines, loc="outside lower center", ncols=min(columns + 1, 3)
+    )
     return figure
 
 
@@ -81,5 +85,5 @@ def error_figure(results: Results) -> Figure:
         axes.grid(False, axis="x")
         axes.set_ylabel(f"mean error, {region} [%]")
     handles = [Patch(color=colour, label=LADDER[rung].title) for rung, colour in BARS.items()]
-    figure.legend(handles=handles, loc="outside upper center", ncols=3)
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure

@@ -36,7 +36,7 @@ def figure_of_forces(report: DesignReport) -> Figure:
     axes = figure.add_subplot()
     winner, worst = report.design.winner, report.worst.candidate.pose.name
     lines = [
-        _draw(axes, report.worst_history, BEFORE, f"worst: {worst}, nominal springs"),
+        _draw(axes, report.worst_history, BEFORE, _before_in_words(report, worst)),
         _draw(
             axes,
             report.winner_history,
@@ -65,6 +65,11 @@ def _message(report: DesignReport) -> str:
     return (
         f"The winner's {force:.0f} N {times}; the worst pose has {report.worst_history.peak:.0f} N"
     )
+
+
+def _before_in_words(report: DesignReport, worst: str) -> str:
+    first = "before" if len(report.poses) == 1 else "worst"
+    return f"{first}: {worst}, nominal springs"
 
 
 def until_apart(history: ImpactHistory) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from softimpact.optimize import Gains
-from softimpact.studio.design_report import DesignReport
+from softimpact.studio.design_report import DesignReport, has_other_postures
 
 from .style import (
     BEFORE,
@@ -34,32 +34,48 @@ def figure_of_gains(report: DesignReport, gains: Gains) -> Figure:
     forces, speeds = figure.subplots(1, 2, width_ratios=(2, 1.2))
     limit = _draw_forces(forces, report, gains)
     asked = _draw_speeds(speeds, report)
-    figure.suptitle(f"{_message(gains)}\n{setting(report)}", fontsize=TEXT + 1)
+    figure.suptitle(f"{_message(report, gains)}\n{setting(report)}", fontsize=TEXT + 1)
     legend_below(figure, [limit, asked], columns=2)
     return figure
 
 
-def _message(gains: Gains) -> str:
+def _message(report: DesignReport, gains: Gains) -> str:
     """Return what the design saves, and what of it the springs alone do."""
     saved = 1 - gains.both / gains.before
     if not saved > 0:
         return "The design saves no force"
-    return (
-        f"The design saves {saved:.1%} of the force; springs alone "
-        f"{1 - gains.springs / gains.before:.1%}, posture alone "
-        f"{1 - gains.posture / gains.before:.1%}"
-    )
+    alone = [
+        f"{name} alone {1 - force / gains.before:.1%}"
+        for name, force in parts_of(report, gains).items()
+        if name in ("springs", "posture")
+    ]
+    if not has_other_postures(report):
+        return f"The design saves {saved:.1%} of the force, all of it by springs"
+    return f"The design saves {saved:.1%} of the force; {', '.join(alone)}"
+
+
+def parts_of(report: DesignReport, gains: Gains) -> dict[str, float]:
+    """Return forces by what of the design they are of [N]; posture only where there are others."""
+    parts = {"before": gains.before, "springs": gains.springs}
+    if len(report.poses) > 1:
+        parts["posture"] = gains.posture
+    if has_other_postures(report):
+        parts["both"] = gains.both
+    return parts
+
+
+COLOUR = {"before": BEFORE, "springs": SPRINGS, "posture": SKY, "both": BOTH}
 
 
 def _draw_forces(axes: Any, report: DesignReport, gains: Gains) -> Any:
-    heights = [gains.before, gains.springs, gains.posture, gains.both]
-    names = ["before", "springs", "posture", "both"]
+    parts = parts_of(report, gains)
+    names, heights = list(parts), list(parts.values())
     shares = [force / gains.before - 1 for force in heights]
     labels = [f"{heights[0]:.1f} N"] + [
         f"{force:.1f} N\n{_percent(share)}"
         for force, share in zip(heights[1:], shares[1:], strict=True)
     ]
-    _bars(axes, names, heights, [BEFORE, SPRINGS, SKY, BOTH], labels)
+    _bars(axes, names, heights, [COLOUR[name] for name in names], labels)
     axes.axhline(report.limit, color="white", linewidth=4.5)  # sets it off from the bars
     label = limit_in_words(report)
     line = axes.axhline(report.limit, color=LIMIT, linewidth=1.8, linestyle="--", label=label)
@@ -77,7 +93,9 @@ def _percent(share: float) -> str:
 def _draw_speeds(axes: Any, report: DesignReport) -> Any:
     heights = [report.speed_before, report.speed_after]
     speed = report.study.speed
-    _bars(axes, ["before", "both"], heights, [BEFORE, BOTH], [f"{v:.3f} m/s" for v in heights])
+    after = "both" if has_other_postures(report) else "springs"
+    colours = [BEFORE, COLOUR[after]]
+    _bars(axes, ["before", after], heights, colours, [f"{v:.3f} m/s" for v in heights])
     label = f"speed of the study {speed:g} m/s"
     line = axes.axhline(speed, color=BLACK, linewidth=1.5, linestyle=":", label=label)
     axes.set_ylim(0.0, 1.18 * max(*heights, speed))

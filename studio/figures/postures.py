@@ -71,7 +71,9 @@ def figure_of_postures(report: DesignReport) -> Figure:
     _draw_in_space(figure.add_subplot(grid[0], projection=Axes3D.name), drawing)
     for column, view in enumerate(VIEWS):
         _draw_flat(figure.add_subplot(grid[1 + column]), drawing, view)
-    title = f"Postures of all poses; contact at {report.study.model.tip}\n{setting(report)}"
+    one = len(report.poses) == 1
+    whose = "Posture as given and as designed" if one else "Postures of all poses"
+    title = f"{whose}; contact at {report.study.model.tip}\n{setting(report)}"
     figure.suptitle(title, fontsize=TEXT + 1)
     legend_below(figure, _legend(drawing), columns=5)
     return figure
@@ -113,9 +115,11 @@ def _sticks(report: DesignReport) -> tuple[Stick, ...]:
     wide = {"linewidth": 5.0, "markersize": 9.0, "color": BEFORE, "zorder": 3}
     strong = {"linewidth": 2.5, "markersize": 6.0, "color": BOTH, "zorder": 4}
     name = f"{winner_in_words(report)} ({winner.mode})"
+    alone = len(given) == 1
+    before = f"as given: {worst.pose.name}" if alone else f"worst: {worst.pose.name}"
     return (
-        *(Stick(points, f"all {len(given)} poses", faint) for points in others),
-        Stick(last, f"worst: {worst.pose.name}", {**wide, "markeredgecolor": BLACK}),
+        *(Stick(points, f"all {len(given)} poses", faint) for points in others if not alone),
+        Stick(last, before, {**wide, "markeredgecolor": BLACK}),
         Stick(first, name, {**strong, "markeredgecolor": BLACK}),
     )
 

@@ -61,12 +61,17 @@ def figure_of_ranking(report: DesignReport) -> Figure:
 
 def _message(report: DesignReport) -> str:
     """Return where the poses' forces lie before and after."""
-    before = [pose.result.force_before for pose in report.poses]
-    after = [pose.best.force for pose in report.poses]
-    return (
-        f"Peak force of {len(before)} poses: {min(before):.0f} to {max(before):.0f} N before, "
-        f"{min(after):.0f} to {max(after):.0f} N after the design"
-    )
+
+    def ends(forces: list[float]) -> str:
+        digits = 1 if len(forces) == 1 else 0
+        low, high = f"{min(forces):.{digits}f}", f"{max(forces):.{digits}f}"
+        return low if low == high else f"{low} to {high}"
+
+    before = ends([pose.result.force_before for pose in report.poses])
+    after = ends([pose.best.force for pose in report.poses])
+    poses = report.poses
+    whose = poses[0].result.candidate.pose.name if len(poses) == 1 else f"{len(poses)} poses"
+    return f"Peak force of {whose}: {before} N before, {after} N after the design"
 
 
 def _range(report: DesignReport) -> tuple[float, float]:
@@ -74,7 +79,7 @@ def _range(report: DesignReport) -> tuple[float, float]:
     forces = [pose.result.force_before for pose in report.poses]
     forces += [o.force for mode in MARKERS for o in _outcomes(report, mode) if o and o.solved]
     low, high = min(forces), max(forces)
-    span = max(high - low, 0.01 * high)
+    span = max(high - low, (0.01 if len(report.poses) > 1 else 0.5) * high)
     if low - span <= report.limit <= high + span:
         low, high = min(low, report.limit), max(high, report.limit)
     return low - 0.06 * span, high + 0.06 * span

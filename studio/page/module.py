@@ -5,17 +5,17 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import tempfile
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-from platformdirs import user_cache_path
-
 import softimpact
 from softimpact.codegen import wasm
 from softimpact.codegen.errors import NoCrossCompiler
 from softimpact.codegen.render import Package, render
+from softimpact.toolchain import cache_folder
 
 from .package import PREFIX
 
@@ -39,18 +39,25 @@ def module_of(package: Package) -> bytes:
     files = sources_of(package)
     content = json.dumps([softimpact.__version__, version("ziglang"), wasm.FLAGS, files])
     key = hashlib.sha256(content.encode()).hexdigest()[:32]
-    module = user_cache_path("softimpact") / "page" / f"{key}.wasm"
+    cache = cache_folder()
+    if cache is None:  # a user without a home
+        return _compiled(files)
+    module = cache / "page" / f"{key}.wasm"
     if not module.is_file():
         module.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=module.parent) as made:
-            for path, text in files.items():
-                target = Path(made, path)
-                target.parent.mkdir(exist_ok=True)
-                target.write_text(text, encoding="utf-8")
-            fresh = Path(made, "page.wasm")
-            fresh.write_bytes(wasm.web_assembly(made))
-            fresh.replace(module)
+        fresh = module.with_suffix(f".{os.getpid()}")
+        fresh.write_bytes(_compiled(files))
+        fresh.replace(module)
     return module.read_bytes()
+
+
+def _compiled(files: dict[str, str]) -> bytes:
+    with tempfile.TemporaryDirectory() as made:
+        for path, text in files.items():
+            target = Path(made, path)
+            target.parent.mkdir(exist_ok=True)
+            target.write_text(text, encoding="utf-8")
+        return wasm.web_assembly(made)
 
 
 def sources_of(package: Package) -> dict[str, str]:

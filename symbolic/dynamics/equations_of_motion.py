@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import product
+from typing import overload
 
 import casadi as ca
 
-from ..matrices import Matrix, on_scalars
+from ..matrices import Kind, Matrix, Numbers, on_scalars
 from ..robot.joint_frames import customised
 from ..robot.rigid import Array
 from ..robot.robot import BASE, Joint, JointKind, Robot
@@ -48,6 +49,10 @@ def _felt_by(joint: Joint, force: Matrix, moment: Matrix) -> Matrix:
     return moment[2] if joint.kind is JointKind.HINGE else force[2]
 
 
+@overload
+def mass_matrix(robot: Robot, q: Kind) -> Kind: ...
+@overload
+def mass_matrix(robot: Robot, q: Numbers) -> ca.DM: ...
 def mass_matrix(robot: Robot, q: Matrix) -> Matrix:
     """Return the links' mass matrix M(q), n×n, without rotors; tendons' inertias count as links.
 
@@ -82,6 +87,10 @@ def _mass_matrix(robot: Robot, q: Matrix) -> Matrix:
     return ca.densify(M)
 
 
+@overload
+def potential_energy(robot: Robot, q: Kind, gravity: Gravity = STANDARD_GRAVITY) -> Kind: ...
+@overload
+def potential_energy(robot: Robot, q: Numbers, gravity: Gravity = STANDARD_GRAVITY) -> ca.DM: ...
 def potential_energy(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
     """Return the potential energy [J] of gravity and of the springs given in the robot's file.
 
@@ -117,6 +126,12 @@ def _potential_energy(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> Ma
     return energy
 
 
+@overload
+def stiffness_of_potential(robot: Robot, q: Kind, gravity: Gravity = STANDARD_GRAVITY) -> Kind: ...
+@overload
+def stiffness_of_potential(
+    robot: Robot, q: Numbers, gravity: Gravity = STANDARD_GRAVITY
+) -> ca.DM: ...
 def stiffness_of_potential(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
     """Return the Hessian ∂²V/∂q² of the potential energy, n×n (MSM Eq. 45)."""
     return on_scalars(_potential_hessian, (customised(robot), tuple(gravity)), q)
@@ -129,6 +144,10 @@ def _potential_hessian(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> M
     return ca.substitute(ca.densify(hessian), symbol, q)
 
 
+@overload
+def gravity_torques(robot: Robot, q: Kind, gravity: Gravity = STANDARD_GRAVITY) -> Kind: ...
+@overload
+def gravity_torques(robot: Robot, q: Numbers, gravity: Gravity = STANDARD_GRAVITY) -> ca.DM: ...
 def gravity_torques(robot: Robot, q: Matrix, gravity: Gravity = STANDARD_GRAVITY) -> Matrix:
     """Return the gradient ∂V/∂q of the potential energy, length n [N·m, N]."""
     return on_scalars(_potential_gradient, (customised(robot), tuple(gravity)), q)
@@ -141,6 +160,18 @@ def _potential_gradient(robot: Robot, gravity: tuple[float, ...], q: Matrix) -> 
     return ca.substitute(ca.densify(gradient), symbol, q)
 
 
+@overload
+def bias_torques(
+    robot: Robot, q: Kind, velocity: Kind | Numbers, gravity: Gravity = STANDARD_GRAVITY
+) -> Kind: ...
+@overload
+def bias_torques(
+    robot: Robot, q: Numbers, velocity: Kind, gravity: Gravity = STANDARD_GRAVITY
+) -> Kind: ...
+@overload
+def bias_torques(
+    robot: Robot, q: Numbers, velocity: Numbers, gravity: Gravity = STANDARD_GRAVITY
+) -> ca.DM: ...
 def bias_torques(
     robot: Robot, q: Matrix, velocity: Matrix, gravity: Gravity = STANDARD_GRAVITY
 ) -> Matrix:

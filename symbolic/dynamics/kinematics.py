@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import overload
 
 import casadi as ca
 import numpy as np
 
 from ..errors import WrongLength
-from ..matrices import Matrix, on_scalars
+from ..matrices import Kind, Matrix, Numbers, on_scalars
 from ..robot.joint_frames import customised
 from ..robot.rigid import Array
 from ..robot.robot import BASE, Joint, JointKind, Robot
@@ -142,6 +143,10 @@ def _frame_pose(robot: Robot, name: str, q: Matrix) -> Matrix:
     return ca.horzcat(ca.densify(rotation), ca.densify(position))
 
 
+@overload
+def frame_jacobian(robot: Robot, frame: str, q: Kind) -> Kind: ...
+@overload
+def frame_jacobian(robot: Robot, frame: str, q: Numbers) -> ca.DM: ...
 def frame_jacobian(robot: Robot, frame: str, q: Matrix) -> Matrix:
     """Return the 6×n Jacobian of a frame: velocity of its origin [m/s], then angular [rad/s].
 
@@ -156,6 +161,10 @@ def frame_jacobian(robot: Robot, frame: str, q: Matrix) -> Matrix:
     return on_scalars(_jacobian, (customised(robot), frame, BASE), q)
 
 
+@overload
+def contact_point_jacobian(robot: Robot, frame: str, q: Kind, axes_of: int = BASE) -> Kind: ...
+@overload
+def contact_point_jacobian(robot: Robot, frame: str, q: Numbers, axes_of: int = BASE) -> ca.DM: ...
 def contact_point_jacobian(robot: Robot, frame: str, q: Matrix, axes_of: int = BASE) -> Matrix:
     """Return the translational 3×n Jacobian J of a frame's origin: v = J q̇ (GIAF Eq. 1).
 
@@ -209,6 +218,10 @@ def _placed_jacobian(robot: Robot, q: Matrix, place: Matrix, moved_by: Matrix) -
     return ca.horzcat(*columns)
 
 
+@overload
+def direction_jacobian(robot: Robot, frame: str, q: Kind, direction: Kind | Numbers) -> Kind: ...
+@overload
+def direction_jacobian(robot: Robot, frame: str, q: Numbers, direction: Numbers) -> ca.DM: ...
 def direction_jacobian(robot: Robot, frame: str, q: Matrix, direction: Matrix) -> Matrix:
     """Return the row J_c = nᵀJ (1×n) of a frame's origin along n: ẋ_c = J_c q̇ (MSM Eq. 4).
 

@@ -41,7 +41,7 @@ def approach_velocity(model: ImpactModel, q: ArrayLike, direction: ArrayLike) ->
         SingularDirection: the point cannot move along n alone.
     """
     n = np.asarray(direction, dtype=float)
-    J = np.array(model.jacobian(q)) * np.array(model.actuated, dtype=float)
+    J = np.array(model.jacobian(np.asarray(q, dtype=float))) * np.array(model.actuated, dtype=float)
     velocity = np.asarray(np.linalg.pinv(J, rcond=1e-9) @ n)
     if np.linalg.norm(J @ velocity - n) > REACHED:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")

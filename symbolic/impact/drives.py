@@ -146,7 +146,7 @@ def _rotors(robot: Robot, rotor_inertia: PerJoint | None, gear_ratio: PerJoint |
     return np.asarray(rotors * ratio**2)
 
 
-def require_rotors(drives: Drives, names: Sequence[str]) -> None:
+def require_rotors(drives: Drives, names: Sequence[str], driven: Sequence[bool] = ()) -> None:
     """Raise InvalidValue if the numbers have no rotor inertia at an elastic joint.
 
     Motors that keep their speed need none; all others do.
@@ -154,16 +154,17 @@ def require_rotors(drives: Drives, names: Sequence[str]) -> None:
     Args:
         drives: numbers, or symbols of which nothing is known.
         names: of the joints.
+        driven: whether each joint's motor keeps its speed; none does unless given.
     """
     if not isinstance(drives.rotors, ca.DM):
         return
-    rotors = np.array(drives.rotors).ravel()
-    for name, is_elastic, rotor in zip(names, drives.elastic, rotors, strict=True):
-        if is_elastic and rotor == 0:
+    rotors, led = np.array(drives.rotors).ravel(), driven or [False] * len(names)
+    for name, is_elastic, is_led, rotor in zip(names, drives.elastic, led, rotors, strict=True):
+        if is_elastic and not is_led and rotor == 0:
             raise InvalidValue(
                 "rotor_inertia",
                 f"joint '{name}' is elastic, so its rotor needs an inertia greater than 0, unless "
-                "its motor is driven",
+                "it has a motor that is driven",
             )
 
 

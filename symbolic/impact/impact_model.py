@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, overload
 
 import casadi as ca
 import numpy as np
@@ -16,7 +16,7 @@ from ..dynamics.kinematics import contact_point_jacobian, direction_jacobian
 from ..errors import InvalidValue, WrongLength
 from ..factors.contact_mobility import ContactMobility, contact_mobility
 from ..loops.loops import closed_chain, constrained_stiffness, loop_tangent
-from ..matrices import Matrix, symmetric
+from ..matrices import Kind, Matrix, Numbers, symmetric
 from ..robot.rigid import Array, three_numbers
 from ..robot.robot import BASE, Robot, vector_of
 from .chain import Chain, ChainEnd, chain
@@ -82,6 +82,10 @@ class ImpactModel(ByContent):
         """Check that ``values`` has one entry an independent joint; raises WrongLength."""
         return vector_of([self.robot.joint_names[i] for i in self.independent], name, values)
 
+    @overload
+    def mass_matrix(self, q: Kind) -> Kind: ...
+    @overload
+    def mass_matrix(self, q: Numbers) -> ca.DM: ...
     def mass_matrix(self, q: Matrix) -> Matrix:
         """Return the links' mass matrix M (of a closed chain GᵀMG), n×n [kg m²]."""
         return self._congruent(q, mass_matrix(self.robot, q))
@@ -142,8 +146,9 @@ class ImpactModel(ByContent):
         F = self.moving(law)
         stiffness, damping = self.generalised_stiffness(q), self.generalised_damping(q)
         jacobian = self.contact_jacobian(q, direction)
+        driven = self.robot.actuated if law in PRESCRIBED else ()
+        require_rotors(self.drives, self.robot.joint_names, driven)
         if law not in PRESCRIBED:
-            require_rotors(self.drives, self.robot.joint_names)
             return LinearModel(self.generalised_mass(q), stiffness, jacobian, damping)
         if damping is not None:
             damping = damping[F, F]
@@ -180,6 +185,10 @@ class ImpactModel(ByContent):
         """Return the chain of ``order`` masses, see ``softimpact.symbolic.impact.chain``."""
         return chain(self.linear(q, direction), order, end, reorthogonalise=reorthogonalise)
 
+    @overload
+    def jacobian(self, q: Kind, axes_of: int = BASE) -> Kind: ...
+    @overload
+    def jacobian(self, q: Numbers, axes_of: int = BASE) -> ca.DM: ...
     def jacobian(self, q: Matrix, axes_of: int = BASE) -> Matrix:
         """Return the contact point's translational J, 3×n, in the axes of a joint's frame."""
         J = contact_point_jacobian(self.robot, self.tip, q, axes_of)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import overload
 
 import casadi as ca
 import numpy as np
@@ -18,7 +19,7 @@ from ..errors import (
     SingularLoop,
     UnknownName,
 )
-from ..matrices import Matrix
+from ..matrices import Kind, Matrix, Numbers
 from ..robot.constraints import Constraint, Loop
 from ..robot.rigid import Array
 from ..robot.robot import Robot
@@ -77,6 +78,10 @@ def closed_chain(robot: Robot) -> ClosedChain:
     return replace(chain, home=home, independent=chosen, dependent=dependent)
 
 
+@overload
+def loop_gaps(robot: Robot, q: Kind) -> Kind: ...
+@overload
+def loop_gaps(robot: Robot, q: Numbers) -> ca.DM: ...
 def loop_gaps(robot: Robot, q: Matrix) -> Matrix:
     """Return φ(q), how far apart the loops' ends are [m]; equations that always hold are left out.
 
@@ -90,16 +95,28 @@ def loop_gaps(robot: Robot, q: Matrix) -> Matrix:
     return gaps(closed_chain(robot), q)
 
 
+@overload
+def loop_jacobian(robot: Robot, q: Kind) -> Kind: ...
+@overload
+def loop_jacobian(robot: Robot, q: Numbers) -> ca.DM: ...
 def loop_jacobian(robot: Robot, q: Matrix) -> Matrix:
     """Return Φ = ∂φ/∂q, r×n."""
     return gap_jacobian(closed_chain(robot), q)
 
 
+@overload
+def loop_acceleration(robot: Robot, q: Kind, velocity: Kind | Numbers) -> Kind: ...
+@overload
+def loop_acceleration(robot: Robot, q: Numbers, velocity: Numbers) -> ca.DM: ...
 def loop_acceleration(robot: Robot, q: Matrix, velocity: Matrix) -> Matrix:
     """Return Φ̇ q̇, length r: joints that keep the loops closed have Φ q̈ + Φ̇ q̇ = 0."""
     return gap_acceleration(closed_chain(robot), q, velocity)
 
 
+@overload
+def loop_tangent(robot: Robot, q: Kind) -> Kind: ...
+@overload
+def loop_tangent(robot: Robot, q: Numbers) -> ca.DM: ...
 def loop_tangent(robot: Robot, q: Matrix) -> Matrix:
     """Return G = ∂q/∂q_ind along the loops, n×(n−r), for a closed configuration q."""
     return tangent(closed_chain(robot), q)

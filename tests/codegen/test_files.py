@@ -45,7 +45,13 @@ def test_replaces_its_own_package_and_what_it_no_longer_has(tmp_path: Path) -> N
 
 @pytest.mark.parametrize(
     ("name", "text"),
-    [("notes.txt", "mine"), ("src/a.c", "edited"), ("manifest.json", '{"generator": "other"}')],
+    [
+        ("notes.txt", "mine"),
+        ("src/a.c", "edited"),
+        ("manifest.json", '{"generator": "other"}'),
+        ("manifest.json", package("one")["manifest.json"].replace(GENERATOR, "other")),
+        ("manifest.json", "[]"),
+    ],
 )
 def test_refuses_foreign_or_edited_files(tmp_path: Path, name: str, text: str) -> None:
     folder = tmp_path / "p"

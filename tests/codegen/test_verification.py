@@ -72,7 +72,7 @@ def test_fuzzer_finds_nothing(
     checks = ["-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all", "-g"]
     binary = tmp_path / "fuzz"
     run("clang", *generated.flags(real), "-O2", *checks, *sources, "-o", binary, "-lm")
-    said = run(binary, f"-runs={FUZZED}", "-seed=1", "-max_len=400", "-len_control=0",
+    said = run(binary, f"-runs={FUZZED}", "-seed=1", "-max_len=512", "-len_control=0",
                f"-artifact_prefix={tmp_path}/")  # fmt: skip
     assert f"Done {FUZZED} runs" in said
 

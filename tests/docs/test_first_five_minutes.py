@@ -16,7 +16,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "first-five-minutes.md").read_text(encoding="utf-8")
 SECTIONS = dict(re.findall(r"^## (\w+)\b.*?\n(.*?)(?=^## |\Z)", PAGE, re.DOTALL | re.MULTILINE))
-BLOCK = re.compile(r"^```(\w+) ?(\S*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r'^```(\w+)(?: title="(\S+)")?\n(.*?)^```$', re.DOTALL | re.MULTILINE)
 SHIM = """#!{python}
 import sys
 from softimpact.cli import main

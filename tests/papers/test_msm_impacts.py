@@ -107,6 +107,7 @@ def test_largest_error_over_speed(name: str, recomputed: float) -> None:
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_contact_points_arrive_as_told(name: str) -> None:
     model, approach = SCENARIOS[name].at(2e3, speed=0.7)
+    assert approach.link_velocity is not None
     moved = np.array(model.jacobian(approach.q)) @ approach.link_velocity
     assert moved == pytest.approx(approach.direction, abs=1e-12)
     assert approach.speed == 0.7

@@ -206,7 +206,7 @@ def test_joints_of_another_branch_do_not_count() -> None:
         ("--q", "[0, NaN, 0, 0, 0, 0, 0]", "q: entry 2 must be finite, but is nan"),
         ("--q", "[0, 0, Infinity, 0, 0, 0, 0]", "q: entry 3 must be finite, but is inf"),
         ("--q", "[0, 0, 0, 1e999, 0, 0, 0]", "q: entry 4 must be finite, but is inf"),
-        ("--q", "0.3", "q: needs a JSON list"),
+        ("--q", "0.3", "q: has 1 values, but 7 are needed"),
         ("--q", '{"joint1": 0}', "q: needs a JSON list"),
         ("--q", "0, 1, 2", "q: has 3 values, but 7 are needed"),
         ("--q", "0, 1, a", "q: needs a number or a JSON list"),

@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from command_line import run_json
+from pages import well_formed
 
 from softimpact.robots import FOLDER
 
@@ -55,3 +58,23 @@ def test_pareto_panda(tmp_path: Path) -> None:
     ranked = run_json("select", FOLDER / "studies/panda_24_poses.toml")["poses"]
     nominal = next(pose["peak_force"] for pose in ranked if pose["name"] == "q9")
     assert before[1] == pytest.approx(nominal, abs=0.1)
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("notebooks/*.py")), ids=lambda p: p.stem)
+def test_notebooks_run_and_show_their_results(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    cells = re.split(r"^# %%.*$", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    space: dict[str, Any] = {}
+    shown = []
+    for cell in cells:
+        *first, last = ast.parse(cell).body or ast.parse("pass").body
+        exec(compile(ast.Module(first, []), str(path), "exec"), space)
+        if isinstance(last, ast.Expr):
+            shown.append(eval(compile(ast.Expression(last.value), str(path), "eval"), space))
+        else:
+            exec(compile(ast.Module([last], []), str(path), "exec"), space)
+    tables = [x._repr_html_() for x in shown if hasattr(x, "_repr_html_")]
+    assert len(tables) >= 2
+    for table in tables:
+        assert well_formed(table)
+        assert table.count("<tr>") >= 2

@@ -17,7 +17,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from pages import well_formed
 
 from softimpact.optimize.tip_pose import tip_pose
-from softimpact.studio.design_report import DesignReport
+from softimpact.studio.design_report import DesignReport, gains_in_words
 from softimpact.studio.figures import (
     draw_figures,
     figure_of_forces,
@@ -334,3 +334,25 @@ def test_the_report_is_one_page_with_the_answer(panda: DesignReport, tmp_path: P
     assert page.count("<svg ") >= 5
     for joint in panda.study.robot.joint_names:
         assert joint in page
+
+
+def test_an_arm_without_other_postures_shows_none(panda: DesignReport) -> None:
+    """One pose that was held: no bar of posture, no ranking of one, no faint poses."""
+    gains = panda.design.gains
+    assert gains is not None
+    first = panda.poses[0]
+    held = replace(first, result=replace(first.result, free=None))
+    report = replace(panda, poses=(held,))
+    forces, speeds = figure_of_gains(report, gains).axes
+    assert [label.get_text() for label in forces.get_xticklabels()] == ["before", "springs"]
+    assert [label.get_text() for label in speeds.get_xticklabels()] == ["before", "springs"]
+    told = " ".join(gains_in_words(gains, report))
+    assert "Posture alone" not in told
+    assert "All, as there is no other posture" in told
+    name = first.result.candidate.pose.name
+    words = " ".join(_words(figure_of_ranking(report)))
+    assert f"Peak force of {name}: {held.result.force_before:.1f} N before" in words
+    words = " ".join(_words(figure_of_postures(report)))
+    assert "all 1 poses" not in words
+    assert "Posture as given and as designed" in words
+    assert "before: " in " ".join(_words(figure_of_forces(report)))

@@ -175,3 +175,17 @@ ARM = """
   </body>
 </worldbody></mujoco>
 """
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--motors", "driven"], "'q1' is 0, which no motor behind a spring has"),
+        (["--motors", "driven", "--reaction-time", "inf"], "joint 'q2' is elastic"),
+        ([], "'q1' is 0, which no motor behind a spring has"),
+    ],
+)
+def test_motors_of_nothing_behind_springs_are_refused(options: list[str], reason: str) -> None:
+    """Motors that let go move by their own inertia; joints without a motor always do."""
+    where = ("--q", "0,0.4,0,0.3", "--direction", "0,1,0", "--speed", 0.3, "--region", "chest")
+    assert reason in refusal("simulate", "rr", *where, "--joint-stiffness", 1e4, *options)

@@ -213,3 +213,17 @@ def test_the_report_is_one_page_with_the_answer(motion: Path, tmp_path: Path) ->
     assert worst["pressure"] > 0
     assert page.count('<svg class="arm"') == 5
     assert "&#34;faint&#34;" in page
+
+
+def test_a_motion_in_which_nothing_moves(tmp_path: Path) -> None:
+    path = tmp_path / "still.csv"
+    rows = np.array([[0.0, *REST], [1.0, *REST]])
+    header = ",".join(("t", *PANDA.joint_names))
+    np.savetxt(path, rows, delimiter=",", header=header, comments="")
+    told = refusal("program", path, "--model", "panda", "--regions", "hand")
+    assert "motion: moves no point of the arm" in told
+
+
+def test_a_report_without_a_folder_is_refused_first(motion: Path, tmp_path: Path) -> None:
+    told = refusal(*arguments(motion, "hand", "--report", tmp_path / "no" / "page.html"))
+    assert "No such file or directory" in told

@@ -5,10 +5,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import mujoco
+import numpy as np
 import pytest
 from robot_files import two_links, two_links_urdf, urdf_inertial
 
-from softimpact.symbolic import ModelFileError, Robot, arm_of, impact_model, load_robot
+from softimpact.symbolic import (
+    ModelFileError,
+    Robot,
+    arm_of,
+    impact_model,
+    load_robot,
+    mass_matrix,
+)
 
 
 def felt(robot: Robot) -> float:
@@ -110,3 +119,24 @@ def test_names_of_robot_descriptions(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert felt(load_robot("two_links_description")) == pytest.approx(0.473499, abs=1e-6)
     with pytest.raises(ModelFileError, match="cannot fetch it: no network"):
         load_robot("offline_description")
+
+
+@pytest.mark.parametrize("axis", ["1 0 0", "0 0 1"])
+def test_balanced_inertias_are_their_mean(tmp_path: Path, axis: str) -> None:
+    """MJCF's ``balanceinertia``: moments that no body can have become their mean."""
+    path = tmp_path / "thin.xml"
+    path.write_text(
+        "<mujoco><compiler balanceinertia='true'/><worldbody><body>"
+        f"<joint name='turn' axis='{axis}'/>"
+        "<inertial mass='2' pos='0 0 0' diaginertia='.01 .02 .54'/>"
+        "<site name='tip' pos='.1 .1 .1'/></body></worldbody></mujoco>"
+    )
+    robot = load_robot(path, "tip")
+    M = float(mass_matrix(robot, [0.0]))
+    compiled = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(compiled)
+    mujoco.mj_forward(compiled, data)
+    theirs = np.zeros((1, 1))
+    mujoco.mj_fullM(compiled, data, theirs)
+    assert pytest.approx(0.57 / 3) == M
+    assert pytest.approx(theirs[0, 0]) == M

@@ -14,6 +14,7 @@ from random_robots import robots, vectors
 from softimpact.symbolic import (
     FrameNotFound,
     InvalidValue,
+    JointKind,
     Loop,
     Robot,
     SoftImpactError,
@@ -28,6 +29,7 @@ from softimpact.symbolic import (
     lock_joints,
     mass_matrix,
 )
+from softimpact.symbolic.robot.plausibility import implausible
 from softimpact.symbolic.robot.rigid import Array, Inertia
 
 
@@ -218,3 +220,12 @@ def test_points_that_cannot_be(
         panda.with_frame("bruise", "link99", [0, 0, 0])
     with pytest.raises(InvalidValue, match="point: needs three finite numbers"):
         panda.with_frame("bruise", "link5", [0, float("nan"), 0])
+
+
+def test_a_long_slide_is_no_hinge_in_degrees(panda: Robot) -> None:
+    """Rails of 180 m would be odd, but are no mistake of units; a hinge of 180 rad is."""
+    wide = replace(panda.joints[0], lower=-180.0, upper=180.0)
+    hinged = replace(panda, joints=(wide, *panda.joints[1:]))
+    slid = replace(panda, joints=(replace(wide, kind=JointKind.SLIDE), *panda.joints[1:]))
+    assert any("look like degrees (180 rad)" in line for line in implausible(hinged))
+    assert not any("degrees" in line for line in implausible(slid))

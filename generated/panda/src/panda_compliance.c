@@ -24,7 +24,7 @@ typedef struct {
     panda_real b[PANDA_N];
 } scaled;
 
-static void scale(const panda_arrival *arrival, const panda_params *p, scaled *out)
+static void scale_model(const panda_arrival *arrival, const panda_params *p, scaled *out)
 {
     panda_real soft[PANDA_N];
     for (int i = 0; i < PANDA_N; ++i) {
@@ -78,7 +78,7 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
 {
     scaled s;
     panda_square C;
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     for (int i = 0; i < PANDA_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -98,13 +98,13 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     panda_square Y; /* columns of L_G^-1 L' */
     panda_square C;
     panda_real z[PANDA_N];
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     if (!panda_cholesky(PANDA_N, s.S)) {
         return PANDA_SINGULAR;
     }
     for (int i = 0; i < PANDA_N; ++i) {
         z[i] = s.b[i];
-        panda_real stiff[PANDA_N];
+        panda_real stiff[PANDA_N] = {PANDA_R(0.0)};
         for (int l = i; l < PANDA_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

@@ -127,7 +127,7 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
             const panda_real bound = panda_bound(impact);
             if (bound > PANDA_R(0.0) && s.low < limit/bound) {
                 s.low = PANDA_FMIN(limit/bound, found->speed > PANDA_R(0.0) ? found->speed : PANDA_REAL_MAX);
-                s.low_force = s.low*bound;
+                s.low_force = PANDA_FMIN(s.low*bound, limit);
             }
             if (!(s.low > PANDA_R(0.0))) {
                 return PANDA_UNRESOLVED;

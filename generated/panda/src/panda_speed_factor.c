@@ -38,10 +38,10 @@ typedef struct {
     int point; /* of impact.arrival, -1 for none */
     panda_real speed; /* of that point, m/s */
     panda_speed_factor_over_t found;
-} search;
+} least_factor;
 
-static int start(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
-    const panda_params *p, search *s)
+static int begin(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    const panda_params *p, least_factor *s)
 {
     const int status = panda_check_finite(dq, PANDA_JOINTS);
     for (int i = 0; i < PANDA_N; ++i) {
@@ -58,7 +58,7 @@ static int start(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOI
 
 /* Slows down until one point keeps the limit of one region. */
 static int watch(const panda_region *region, const panda_params *p, int point, panda_real limit,
-    int which, search *s)
+    int which, least_factor *s)
 {
     if (s->point != point) {
         panda_real v[3];
@@ -89,7 +89,7 @@ static int watch(const panda_region *region, const panda_params *p, int point, p
 }
 
 /* Status of what was found. */
-static int said(const search *s)
+static int said(const least_factor *s)
 {
     const panda_real numbers[3] = {s->found.factor, s->found.speed, s->found.force};
     if (!(panda_check_share(numbers, 1) == PANDA_OK && panda_all_finite(numbers, 3))) {
@@ -104,13 +104,13 @@ int panda_speed_factor(const panda_real q[PANDA_JOINTS], const panda_real dq[PAN
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return PANDA_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = panda_check_positive(&limit, 1);
     if (status == PANDA_OK) {
         status = panda_check_impact(region, p);
     }
     if (status == PANDA_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < PANDA_POINTS && status == PANDA_OK; ++point) {
         status = watch(region, p, point, limit, point, &s);
@@ -135,7 +135,7 @@ int panda_speed_factor_over(const panda_real q[PANDA_JOINTS], const panda_real d
         || out == NULL) {
         return PANDA_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = count > 0 ? PANDA_OK : PANDA_OUT_OF_RANGE;
     for (int i = 0; i < count && status == PANDA_OK; ++i) {
         status = panda_check_impact(&regions[i], p);
@@ -147,7 +147,7 @@ int panda_speed_factor_over(const panda_real q[PANDA_JOINTS], const panda_real d
         }
     }
     if (status == PANDA_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < PANDA_POINTS; ++point) { /* modes of a point serve all its regions */
         for (int i = 0; i < count && status == PANDA_OK; ++i) {

@@ -54,7 +54,7 @@ static void let_stand(const panda_impact *impact, panda_real contact, bool relea
         swing = PANDA_FMAX(swing, along*along/PANDA_FMAX(modes->squared[i], contact));
     }
     swing *= STANDS*STANDS;
-    phase->active = 0;
+    int active = 0;
     phase->compliance = PANDA_R(0.0);
     phase->reach = PANDA_R(0.0);
     phase->settles = !phase->damped;
@@ -74,10 +74,11 @@ static void let_stand(const panda_impact *impact, panda_real contact, bool relea
             phase->compliance += weight/modes->squared[i];
         } else {
             phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
-            exchange(modes, phase->active, i);
-            ++phase->active;
+            exchange(modes, active < i ? active : i, i); /* it is never more */
+            ++active;
         }
     }
+    phase->active = active < modes->count ? active : modes->count;
 }
 
 /* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
@@ -139,14 +140,14 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
     const panda_real contact = PANDA_FMIN(spring + damper*damper, impact->skin_rate);
     const bool released = phase == &impact->phase[PANDA_LOOSE] && impact->first == PANDA_LED;
     if (impact->gives_way) {
-        const int body = modes->count;
+        const int body = modes->count < PANDA_MODES ? modes->count : PANDA_MODES - 1; /* the former */
         modes->squared[body] = PANDA_R(0.0);
         modes->row[body] = PANDA_R(1.0)/PANDA_SQRT(region->effective_mass);
         modes->start[body] = PANDA_R(0.0);
         for (int k = 0; k < PANDA_SYSTEM; ++k) {
             modes->shape[body][k] = PANDA_R(0.0);
         }
-        ++modes->count;
+        modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
     let_stand(impact, contact, released, phase);

@@ -24,7 +24,7 @@ typedef struct {
     rmin_real b[RMIN_N];
 } scaled;
 
-static void scale(const rmin_arrival *arrival, const rmin_params *p, scaled *out)
+static void scale_model(const rmin_arrival *arrival, const rmin_params *p, scaled *out)
 {
     rmin_real soft[RMIN_N];
     for (int i = 0; i < RMIN_N; ++i) {
@@ -78,7 +78,7 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
 {
     scaled s;
     rmin_square C;
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     for (int i = 0; i < RMIN_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -98,13 +98,13 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     rmin_square Y; /* columns of L_G^-1 L' */
     rmin_square C;
     rmin_real z[RMIN_N];
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     if (!rmin_cholesky(RMIN_N, s.S)) {
         return RMIN_SINGULAR;
     }
     for (int i = 0; i < RMIN_N; ++i) {
         z[i] = s.b[i];
-        rmin_real stiff[RMIN_N];
+        rmin_real stiff[RMIN_N] = {RMIN_R(0.0)};
         for (int l = i; l < RMIN_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

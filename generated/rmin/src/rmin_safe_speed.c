@@ -127,7 +127,7 @@ int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real l
             const rmin_real bound = rmin_bound(impact);
             if (bound > RMIN_R(0.0) && s.low < limit/bound) {
                 s.low = RMIN_FMIN(limit/bound, found->speed > RMIN_R(0.0) ? found->speed : RMIN_REAL_MAX);
-                s.low_force = s.low*bound;
+                s.low_force = RMIN_FMIN(s.low*bound, limit);
             }
             if (!(s.low > RMIN_R(0.0))) {
                 return RMIN_UNRESOLVED;

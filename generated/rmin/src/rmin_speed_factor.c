@@ -38,10 +38,10 @@ typedef struct {
     int point; /* of impact.arrival, -1 for none */
     rmin_real speed; /* of that point, m/s */
     rmin_speed_factor_over_t found;
-} search;
+} least_factor;
 
-static int start(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
-    const rmin_params *p, search *s)
+static int begin(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
+    const rmin_params *p, least_factor *s)
 {
     const int status = rmin_check_finite(dq, RMIN_JOINTS);
     for (int i = 0; i < RMIN_N; ++i) {
@@ -58,7 +58,7 @@ static int start(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS]
 
 /* Slows down until one point keeps the limit of one region. */
 static int watch(const rmin_region *region, const rmin_params *p, int point, rmin_real limit,
-    int which, search *s)
+    int which, least_factor *s)
 {
     if (s->point != point) {
         rmin_real v[3];
@@ -89,7 +89,7 @@ static int watch(const rmin_region *region, const rmin_params *p, int point, rmi
 }
 
 /* Status of what was found. */
-static int said(const search *s)
+static int said(const least_factor *s)
 {
     const rmin_real numbers[3] = {s->found.factor, s->found.speed, s->found.force};
     if (!(rmin_check_share(numbers, 1) == RMIN_OK && rmin_all_finite(numbers, 3))) {
@@ -104,13 +104,13 @@ int rmin_speed_factor(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JO
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return RMIN_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = rmin_check_positive(&limit, 1);
     if (status == RMIN_OK) {
         status = rmin_check_impact(region, p);
     }
     if (status == RMIN_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < RMIN_POINTS && status == RMIN_OK; ++point) {
         status = watch(region, p, point, limit, point, &s);
@@ -135,7 +135,7 @@ int rmin_speed_factor_over(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RM
         || out == NULL) {
         return RMIN_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = count > 0 ? RMIN_OK : RMIN_OUT_OF_RANGE;
     for (int i = 0; i < count && status == RMIN_OK; ++i) {
         status = rmin_check_impact(&regions[i], p);
@@ -147,7 +147,7 @@ int rmin_speed_factor_over(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RM
         }
     }
     if (status == RMIN_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < RMIN_POINTS; ++point) { /* modes of a point serve all its regions */
         for (int i = 0; i < count && status == RMIN_OK; ++i) {

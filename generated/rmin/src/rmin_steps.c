@@ -54,7 +54,7 @@ static void let_stand(const rmin_impact *impact, rmin_real contact, bool release
         swing = RMIN_FMAX(swing, along*along/RMIN_FMAX(modes->squared[i], contact));
     }
     swing *= STANDS*STANDS;
-    phase->active = 0;
+    int active = 0;
     phase->compliance = RMIN_R(0.0);
     phase->reach = RMIN_R(0.0);
     phase->settles = !phase->damped;
@@ -74,10 +74,11 @@ static void let_stand(const rmin_impact *impact, rmin_real contact, bool release
             phase->compliance += weight/modes->squared[i];
         } else {
             phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
-            exchange(modes, phase->active, i);
-            ++phase->active;
+            exchange(modes, active < i ? active : i, i); /* it is never more */
+            ++active;
         }
     }
+    phase->active = active < modes->count ? active : modes->count;
 }
 
 /* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
@@ -139,14 +140,14 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
     const rmin_real contact = RMIN_FMIN(spring + damper*damper, impact->skin_rate);
     const bool released = phase == &impact->phase[RMIN_LOOSE] && impact->first == RMIN_LED;
     if (impact->gives_way) {
-        const int body = modes->count;
+        const int body = modes->count < RMIN_MODES ? modes->count : RMIN_MODES - 1; /* the former */
         modes->squared[body] = RMIN_R(0.0);
         modes->row[body] = RMIN_R(1.0)/RMIN_SQRT(region->effective_mass);
         modes->start[body] = RMIN_R(0.0);
         for (int k = 0; k < RMIN_SYSTEM; ++k) {
             modes->shape[body][k] = RMIN_R(0.0);
         }
-        ++modes->count;
+        modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
     let_stand(impact, contact, released, phase);

@@ -24,7 +24,7 @@ typedef struct {
     rr_real b[RR_N];
 } scaled;
 
-static void scale(const rr_arrival *arrival, const rr_params *p, scaled *out)
+static void scale_model(const rr_arrival *arrival, const rr_params *p, scaled *out)
 {
     rr_real soft[RR_N];
     for (int i = 0; i < RR_N; ++i) {
@@ -78,7 +78,7 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
 {
     scaled s;
     rr_square C;
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     for (int i = 0; i < RR_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -98,13 +98,13 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     rr_square Y; /* columns of L_G^-1 L' */
     rr_square C;
     rr_real z[RR_N];
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     if (!rr_cholesky(RR_N, s.S)) {
         return RR_SINGULAR;
     }
     for (int i = 0; i < RR_N; ++i) {
         z[i] = s.b[i];
-        rr_real stiff[RR_N];
+        rr_real stiff[RR_N] = {RR_R(0.0)};
         for (int l = i; l < RR_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

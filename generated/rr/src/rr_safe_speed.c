@@ -127,7 +127,7 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
             const rr_real bound = rr_bound(impact);
             if (bound > RR_R(0.0) && s.low < limit/bound) {
                 s.low = RR_FMIN(limit/bound, found->speed > RR_R(0.0) ? found->speed : RR_REAL_MAX);
-                s.low_force = s.low*bound;
+                s.low_force = RR_FMIN(s.low*bound, limit);
             }
             if (!(s.low > RR_R(0.0))) {
                 return RR_UNRESOLVED;

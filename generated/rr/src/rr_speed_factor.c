@@ -38,10 +38,10 @@ typedef struct {
     int point; /* of impact.arrival, -1 for none */
     rr_real speed; /* of that point, m/s */
     rr_speed_factor_over_t found;
-} search;
+} least_factor;
 
-static int start(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
-    const rr_params *p, search *s)
+static int begin(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    const rr_params *p, least_factor *s)
 {
     const int status = rr_check_finite(dq, RR_JOINTS);
     for (int i = 0; i < RR_N; ++i) {
@@ -58,7 +58,7 @@ static int start(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
 
 /* Slows down until one point keeps the limit of one region. */
 static int watch(const rr_region *region, const rr_params *p, int point, rr_real limit,
-    int which, search *s)
+    int which, least_factor *s)
 {
     if (s->point != point) {
         rr_real v[3];
@@ -89,7 +89,7 @@ static int watch(const rr_region *region, const rr_params *p, int point, rr_real
 }
 
 /* Status of what was found. */
-static int said(const search *s)
+static int said(const least_factor *s)
 {
     const rr_real numbers[3] = {s->found.factor, s->found.speed, s->found.force};
     if (!(rr_check_share(numbers, 1) == RR_OK && rr_all_finite(numbers, 3))) {
@@ -104,13 +104,13 @@ int rr_speed_factor(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return RR_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = rr_check_positive(&limit, 1);
     if (status == RR_OK) {
         status = rr_check_impact(region, p);
     }
     if (status == RR_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < RR_POINTS && status == RR_OK; ++point) {
         status = watch(region, p, point, limit, point, &s);
@@ -135,7 +135,7 @@ int rr_speed_factor_over(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS]
         || out == NULL) {
         return RR_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = count > 0 ? RR_OK : RR_OUT_OF_RANGE;
     for (int i = 0; i < count && status == RR_OK; ++i) {
         status = rr_check_impact(&regions[i], p);
@@ -147,7 +147,7 @@ int rr_speed_factor_over(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS]
         }
     }
     if (status == RR_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < RR_POINTS; ++point) { /* modes of a point serve all its regions */
         for (int i = 0; i < count && status == RR_OK; ++i) {

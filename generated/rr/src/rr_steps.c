@@ -54,7 +54,7 @@ static void let_stand(const rr_impact *impact, rr_real contact, bool released, r
         swing = RR_FMAX(swing, along*along/RR_FMAX(modes->squared[i], contact));
     }
     swing *= STANDS*STANDS;
-    phase->active = 0;
+    int active = 0;
     phase->compliance = RR_R(0.0);
     phase->reach = RR_R(0.0);
     phase->settles = !phase->damped;
@@ -74,10 +74,11 @@ static void let_stand(const rr_impact *impact, rr_real contact, bool released, r
             phase->compliance += weight/modes->squared[i];
         } else {
             phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
-            exchange(modes, phase->active, i);
-            ++phase->active;
+            exchange(modes, active < i ? active : i, i); /* it is never more */
+            ++active;
         }
     }
+    phase->active = active < modes->count ? active : modes->count;
 }
 
 /* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
@@ -139,14 +140,14 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
     const rr_real contact = RR_FMIN(spring + damper*damper, impact->skin_rate);
     const bool released = phase == &impact->phase[RR_LOOSE] && impact->first == RR_LED;
     if (impact->gives_way) {
-        const int body = modes->count;
+        const int body = modes->count < RR_MODES ? modes->count : RR_MODES - 1; /* the former */
         modes->squared[body] = RR_R(0.0);
         modes->row[body] = RR_R(1.0)/RR_SQRT(region->effective_mass);
         modes->start[body] = RR_R(0.0);
         for (int k = 0; k < RR_SYSTEM; ++k) {
             modes->shape[body][k] = RR_R(0.0);
         }
-        ++modes->count;
+        modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
     let_stand(impact, contact, released, phase);

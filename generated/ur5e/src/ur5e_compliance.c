@@ -24,7 +24,7 @@ typedef struct {
     ur5e_real b[UR5E_N];
 } scaled;
 
-static void scale(const ur5e_arrival *arrival, const ur5e_params *p, scaled *out)
+static void scale_model(const ur5e_arrival *arrival, const ur5e_params *p, scaled *out)
 {
     ur5e_real soft[UR5E_N];
     for (int i = 0; i < UR5E_N; ++i) {
@@ -78,7 +78,7 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
 {
     scaled s;
     ur5e_square C;
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     for (int i = 0; i < UR5E_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -98,13 +98,13 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     ur5e_square Y; /* columns of L_G^-1 L' */
     ur5e_square C;
     ur5e_real z[UR5E_N];
-    scale(arrival, p, &s);
+    scale_model(arrival, p, &s);
     if (!ur5e_cholesky(UR5E_N, s.S)) {
         return UR5E_SINGULAR;
     }
     for (int i = 0; i < UR5E_N; ++i) {
         z[i] = s.b[i];
-        ur5e_real stiff[UR5E_N];
+        ur5e_real stiff[UR5E_N] = {UR5E_R(0.0)};
         for (int l = i; l < UR5E_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

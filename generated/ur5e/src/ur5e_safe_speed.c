@@ -127,7 +127,7 @@ int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real l
             const ur5e_real bound = ur5e_bound(impact);
             if (bound > UR5E_R(0.0) && s.low < limit/bound) {
                 s.low = UR5E_FMIN(limit/bound, found->speed > UR5E_R(0.0) ? found->speed : UR5E_REAL_MAX);
-                s.low_force = s.low*bound;
+                s.low_force = UR5E_FMIN(s.low*bound, limit);
             }
             if (!(s.low > UR5E_R(0.0))) {
                 return UR5E_UNRESOLVED;

@@ -38,10 +38,10 @@ typedef struct {
     int point; /* of impact.arrival, -1 for none */
     ur5e_real speed; /* of that point, m/s */
     ur5e_speed_factor_over_t found;
-} search;
+} least_factor;
 
-static int start(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
-    const ur5e_params *p, search *s)
+static int begin(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    const ur5e_params *p, least_factor *s)
 {
     const int status = ur5e_check_finite(dq, UR5E_JOINTS);
     for (int i = 0; i < UR5E_N; ++i) {
@@ -58,7 +58,7 @@ static int start(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS]
 
 /* Slows down until one point keeps the limit of one region. */
 static int watch(const ur5e_region *region, const ur5e_params *p, int point, ur5e_real limit,
-    int which, search *s)
+    int which, least_factor *s)
 {
     if (s->point != point) {
         ur5e_real v[3];
@@ -89,7 +89,7 @@ static int watch(const ur5e_region *region, const ur5e_params *p, int point, ur5
 }
 
 /* Status of what was found. */
-static int said(const search *s)
+static int said(const least_factor *s)
 {
     const ur5e_real numbers[3] = {s->found.factor, s->found.speed, s->found.force};
     if (!(ur5e_check_share(numbers, 1) == UR5E_OK && ur5e_all_finite(numbers, 3))) {
@@ -104,13 +104,13 @@ int ur5e_speed_factor(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JO
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return UR5E_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = ur5e_check_positive(&limit, 1);
     if (status == UR5E_OK) {
         status = ur5e_check_impact(region, p);
     }
     if (status == UR5E_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < UR5E_POINTS && status == UR5E_OK; ++point) {
         status = watch(region, p, point, limit, point, &s);
@@ -135,7 +135,7 @@ int ur5e_speed_factor_over(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR
         || out == NULL) {
         return UR5E_NULL_POINTER;
     }
-    search s;
+    least_factor s;
     int status = count > 0 ? UR5E_OK : UR5E_OUT_OF_RANGE;
     for (int i = 0; i < count && status == UR5E_OK; ++i) {
         status = ur5e_check_impact(&regions[i], p);
@@ -147,7 +147,7 @@ int ur5e_speed_factor_over(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR
         }
     }
     if (status == UR5E_OK) {
-        status = start(q, dq, p, &s);
+        status = begin(q, dq, p, &s);
     }
     for (int point = 0; point < UR5E_POINTS; ++point) { /* modes of a point serve all its regions */
         for (int i = 0; i < count && status == UR5E_OK; ++i) {

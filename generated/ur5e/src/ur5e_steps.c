@@ -54,7 +54,7 @@ static void let_stand(const ur5e_impact *impact, ur5e_real contact, bool release
         swing = UR5E_FMAX(swing, along*along/UR5E_FMAX(modes->squared[i], contact));
     }
     swing *= STANDS*STANDS;
-    phase->active = 0;
+    int active = 0;
     phase->compliance = UR5E_R(0.0);
     phase->reach = UR5E_R(0.0);
     phase->settles = !phase->damped;
@@ -74,10 +74,11 @@ static void let_stand(const ur5e_impact *impact, ur5e_real contact, bool release
             phase->compliance += weight/modes->squared[i];
         } else {
             phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
-            exchange(modes, phase->active, i);
-            ++phase->active;
+            exchange(modes, active < i ? active : i, i); /* it is never more */
+            ++active;
         }
     }
+    phase->active = active < modes->count ? active : modes->count;
 }
 
 /* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
@@ -139,14 +140,14 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
     const ur5e_real contact = UR5E_FMIN(spring + damper*damper, impact->skin_rate);
     const bool released = phase == &impact->phase[UR5E_LOOSE] && impact->first == UR5E_LED;
     if (impact->gives_way) {
-        const int body = modes->count;
+        const int body = modes->count < UR5E_MODES ? modes->count : UR5E_MODES - 1; /* the former */
         modes->squared[body] = UR5E_R(0.0);
         modes->row[body] = UR5E_R(1.0)/UR5E_SQRT(region->effective_mass);
         modes->start[body] = UR5E_R(0.0);
         for (int k = 0; k < UR5E_SYSTEM; ++k) {
             modes->shape[body][k] = UR5E_R(0.0);
         }
-        ++modes->count;
+        modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
     let_stand(impact, contact, released, phase);

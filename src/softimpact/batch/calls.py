@@ -11,7 +11,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from softimpact.symbolic import InvalidValue
 
@@ -59,6 +59,25 @@ class CompiledPackage:
     def __dir__(self) -> list[str]:
         """Return the names of all functions, too."""
         return [*super().__dir__(), *self.functions]
+
+    def may_press(self, q: ArrayLike, dq: ArrayLike, limit: ArrayLike, **options: Any) -> NDArray[Any]:
+        """Return whether a contact point could press on a body beyond a limit from 0.5 s on.
+
+        Args:
+            q: joint angles, a row each.
+            dq: joint velocities.
+            limit: quasi-static, as a force [N].
+            options: region, motors and parameters of ``speed_factor``, with a horizon beyond 0.5 s.
+
+        Returns:
+            False where it is proven or simulated that none does.
+        """
+        entry = self.interface.entries["speed_factor"]
+        inputs = self._inputs(entry, (q, dq, limit), options)
+        count = max(len(rows) for rows in inputs)
+        out, status = np.ones(count, dtype=np.int32), np.empty(count, dtype=np.int32)
+        self._run(self._rows_of("pressing"), inputs, out, status, 1)
+        return np.asarray(out != 0)
 
     @cached_property
     def interface(self) -> Interface:

@@ -6,7 +6,7 @@ import { shown } from "./answers.js";
 const SOFTEST = 300, STIFFEST = 1e6; // N·m/rad
 
 /** A slider with a number beside it. `read` takes it from a state, `write` returns what changes. */
-function slider(name, label, { low, high, step, read, write, logarithmic = false, digits = 3, title = "" }) {
+function slider(name, label, { low, high, step, read, write, logarithmic = false, digits = 3, places = 4, title = "" }) {
   const row = document.createElement("div");
   row.className = "row";
   const [first, last] = logarithmic ? [Math.log10(low), Math.log10(high)] : [low, high];
@@ -32,7 +32,7 @@ function slider(name, label, { low, high, step, read, write, logarithmic = false
       if (row.hidden) return;
       if (document.activeElement !== range) range.value = logarithmic ? Math.log10(Math.max(now, low)) : now;
       range.setAttribute("aria-valuetext", shown(now, digits));
-      if (document.activeElement !== number) number.value = logarithmic ? shown(now, digits + 1) : Number(now.toFixed(4));
+      if (document.activeElement !== number) number.value = logarithmic ? shown(now, digits + 1) : Number(now.toFixed(places));
     },
   };
 }
@@ -138,8 +138,8 @@ function whereParts(content, solver) {
       read: (s) => s.n.map((x) => Math.round(x * 1e6) / 1e6 + 0).join(","),
       write: (value) => (value === "worst" ? (s) => solver.worst(s) : { n: value.split(",").map(Number) }),
     }),
-    slider("azimuth", "Azimuth, °", { low: -180, high: 180, step: 1, read: (s) => angles(s.n)[0], write: (a) => (s) => ({ n: towards(a, angles(s.n)[1]) }) }),
-    slider("elevation", "Elevation, °", { low: -90, high: 90, step: 1, read: (s) => angles(s.n)[1], write: (e) => (s) => ({ n: towards(angles(s.n)[0], clamp(e, -89.9, 89.9)) }) }),
+    slider("azimuth", "Azimuth, °", { low: -180, high: 180, step: 1, places: 1, read: (s) => angles(s.n)[0], write: (a) => (s) => ({ n: towards(a, angles(s.n)[1]) }) }),
+    slider("elevation", "Elevation, °", { low: -90, high: 90, step: 1, places: 1, read: (s) => angles(s.n)[1], write: (e) => (s) => ({ n: towards(angles(s.n)[0], clamp(e, -89.9, 89.9)) }) }),
   ];
 }
 

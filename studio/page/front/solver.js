@@ -7,6 +7,7 @@ export const KINDS = { free: 1, driven: 2, servo: 3 };
 
 const NEVER = 1e9; // s; a reaction that comes after every horizon
 const ANY_ROTOR = 1; // kg m²; stands in where rotors are unknown and motors drive on: nothing reads it
+const STEPS = 8000; // more than a controller has time for
 const WRITTEN = [0, 9]; // OK and BOUNDED
 
 /** Return functions of a state, which `state.js` describes. */
@@ -44,6 +45,7 @@ export function solverOf(pkg, content) {
       reaction_time: state.reaction_time === null ? NEVER : state.reaction_time * (scale.reaction_time ?? 1),
       horizon: state.horizon,
       motors,
+      steps: STEPS,
     };
     return content.elastic ? { ...given, joint_stiffness: scaled(state.springs, "springs") } : given;
   }

@@ -108,3 +108,20 @@ def test_what_has_no_limit_is_not_called_safe() -> None:
     assert judge(limits, 100, 50).ruling == "no limit"
     only_force = replace(body_region("device_75_sh70"), quasi_static_limit=140.0)
     assert judge(limits_of(only_force, clamped=True), 100, 50).ruling == "kept"
+
+
+def test_a_region_may_lack_one_limit_of_pressure() -> None:
+    """The quasi-static one holds for the transient, too; where neither is stated, none counts."""
+    sharp, hand = Sphere(1e-3), replace(body_region("hand"), energy_limit=None)
+    both = limits_of(hand, True, sharp)
+    assert both.quasi_static is not None
+    assert (both.transient.quantity, both.quasi_static.quantity) == ("pressure", "pressure")
+    assert both.transient.force > both.quasi_static.force
+    no_transient = limits_of(replace(hand, transient_pressure=None), True, sharp)
+    assert no_transient.transient == both.quasi_static
+    no_pressing = limits_of(replace(hand, quasi_static_pressure=None), True, sharp)
+    assert no_pressing.transient == both.transient
+    assert no_pressing.quasi_static is not None
+    assert no_pressing.quasi_static.quantity == "force"
+    none = replace(hand, transient_pressure=None, quasi_static_pressure=None)
+    assert limits_of(none, True, sharp).transient.quantity == "force"
