@@ -41,6 +41,8 @@ class Execution:
 def executing(how: Execution, journal: Path) -> Iterator[Journal]:
     """Return the executor for a ``with`` block; a run that ends well leaves no journal behind.
 
+    Nor does one that found nothing. Results should be written within the block.
+
     Args:
         how: to run.
         journal: file to which results go.
@@ -56,6 +58,12 @@ def executing(how: Execution, journal: Path) -> Iterator[Journal]:
         else:
             inner = stack.enter_context(workers(how.processes or cores()))
         written = Journal(journal, inner, resume=how.resume)
+        stack.callback(_forget_if_empty, written, journal)
         stack.callback(written.shutdown)
         yield written
     journal.unlink(missing_ok=True)
+
+
+def _forget_if_empty(written: Journal, journal: Path) -> None:
+    if not written.known and not written.recorded:
+        journal.unlink(missing_ok=True)

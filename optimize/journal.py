@@ -38,6 +38,7 @@ class Journal(Executor):
     Attributes:
         known: number of results that were there at the start.
         used: number of those that were asked for again.
+        recorded: number of results that were added.
     """
 
     def __init__(self, path: Path, inner: Executor, *, resume: bool) -> None:
@@ -53,7 +54,7 @@ class Journal(Executor):
         """
         self._inner, self._lock = inner, threading.Lock()
         self._found = _read(path) if resume and path.exists() else {}
-        self.known, self.used = len(self._found), 0
+        self.known, self.used, self.recorded = len(self._found), 0, 0
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._file = path.open("w", encoding="utf-8")
@@ -91,6 +92,7 @@ class Journal(Executor):
         with self._lock:
             if not self._file.closed:
                 self._write({"job": key, "result": _encoded(job.result())})
+                self.recorded += 1
 
     def _write(self, line: dict[str, Any]) -> None:
         self._file.write(json.dumps(line) + "\n")

@@ -70,10 +70,10 @@ def design(
     modes = _modes(mode, problem)
     with failures_as_json(json), running(how, folder) as pool:
         found = _search(problem, modes, pool)
-    report = design_report(found)
-    record = as_record(report)
-    with replaced_folder(folder, GENERATOR) as fresh:
-        _write(report, record, fresh)
+        report = design_report(found)
+        record = as_record(report)
+        with replaced_folder(folder, GENERATOR) as fresh:
+            _write(report, record, fresh)
     if page is not None:
         from .report.design_pages import write_design_report
 
@@ -107,11 +107,11 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
             progress.update(task, description=what, completed=done, total=total)
 
         found = robust_design(study, scenarios, pool, advance, free=free)
-    record = robust_record(found)
-    with replaced_folder(folder, GENERATOR) as fresh:
-        write_json(fresh / RESULTS, record)
-        model = designed_model(found)
-        generate_package(model.robot, fresh / "c", drives_=model.drives)
+        record = robust_record(found)
+        with replaced_folder(folder, GENERATOR) as fresh:
+            write_json(fresh / RESULTS, record)
+            model = designed_model(found)
+            generate_package(model.robot, fresh / "c", drives_=model.drives)
     if page is not None:
         from .report.design_pages import write_robust_report
 

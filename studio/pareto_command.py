@@ -57,9 +57,9 @@ def pareto(
     how = Execution(workers, dask, resume)
     with failures_as_json(json), running(how, folder) as pool:
         report = _search(problem, pool)
-    record = as_record(report)
-    with replaced_folder(folder, GENERATOR) as fresh:
-        _write(report, record, fresh)
+        record = as_record(report)
+        with replaced_folder(folder, GENERATOR) as fresh:
+            _write(report, record, fresh)
     if page is not None:
         from .report.pareto_pages import write_pareto_report
 

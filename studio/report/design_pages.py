@@ -71,7 +71,7 @@ def _design(report: DesignReport) -> Iterator[Section]:
         "The springs",
         figure=figure_of_springs(report),
         caption="Joint stiffness of the winner and of what other searches found.",
-        tables=[joints(study, winner.springs, answers.indifferent)],
+        tables=[joints(study, winner.springs, answers.indifferent[list(study.groups)])],
     )
     heads, rows = ranking_rows(report)
     yield Section(
