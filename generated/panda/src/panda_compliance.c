@@ -22,9 +22,9 @@ typedef struct {
     panda_matrix S;
     panda_real R[PANDA_N];
     panda_real b[PANDA_N];
-} scaled;
+} spring_scaled;
 
-static void scale_model(const panda_arrival *arrival, const panda_params *p, scaled *out)
+static void scale_by_springs(const panda_arrival *arrival, const panda_params *p, spring_scaled *out)
 {
     panda_real soft[PANDA_N];
     for (int i = 0; i < PANDA_N; ++i) {
@@ -39,7 +39,7 @@ static void scale_model(const panda_arrival *arrival, const panda_params *p, sca
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int swinging_modes(panda_square C, const panda_real b[PANDA_N], panda_modes *modes)
+static int spring_modes(panda_square C, const panda_real b[PANDA_N], panda_modes *modes)
 {
     panda_real squares[PANDA_N];
     panda_square vectors;
@@ -76,9 +76,9 @@ static int swinging_modes(panda_square C, const panda_real b[PANDA_N], panda_mod
 int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift)
 {
-    scaled s;
+    spring_scaled s;
     panda_square C;
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     for (int i = 0; i < PANDA_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -87,26 +87,26 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     }
     *drift = PANDA_R(1.0);
     modes->rigid = 0;
-    return swinging_modes(C, s.b, modes);
+    return spring_modes(C, s.b, modes);
 }
 
 int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real carried[PANDA_N])
 {
-    scaled s;
+    spring_scaled s;
     panda_matrix G;
     panda_square Y; /* columns of L_G^-1 L' */
     panda_square C;
     panda_real z[PANDA_N];
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     if (!panda_cholesky(PANDA_N, s.S)) {
         return PANDA_SINGULAR;
     }
     for (int i = 0; i < PANDA_N; ++i) {
         z[i] = s.b[i];
-        panda_real stiff[PANDA_N];
-        for (int l = 0; l < PANDA_N; ++l) {
-            stiff[l] = l < i ? PANDA_R(0.0) : s.S[l][i]/s.R[l];
+        panda_real stiff[PANDA_N] = {PANDA_R(0.0)};
+        for (int l = i; l < PANDA_N; ++l) {
+            stiff[l] = s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             panda_real sum = i == j ? PANDA_R(1.0) : PANDA_R(0.0);
@@ -153,11 +153,11 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     for (int j = 0; j < PANDA_SYSTEM; ++j) {
         modes->shape[0][j] = PANDA_R(0.0);
     }
-    return swinging_modes(C, carried, modes);
+    return spring_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
-static panda_real mobility_of(panda_matrix mass, const panda_real row[PANDA_N])
+static panda_real mobility_through(panda_matrix mass, const panda_real row[PANDA_N])
 {
     panda_real z[PANDA_N];
     panda_real sum = PANDA_R(0.0);
@@ -185,7 +185,7 @@ int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_
         *rotors += arrival->row[i]*arrival->row[i]/PANDA_ROTOR(p, i);
     }
     (void)p;
-    *links = mobility_of(mass, arrival->row);
+    *links = mobility_through(mass, arrival->row);
     return *links > PANDA_LEAST_MOBILITY ? PANDA_OK : PANDA_SINGULAR;
 }
 
@@ -199,6 +199,6 @@ panda_real panda_together(const panda_arrival *arrival, const panda_params *p)
         mass[i][i] += PANDA_ROTOR(p, i);
     }
     (void)p;
-    return mobility_of(mass, arrival->row);
+    return mobility_through(mass, arrival->row);
 }
 #endif

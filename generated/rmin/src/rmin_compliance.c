@@ -22,9 +22,9 @@ typedef struct {
     rmin_matrix S;
     rmin_real R[RMIN_N];
     rmin_real b[RMIN_N];
-} scaled;
+} spring_scaled;
 
-static void scale_model(const rmin_arrival *arrival, const rmin_params *p, scaled *out)
+static void scale_by_springs(const rmin_arrival *arrival, const rmin_params *p, spring_scaled *out)
 {
     rmin_real soft[RMIN_N];
     for (int i = 0; i < RMIN_N; ++i) {
@@ -39,7 +39,7 @@ static void scale_model(const rmin_arrival *arrival, const rmin_params *p, scale
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int swinging_modes(rmin_square C, const rmin_real b[RMIN_N], rmin_modes *modes)
+static int spring_modes(rmin_square C, const rmin_real b[RMIN_N], rmin_modes *modes)
 {
     rmin_real squares[RMIN_N];
     rmin_square vectors;
@@ -76,9 +76,9 @@ static int swinging_modes(rmin_square C, const rmin_real b[RMIN_N], rmin_modes *
 int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift)
 {
-    scaled s;
+    spring_scaled s;
     rmin_square C;
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     for (int i = 0; i < RMIN_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -87,26 +87,26 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     }
     *drift = RMIN_R(1.0);
     modes->rigid = 0;
-    return swinging_modes(C, s.b, modes);
+    return spring_modes(C, s.b, modes);
 }
 
 int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real carried[RMIN_N])
 {
-    scaled s;
+    spring_scaled s;
     rmin_matrix G;
     rmin_square Y; /* columns of L_G^-1 L' */
     rmin_square C;
     rmin_real z[RMIN_N];
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     if (!rmin_cholesky(RMIN_N, s.S)) {
         return RMIN_SINGULAR;
     }
     for (int i = 0; i < RMIN_N; ++i) {
         z[i] = s.b[i];
-        rmin_real stiff[RMIN_N];
-        for (int l = 0; l < RMIN_N; ++l) {
-            stiff[l] = l < i ? RMIN_R(0.0) : s.S[l][i]/s.R[l];
+        rmin_real stiff[RMIN_N] = {RMIN_R(0.0)};
+        for (int l = i; l < RMIN_N; ++l) {
+            stiff[l] = s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             rmin_real sum = i == j ? RMIN_R(1.0) : RMIN_R(0.0);
@@ -153,11 +153,11 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     for (int j = 0; j < RMIN_SYSTEM; ++j) {
         modes->shape[0][j] = RMIN_R(0.0);
     }
-    return swinging_modes(C, carried, modes);
+    return spring_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
-static rmin_real mobility_of(rmin_matrix mass, const rmin_real row[RMIN_N])
+static rmin_real mobility_through(rmin_matrix mass, const rmin_real row[RMIN_N])
 {
     rmin_real z[RMIN_N];
     rmin_real sum = RMIN_R(0.0);
@@ -185,7 +185,7 @@ int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real
         *rotors += arrival->row[i]*arrival->row[i]/RMIN_ROTOR(p, i);
     }
     (void)p;
-    *links = mobility_of(mass, arrival->row);
+    *links = mobility_through(mass, arrival->row);
     return *links > RMIN_LEAST_MOBILITY ? RMIN_OK : RMIN_SINGULAR;
 }
 
@@ -199,6 +199,6 @@ rmin_real rmin_together(const rmin_arrival *arrival, const rmin_params *p)
         mass[i][i] += RMIN_ROTOR(p, i);
     }
     (void)p;
-    return mobility_of(mass, arrival->row);
+    return mobility_through(mass, arrival->row);
 }
 #endif

@@ -22,9 +22,9 @@ typedef struct {
     rr_matrix S;
     rr_real R[RR_N];
     rr_real b[RR_N];
-} scaled;
+} spring_scaled;
 
-static void scale_model(const rr_arrival *arrival, const rr_params *p, scaled *out)
+static void scale_by_springs(const rr_arrival *arrival, const rr_params *p, spring_scaled *out)
 {
     rr_real soft[RR_N];
     for (int i = 0; i < RR_N; ++i) {
@@ -39,7 +39,7 @@ static void scale_model(const rr_arrival *arrival, const rr_params *p, scaled *o
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int swinging_modes(rr_square C, const rr_real b[RR_N], rr_modes *modes)
+static int spring_modes(rr_square C, const rr_real b[RR_N], rr_modes *modes)
 {
     rr_real squares[RR_N];
     rr_square vectors;
@@ -76,9 +76,9 @@ static int swinging_modes(rr_square C, const rr_real b[RR_N], rr_modes *modes)
 int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real *drift)
 {
-    scaled s;
+    spring_scaled s;
     rr_square C;
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     for (int i = 0; i < RR_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -87,26 +87,26 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     }
     *drift = RR_R(1.0);
     modes->rigid = 0;
-    return swinging_modes(C, s.b, modes);
+    return spring_modes(C, s.b, modes);
 }
 
 int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real carried[RR_N])
 {
-    scaled s;
+    spring_scaled s;
     rr_matrix G;
     rr_square Y; /* columns of L_G^-1 L' */
     rr_square C;
     rr_real z[RR_N];
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     if (!rr_cholesky(RR_N, s.S)) {
         return RR_SINGULAR;
     }
     for (int i = 0; i < RR_N; ++i) {
         z[i] = s.b[i];
-        rr_real stiff[RR_N];
-        for (int l = 0; l < RR_N; ++l) {
-            stiff[l] = l < i ? RR_R(0.0) : s.S[l][i]/s.R[l];
+        rr_real stiff[RR_N] = {RR_R(0.0)};
+        for (int l = i; l < RR_N; ++l) {
+            stiff[l] = s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             rr_real sum = i == j ? RR_R(1.0) : RR_R(0.0);
@@ -153,11 +153,11 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     for (int j = 0; j < RR_SYSTEM; ++j) {
         modes->shape[0][j] = RR_R(0.0);
     }
-    return swinging_modes(C, carried, modes);
+    return spring_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
-static rr_real mobility_of(rr_matrix mass, const rr_real row[RR_N])
+static rr_real mobility_through(rr_matrix mass, const rr_real row[RR_N])
 {
     rr_real z[RR_N];
     rr_real sum = RR_R(0.0);
@@ -185,7 +185,7 @@ int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real *links,
         *rotors += arrival->row[i]*arrival->row[i]/RR_ROTOR(p, i);
     }
     (void)p;
-    *links = mobility_of(mass, arrival->row);
+    *links = mobility_through(mass, arrival->row);
     return *links > RR_LEAST_MOBILITY ? RR_OK : RR_SINGULAR;
 }
 
@@ -199,6 +199,6 @@ rr_real rr_together(const rr_arrival *arrival, const rr_params *p)
         mass[i][i] += RR_ROTOR(p, i);
     }
     (void)p;
-    return mobility_of(mass, arrival->row);
+    return mobility_through(mass, arrival->row);
 }
 #endif

@@ -22,9 +22,9 @@ typedef struct {
     ur5e_matrix S;
     ur5e_real R[UR5E_N];
     ur5e_real b[UR5E_N];
-} scaled;
+} spring_scaled;
 
-static void scale_model(const ur5e_arrival *arrival, const ur5e_params *p, scaled *out)
+static void scale_by_springs(const ur5e_arrival *arrival, const ur5e_params *p, spring_scaled *out)
 {
     ur5e_real soft[UR5E_N];
     for (int i = 0; i < UR5E_N; ++i) {
@@ -39,7 +39,7 @@ static void scale_model(const ur5e_arrival *arrival, const ur5e_params *p, scale
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int swinging_modes(ur5e_square C, const ur5e_real b[UR5E_N], ur5e_modes *modes)
+static int spring_modes(ur5e_square C, const ur5e_real b[UR5E_N], ur5e_modes *modes)
 {
     ur5e_real squares[UR5E_N];
     ur5e_square vectors;
@@ -76,9 +76,9 @@ static int swinging_modes(ur5e_square C, const ur5e_real b[UR5E_N], ur5e_modes *
 int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real *drift)
 {
-    scaled s;
+    spring_scaled s;
     ur5e_square C;
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     for (int i = 0; i < UR5E_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             C[i][j] = s.S[i][j];
@@ -87,26 +87,26 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     }
     *drift = UR5E_R(1.0);
     modes->rigid = 0;
-    return swinging_modes(C, s.b, modes);
+    return spring_modes(C, s.b, modes);
 }
 
 int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real carried[UR5E_N])
 {
-    scaled s;
+    spring_scaled s;
     ur5e_matrix G;
     ur5e_square Y; /* columns of L_G^-1 L' */
     ur5e_square C;
     ur5e_real z[UR5E_N];
-    scale_model(arrival, p, &s);
+    scale_by_springs(arrival, p, &s);
     if (!ur5e_cholesky(UR5E_N, s.S)) {
         return UR5E_SINGULAR;
     }
     for (int i = 0; i < UR5E_N; ++i) {
         z[i] = s.b[i];
-        ur5e_real stiff[UR5E_N];
-        for (int l = 0; l < UR5E_N; ++l) {
-            stiff[l] = l < i ? UR5E_R(0.0) : s.S[l][i]/s.R[l];
+        ur5e_real stiff[UR5E_N] = {UR5E_R(0.0)};
+        for (int l = i; l < UR5E_N; ++l) {
+            stiff[l] = s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             ur5e_real sum = i == j ? UR5E_R(1.0) : UR5E_R(0.0);
@@ -153,11 +153,11 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     for (int j = 0; j < UR5E_SYSTEM; ++j) {
         modes->shape[0][j] = UR5E_R(0.0);
     }
-    return swinging_modes(C, carried, modes);
+    return spring_modes(C, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
-static ur5e_real mobility_of(ur5e_matrix mass, const ur5e_real row[UR5E_N])
+static ur5e_real mobility_through(ur5e_matrix mass, const ur5e_real row[UR5E_N])
 {
     ur5e_real z[UR5E_N];
     ur5e_real sum = UR5E_R(0.0);
@@ -185,7 +185,7 @@ int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real
         *rotors += arrival->row[i]*arrival->row[i]/UR5E_ROTOR(p, i);
     }
     (void)p;
-    *links = mobility_of(mass, arrival->row);
+    *links = mobility_through(mass, arrival->row);
     return *links > UR5E_LEAST_MOBILITY ? UR5E_OK : UR5E_SINGULAR;
 }
 
@@ -199,6 +199,6 @@ ur5e_real ur5e_together(const ur5e_arrival *arrival, const ur5e_params *p)
         mass[i][i] += UR5E_ROTOR(p, i);
     }
     (void)p;
-    return mobility_of(mass, arrival->row);
+    return mobility_through(mass, arrival->row);
 }
 #endif
