@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Linear algebra over any kind of matrix."""
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 import pytest
