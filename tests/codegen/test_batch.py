@@ -55,6 +55,8 @@ def test_parameters_and_regions_may_differ_by_row(rr: batch.CompiledPackage) -> 
         assert alone["force"][0] == together["force"][i]
     free = rr.safe_speed(q, n, 280.0, motors="free", horizon=0.1)
     worse = rr.safe_speed(q, n, 280.0, horizon=0.1)
+    unasked = rr.safe_speed(q, n, region="chest", horizon=0.1)  # the region's own limit
+    assert np.array_equal(unasked["speed"], worse["speed"])
     assert (worse["speed"] <= 1.02 * free["speed"]).all()
 
 
