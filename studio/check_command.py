@@ -27,4 +27,6 @@ def check(study: o.StudyFile, json: o.Json = False) -> None:
     found = load_study(study)
     print_warnings(found.robot.warnings)
     if not json:
-        say(f"{study}: nothing is wrong; {found.robot.name}, {len(found.poses)} poses")
+        count = len(found.poses)
+        poses = "one pose" if count == 1 else f"{count} poses"
+        say(f"{study}: nothing is wrong; {found.robot.name}, {poses}")
