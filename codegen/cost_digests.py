@@ -59,9 +59,13 @@ class _Texts:
         }
 
     @cached_property
-    def home(self) -> dict[str, str]:
-        """The source that defines each name."""
-        return {name: s for s, text in self.sources.items() for name in DEFINED.findall(text)}
+    def homes(self) -> dict[str, set[str]]:
+        """The sources that define each name; of several the preprocessor takes one."""
+        found: dict[str, set[str]] = {}
+        for stem, text in self.sources.items():
+            for name in DEFINED.findall(text):
+                found.setdefault(name, set()).add(stem)
+        return found
 
     def digest(self, stem: str) -> str:
         """Return what decides a source's cost."""
@@ -95,8 +99,8 @@ class _Texts:
             here = waiting.pop()
             found.add(here)
             named = set(re.findall(r"\w+", self.sources[here]))
-            called = {self.home[name] for name in named & self.home.keys()} - found
-            waiting += sorted(called)
+            called = set().union(*(self.homes[name] for name in named & self.homes.keys()))
+            waiting += sorted(called - found)
         return found
 
     def declarations(self, names: set[str]) -> Iterator[str]:

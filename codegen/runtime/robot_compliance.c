@@ -104,7 +104,7 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     }
     for (int i = 0; i < ROBOT_N; ++i) {
         z[i] = s.b[i];
-        robot_real stiff[ROBOT_N] = {ROBOT_R(0.0)};
+        robot_real stiff[ROBOT_N] = {0};
         for (int l = i; l < ROBOT_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

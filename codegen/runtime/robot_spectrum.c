@@ -134,25 +134,31 @@ static bool counts(robot_real before, robot_real after, robot_real entry)
     return entry*entry > ROBOT_FMAX(SMALL*ROBOT_FABS(before*after), noise*noise);
 }
 
+/* Last row of the block that begins at a row. */
+static int end_of_block(int first, const robot_real values[ROBOT_N], const robot_real e[ROBOT_N])
+{
+    int last = first;
+    while (last + 1 < ROBOT_N && counts(values[last], values[last + 1], e[last])) {
+        ++last;
+    }
+    return last;
+}
+
 bool robot_spectrum(robot_square A, robot_real values[ROBOT_N], robot_square vectors)
 {
     robot_real e[ROBOT_N];
     reflect(A, values, e, vectors);
-    int steps = 0;
-    for (int first = 0; first < ROBOT_N; ++first) {
-        for (;;) {
-            int last = first;
-            while (last + 1 < ROBOT_N && counts(values[last], values[last + 1], e[last])) {
-                ++last;
-            }
-            if (last == first) {
-                break;
-            }
-            if (++steps > MOST_STEPS) {
-                return false;
-            }
-            chase(first, last, values, e, vectors);
+    int first = 0;
+    for (int step = 0; step <= MOST_STEPS; ++step) {
+        while (first < ROBOT_N && end_of_block(first, values, e) == first) {
+            ++first;
+        }
+        if (first == ROBOT_N) {
+            return true;
+        }
+        if (step < MOST_STEPS) {
+            chase(first, end_of_block(first, values, e), values, e, vectors);
         }
     }
-    return true;
+    return false;
 }

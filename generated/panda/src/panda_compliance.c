@@ -104,7 +104,7 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     }
     for (int i = 0; i < PANDA_N; ++i) {
         z[i] = s.b[i];
-        panda_real stiff[PANDA_N] = {PANDA_R(0.0)};
+        panda_real stiff[PANDA_N] = {0};
         for (int l = i; l < PANDA_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

@@ -134,25 +134,31 @@ static bool counts(panda_real before, panda_real after, panda_real entry)
     return entry*entry > PANDA_FMAX(SMALL*PANDA_FABS(before*after), noise*noise);
 }
 
+/* Last row of the block that begins at a row. */
+static int end_of_block(int first, const panda_real values[PANDA_N], const panda_real e[PANDA_N])
+{
+    int last = first;
+    while (last + 1 < PANDA_N && counts(values[last], values[last + 1], e[last])) {
+        ++last;
+    }
+    return last;
+}
+
 bool panda_spectrum(panda_square A, panda_real values[PANDA_N], panda_square vectors)
 {
     panda_real e[PANDA_N];
     reflect(A, values, e, vectors);
-    int steps = 0;
-    for (int first = 0; first < PANDA_N; ++first) {
-        for (;;) {
-            int last = first;
-            while (last + 1 < PANDA_N && counts(values[last], values[last + 1], e[last])) {
-                ++last;
-            }
-            if (last == first) {
-                break;
-            }
-            if (++steps > MOST_STEPS) {
-                return false;
-            }
-            chase(first, last, values, e, vectors);
+    int first = 0;
+    for (int step = 0; step <= MOST_STEPS; ++step) {
+        while (first < PANDA_N && end_of_block(first, values, e) == first) {
+            ++first;
+        }
+        if (first == PANDA_N) {
+            return true;
+        }
+        if (step < MOST_STEPS) {
+            chase(first, end_of_block(first, values, e), values, e, vectors);
         }
     }
-    return true;
+    return false;
 }

@@ -104,7 +104,7 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     }
     for (int i = 0; i < RMIN_N; ++i) {
         z[i] = s.b[i];
-        rmin_real stiff[RMIN_N] = {RMIN_R(0.0)};
+        rmin_real stiff[RMIN_N] = {0};
         for (int l = i; l < RMIN_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

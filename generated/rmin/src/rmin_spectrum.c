@@ -134,25 +134,31 @@ static bool counts(rmin_real before, rmin_real after, rmin_real entry)
     return entry*entry > RMIN_FMAX(SMALL*RMIN_FABS(before*after), noise*noise);
 }
 
+/* Last row of the block that begins at a row. */
+static int end_of_block(int first, const rmin_real values[RMIN_N], const rmin_real e[RMIN_N])
+{
+    int last = first;
+    while (last + 1 < RMIN_N && counts(values[last], values[last + 1], e[last])) {
+        ++last;
+    }
+    return last;
+}
+
 bool rmin_spectrum(rmin_square A, rmin_real values[RMIN_N], rmin_square vectors)
 {
     rmin_real e[RMIN_N];
     reflect(A, values, e, vectors);
-    int steps = 0;
-    for (int first = 0; first < RMIN_N; ++first) {
-        for (;;) {
-            int last = first;
-            while (last + 1 < RMIN_N && counts(values[last], values[last + 1], e[last])) {
-                ++last;
-            }
-            if (last == first) {
-                break;
-            }
-            if (++steps > MOST_STEPS) {
-                return false;
-            }
-            chase(first, last, values, e, vectors);
+    int first = 0;
+    for (int step = 0; step <= MOST_STEPS; ++step) {
+        while (first < RMIN_N && end_of_block(first, values, e) == first) {
+            ++first;
+        }
+        if (first == RMIN_N) {
+            return true;
+        }
+        if (step < MOST_STEPS) {
+            chase(first, end_of_block(first, values, e), values, e, vectors);
         }
     }
-    return true;
+    return false;
 }

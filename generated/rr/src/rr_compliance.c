@@ -104,7 +104,7 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     }
     for (int i = 0; i < RR_N; ++i) {
         z[i] = s.b[i];
-        rr_real stiff[RR_N] = {RR_R(0.0)};
+        rr_real stiff[RR_N] = {0};
         for (int l = i; l < RR_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

@@ -134,25 +134,31 @@ static bool counts(rr_real before, rr_real after, rr_real entry)
     return entry*entry > RR_FMAX(SMALL*RR_FABS(before*after), noise*noise);
 }
 
+/* Last row of the block that begins at a row. */
+static int end_of_block(int first, const rr_real values[RR_N], const rr_real e[RR_N])
+{
+    int last = first;
+    while (last + 1 < RR_N && counts(values[last], values[last + 1], e[last])) {
+        ++last;
+    }
+    return last;
+}
+
 bool rr_spectrum(rr_square A, rr_real values[RR_N], rr_square vectors)
 {
     rr_real e[RR_N];
     reflect(A, values, e, vectors);
-    int steps = 0;
-    for (int first = 0; first < RR_N; ++first) {
-        for (;;) {
-            int last = first;
-            while (last + 1 < RR_N && counts(values[last], values[last + 1], e[last])) {
-                ++last;
-            }
-            if (last == first) {
-                break;
-            }
-            if (++steps > MOST_STEPS) {
-                return false;
-            }
-            chase(first, last, values, e, vectors);
+    int first = 0;
+    for (int step = 0; step <= MOST_STEPS; ++step) {
+        while (first < RR_N && end_of_block(first, values, e) == first) {
+            ++first;
+        }
+        if (first == RR_N) {
+            return true;
+        }
+        if (step < MOST_STEPS) {
+            chase(first, end_of_block(first, values, e), values, e, vectors);
         }
     }
-    return true;
+    return false;
 }

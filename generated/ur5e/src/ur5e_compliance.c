@@ -104,7 +104,7 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     }
     for (int i = 0; i < UR5E_N; ++i) {
         z[i] = s.b[i];
-        ur5e_real stiff[UR5E_N] = {UR5E_R(0.0)};
+        ur5e_real stiff[UR5E_N] = {0};
         for (int l = i; l < UR5E_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }

@@ -134,25 +134,31 @@ static bool counts(ur5e_real before, ur5e_real after, ur5e_real entry)
     return entry*entry > UR5E_FMAX(SMALL*UR5E_FABS(before*after), noise*noise);
 }
 
+/* Last row of the block that begins at a row. */
+static int end_of_block(int first, const ur5e_real values[UR5E_N], const ur5e_real e[UR5E_N])
+{
+    int last = first;
+    while (last + 1 < UR5E_N && counts(values[last], values[last + 1], e[last])) {
+        ++last;
+    }
+    return last;
+}
+
 bool ur5e_spectrum(ur5e_square A, ur5e_real values[UR5E_N], ur5e_square vectors)
 {
     ur5e_real e[UR5E_N];
     reflect(A, values, e, vectors);
-    int steps = 0;
-    for (int first = 0; first < UR5E_N; ++first) {
-        for (;;) {
-            int last = first;
-            while (last + 1 < UR5E_N && counts(values[last], values[last + 1], e[last])) {
-                ++last;
-            }
-            if (last == first) {
-                break;
-            }
-            if (++steps > MOST_STEPS) {
-                return false;
-            }
-            chase(first, last, values, e, vectors);
+    int first = 0;
+    for (int step = 0; step <= MOST_STEPS; ++step) {
+        while (first < UR5E_N && end_of_block(first, values, e) == first) {
+            ++first;
+        }
+        if (first == UR5E_N) {
+            return true;
+        }
+        if (step < MOST_STEPS) {
+            chase(first, end_of_block(first, values, e), values, e, vectors);
         }
     }
-    return true;
+    return false;
 }
