@@ -26,6 +26,7 @@ typedef struct {
 
 static void scale_by_springs(const robot_arrival *arrival, const robot_params *p, spring_scaled *out)
 {
+    (void)p; /* whatever of it counts may be built in */
     robot_real soft[ROBOT_N];
     for (int i = 0; i < ROBOT_N; ++i) {
         const robot_real compliance = ROBOT_R(1.0)/ROBOT_SPRING(p, i);

@@ -26,6 +26,7 @@ typedef struct {
 
 static void scale_by_springs(const rmin_arrival *arrival, const rmin_params *p, spring_scaled *out)
 {
+    (void)p; /* whatever of it counts may be built in */
     rmin_real soft[RMIN_N];
     for (int i = 0; i < RMIN_N; ++i) {
         const rmin_real compliance = RMIN_R(1.0)/RMIN_SPRING(p, i);

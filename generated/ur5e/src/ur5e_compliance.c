@@ -26,6 +26,7 @@ typedef struct {
 
 static void scale_by_springs(const ur5e_arrival *arrival, const ur5e_params *p, spring_scaled *out)
 {
+    (void)p; /* whatever of it counts may be built in */
     ur5e_real soft[UR5E_N];
     for (int i = 0; i < UR5E_N; ++i) {
         const ur5e_real compliance = UR5E_R(1.0)/UR5E_SPRING(p, i);
