@@ -9,7 +9,7 @@ from math import inf
 import numpy as np
 
 from softimpact.symbolic import ImpactModel, InvalidValue, Motors
-from softimpact.symbolic.impact.motors import KINDS
+from softimpact.symbolic.impact.motors import KINDS, PRESCRIBED
 
 from .controller import Controller
 
@@ -75,7 +75,7 @@ def require_rotors_behind_springs(model: ImpactModel, motors: Motors) -> None:
         model: the robot.
         motors: what they do; those that keep their speed, or are stopped, need no inertia.
     """
-    if not any(law in ("free", "servo", "held") for _, law in motors.laws):
+    if all(law in PRESCRIBED for _, law in motors.laws):
         return
     rotors = np.array(model.drives.rotors, dtype=float).ravel()
     none = np.array(model.drives.elastic) & np.array(model.robot.actuated) & (rotors == 0)

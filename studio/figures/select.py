@@ -37,10 +37,10 @@ def figure_of_selection(
             va="center",
             fontsize=SMALL,
         )
-    limit = study.contact.region.force_limit
+    limit = study.limit
     axes.axvline(limit, color=LIMIT, linestyle="--", linewidth=1.5)
     axes.annotate(
-        f"limit {limit:g} N",
+        f"limit {limit:.4g} N",
         (limit, -0.6),
         xytext=(4, 0),
         textcoords="offset points",

@@ -57,6 +57,12 @@ def test_parameters_and_regions_may_differ_by_row(rr: batch.CompiledPackage) -> 
     worse = rr.safe_speed(q, n, 280.0, horizon=0.1)
     unasked = rr.safe_speed(q, n, region="chest", horizon=0.1)  # the region's own limit
     assert np.array_equal(unasked["speed"], worse["speed"])
+    of_hand = rr.safe_speed(q, n, np.sqrt(2 * 75e3 * 0.49), region="hand", horizon=0.1)
+    assert np.array_equal(
+        rr.safe_speed(q, n, region="hand", horizon=0.1)["speed"], of_hand["speed"]
+    )
+    with pytest.raises(InvalidValue, match="'head' is not to be designed for; give a limit"):
+        rr.safe_speed(q, n, region="head", horizon=0.1)
     assert (worse["speed"] <= 1.02 * free["speed"]).all()
 
 

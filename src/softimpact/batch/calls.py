@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from softimpact.symbolic import InvalidValue
+from softimpact.symbolic import REGIONS, InvalidValue
+from softimpact.symbolic.body.verdict import limits_of
 
 from .build import PREFIX, Sources
 
@@ -36,8 +37,9 @@ class CompiledPackage:
 
     ``q`` is N×n, or n for all rows; so are ``n`` (3), ``dq`` (n), other arguments and parameters
     by the names of the C struct's fields. A region is the name of one, with ``clamped``, or a
-    mapping of the fields of the C struct. A ``limit`` that is not given is the region's transient
-    one. ``motors`` is a name. Results are arrays of N rows by
+    mapping of the fields of the C struct. A ``limit`` that is not given is the least that the region
+    has for the first half second, of force or energy; what presses later is not judged.
+    ``motors`` is a name. Results are arrays of N rows by
     name, with ``status`` beside them; rows whose status is neither OK (0) nor BOUNDED (9) hold NaN,
     or -1 where numbers are whole.
 
@@ -138,8 +140,10 @@ class CompiledPackage:
         values = dict(zip((a.name for a in plain), given, strict=False))
         region = None
         if any(a.type == IMPACT for a in read):
-            region = self._region(options.pop(IMPACT, "chest"), options.pop("clamped", True))
-            values.setdefault("limit", region["force_limit"])
+            asked, clamped = options.pop(IMPACT, "chest"), options.pop("clamped", True)
+            region = self._region(asked, clamped)
+            if any(a.name == "limit" for a in plain) and not {"limit"} & {*values, *options}:
+                values["limit"] = _limit(asked, clamped, region)
         for a in plain:
             if a.name in options:
                 values[a.name] = options.pop(a.name)
@@ -234,6 +238,16 @@ class CompiledPackage:
         edges = np.linspace(0, count, pieces + 1).astype(int).tolist()
         with ThreadPoolExecutor(self.threads) as pool:
             list(pool.map(part, zip(edges[:-1], edges[1:], strict=True)))
+
+
+def _limit(asked: str | Mapping[str, Any], clamped: bool, region: NDArray[Any]) -> Any:
+    """Return what a region may bear in the first half second [N]."""
+    if not isinstance(asked, str):
+        return region["force_limit"]
+    limits = limits_of(REGIONS[asked], clamped)
+    if not limits.permitted:
+        raise InvalidValue("limit", f"'{asked}' is not to be designed for; give a limit [N]")
+    return limits.transient.force
 
 
 def _filled(row: NDArray[Any], given: Mapping[str, Any], what: str) -> NDArray[Any]:
