@@ -173,10 +173,10 @@ def record(
 
 def print_ranking(study: Study, criterion: Criterion, ranked: Sequence[PoseFigures]) -> None:
     """Print a ranking as a table."""
-    limit = study.contact.region.force_limit
+    limit = study.limit
     print_table(
         f"{study.title}: by {criterion}; {study.contact.region.name}, {study.speed:g} m/s, "
-        f"limit {limit:g} N",
+        f"limit {limit:.4g} N",
         *figures_table(ranked),
     )
 

@@ -85,7 +85,7 @@ def write_selection_report(
     study: Study, criterion: Criterion, ranked: Sequence[PoseFigures], path: Path
 ) -> Path:
     """Write the report of a ranking."""
-    best, limit = ranked[0], study.contact.region.force_limit
+    best, limit = ranked[0], study.limit
     least, most = (f([p.peak_force for p in ranked]) for f in (min, max))
     good = best.peak_force <= limit
     question = f"Which posture hurts least where {impact_in_words(study)}?"

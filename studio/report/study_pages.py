@@ -74,7 +74,7 @@ def _impact(study: Study) -> TableOfNumbers:
         ("contact point", study.model.tip, ""),
         ("direction", f"[{direction}]", ""),
         ("what counts", peak_in_words(study), ""),
-        ("limit", region.force_limit, "N"),
+        ("limit", study.limit, "N"),
         ("stiffness of the body", region.stiffness, "N/m"),
         ("its damping", region.damping, "N s/m"),
         ("its effective mass", region.effective_mass, "kg"),
