@@ -133,13 +133,21 @@ void robot_press(const robot_state *s, robot_trial *t)
     t->f = ROBOT_R(0.0);
     t->u = ROBOT_R(0.0);
     t->root = ROBOT_R(0.0);
-    if (pressed > ROBOT_R(0.0)) {
-        t->root = root_of(pressed/hold, region->hertz_stiffness*soft/hold, s->root);
+    const robot_real cubic = region->hertz_stiffness*soft/hold;
+    const robot_real depth = pressed/hold;
+    if (depth > ROBOT_R(0.0)) {
+        t->root = root_of(depth, cubic, s->root);
         t->f = region->hertz_stiffness*t->root*t->root*t->root;
         t->u = t->root*t->root + phase->compliance*t->f;
+        t->x = x - yields*t->f;
+        t->bump = plain - plain_share*t->f;
+    } else { /* they part on the way: a force that falls evenly ends there */
+        const robot_real from = s->root*s->root*(one + cubic*s->root);
+        t->base = from > ROBOT_R(0.0) ? ROBOT_R(0.5)*s->f*depth/(from - depth) : ROBOT_R(0.0);
+        t->share = ROBOT_R(0.0);
+        t->x -= level->push[0]*(s->f + t->base) + level->push[1]*t->base;
+        t->bump = ROBOT_R(0.0);
     }
-    t->x = x - yields*t->f;
-    t->bump = plain - plain_share*t->f;
 }
 
 void robot_take(const robot_trial *t, robot_state *s)

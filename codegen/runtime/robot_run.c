@@ -3,10 +3,12 @@
 #include "robot_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS ROBOT_R(0.0125)
+#define BENDS ROBOT_R(0.03)
 #define BENDS_ROUGH ROBOT_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
-#define STRAIGHT ROBOT_R(0.12)
+#define STRAIGHT ROBOT_R(0.22)
+/* Force from which robot and body may part within a step, over the bend that is allowed. */
+#define PARTS ROBOT_R(4.0)
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (ROBOT_LEVELS - 1)
 #define SHORTEST_ROUGH 2
@@ -28,7 +30,7 @@ static void tick(robot_state *s, bool longer)
     }
 }
 
-/* Notes a top of the parabola through the last three forces. */
+/* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
 static void see(const robot_state *s, robot_real f, robot_real h, robot_peak *peak)
 {
     robot_real force = f;
@@ -38,8 +40,14 @@ static void see(const robot_state *s, robot_real f, robot_real h, robot_peak *pe
         const robot_real after = (f - s->f)/h;
         const robot_real bend = (after - before)/(h + s->h);
         const robot_real slope = before + bend*s->h;
-        force = s->f - ROBOT_R(0.25)*slope*slope/bend;
-        time = s->time - ROBOT_R(0.5)*slope/bend;
+        const robot_real since = ROBOT_R(-0.5)*slope/bend; /* the last node */
+        force = s->f + ROBOT_R(0.5)*slope*since;
+        time = s->time + since;
+        if (s->past > 1) {
+            const robot_real bent = ROBOT_R(-6.0)*s->bump/(s->h*s->h); /* at the last node */
+            const robot_real twist = (bend - bent)/(h + s->h + s->h_before);
+            force += twist*since*(since + s->h)*(since - h);
+        }
     }
     if (force > peak->force) {
         peak->force = force;
@@ -54,7 +62,8 @@ static bool step_pressed(robot_state *s, robot_trial *t, robot_real bends, int s
     robot_press(s, t);
     const robot_real size = ROBOT_FMAX(s->scale, peak->force);
     const robot_real bent = ROBOT_R(6.0)*ROBOT_FABS(t->bump);
-    if (s->level < shortest && !(bent <= bends*size)) {
+    const bool parts = !(t->f > ROBOT_R(0.0)) && s->f > PARTS*bends*size;
+    if (s->level < shortest && (parts || !(bent <= bends*size))) {
         ++s->level;
         return false;
     }
@@ -63,6 +72,7 @@ static bool step_pressed(robot_state *s, robot_trial *t, robot_real bends, int s
     s->depth = t->f > peak->force ? t->root*t->root : s->depth;
     see(s, t->f, level->h, peak);
     const robot_real rest = (s->x - s->u)*level->relax;
+    const robot_real before = ROBOT_R(6.0)*ROBOT_FABS(s->bump);
     s->bump = t->bump;
     s->rise = t->f - s->f;
     s->f = t->f;
@@ -75,7 +85,7 @@ static bool step_pressed(robot_state *s, robot_trial *t, robot_real bends, int s
         s->touching = false;
         s->rest = ROBOT_FMAX(s->x, rest);
     }
-    tick(s, bent <= STRAIGHT*bends*size && s->past > 1);
+    tick(s, bent <= STRAIGHT*bends*size && before <= STRAIGHT*bends*size && s->past > 1);
     return true;
 }
 
@@ -85,8 +95,12 @@ static bool step_apart(robot_state *s, robot_trial *t, int shortest, robot_peak 
     const robot_level *const level = &s->phase->level[s->level];
     const robot_real rest = s->rest*level->relax;
     if (t->x > rest) {
-        if (s->level < shortest) {
-            ++s->level;
+        if (s->level < shortest) { /* to a step that ends before they touch, if both approach evenly */
+            robot_real share = (s->rest - s->x)/(s->rest - s->x + t->x - rest);
+            do {
+                ++s->level;
+                share += share;
+            } while (s->level < shortest && !(share >= ROBOT_R(1.0)));
             return false;
         }
         s->touching = true;
@@ -139,7 +153,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->depth = zero;
 }
 
-/* Steps through a phase; false if the steps do not do. */
+/* Steps through a phase, a rough run until they part; false if the steps do not do. */
 static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
 {
     const robot_real bends = s->impact->smooth*(budget->rough ? BENDS_ROUGH : BENDS);
@@ -159,7 +173,7 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
         }
         const bool falls = taken && s->f < peak->force;
         const bool looks = falls && (s->past % LOOKS == 0 || !s->touching);
-        if ((falls && peak->force > budget->stop_above)
+        if ((falls && peak->force > budget->stop_above) || (budget->rough && taken && !s->touching)
             || (looks && robot_is_settled(s, peak->force, share))) {
             peak->ended = true;
             return true;
