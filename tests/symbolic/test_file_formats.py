@@ -93,9 +93,7 @@ def test_xacro_of_several_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         path.write_text(text.replace("</link>", f"{visual}</link>", 1))
         assert felt(load_robot(path)) == pytest.approx(0.473499, abs=1e-6)
     path.write_text(path.read_text().replace("two_description)", "nowhere)"))
-    with pytest.raises(
-        ModelFileError, match=r"not found: nowhere; put the package"
-    ):
+    with pytest.raises(ModelFileError, match=r"not found: nowhere; put the package"):
         load_robot(path)
 
 
