@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from ..dynamics.equations_of_motion import STANDARD_GRAVITY, Gravity, bias_torques, mass_matrix
 from ..dynamics.kinematics import FramePose, cross, frame_jacobian, frame_pose
 from ..errors import InvalidInertia, MasslessBase
+from ..former_names import renamed
 from ..matrices import Matrix
 from ..robot.plausibility import require_sound_masses
 from ..robot.rigid import Inertia, Placement
@@ -177,6 +178,7 @@ def _free_joint(inertia: Inertia) -> tuple[Joint, ...]:
     return (*joints[:-1], replace(joints[-1], inertia=inertia))
 
 
+@renamed(drives_="drives")
 def floating_model(
     robot: FloatingRobot, tip: str | None = None, *, drives: Drives | None = None
 ) -> ImpactModel:

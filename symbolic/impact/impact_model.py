@@ -15,6 +15,7 @@ from ..dynamics.equations_of_motion import Gravity, mass_matrix, stiffness_of_po
 from ..dynamics.kinematics import contact_point_jacobian, direction_jacobian
 from ..errors import InvalidValue, WrongLength
 from ..factors.contact_mobility import ContactMobility, contact_mobility
+from ..former_names import renamed
 from ..loops.loops import closed_chain, constrained_stiffness, loop_tangent
 from ..matrices import Kind, Matrix, Numbers, symmetric
 from ..robot.rigid import Array, three_numbers
@@ -242,6 +243,7 @@ class ImpactModel(ByContent):
         return symmetric(lambda i, j: product[i, j], product.shape[0])
 
 
+@renamed(drives_="drives")
 def impact_model(
     robot: Robot,
     tip: str | None = None,
