@@ -312,12 +312,12 @@ def _forces(
     numbers = _split(p)
     contact = ContactParameters(*ca.vertsplit(numbers["contact"]))
     if "cover" in parts:
-        contact = contact._replace(hertz_stiffness=in_series(contact.hertz_stiffness, cover))
+        contact = contact._replace(hertz_stiffness=hertz_in_series(contact.hertz_stiffness, cover))
     laws = MotorLaws(*ca.vertsplit(numbers["motors"]))
     return contact_forces(dynamics, contact, laws, numbers["step"], nodes, substeps)
 
 
-def in_series(first: Matrix, second: Matrix) -> Matrix:
+def hertz_in_series(first: Matrix, second: Matrix) -> Matrix:
     """Return the stiffness of two Hertz laws in series: k^(-2/3) adds up."""
     return (first ** (-2 / 3) + second ** (-2 / 3)) ** (-1.5)
 
