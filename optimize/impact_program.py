@@ -21,6 +21,7 @@ from softimpact.symbolic import (
     ImpactModel,
     Matrix,
     Motors,
+    Robot,
     contact_point_jacobian,
     direction_jacobian,
     least_velocity,
@@ -261,6 +262,9 @@ def _posture(model: ImpactModel, point: str, parts: Parts) -> ca.Function:
     end = machine.jacobian(q)
     loaded = machine.mass_matrix(q) + numbers["payload"] * ca.mtimes(end.T, end)
     J = contact_point_jacobian(model.robot, point, q)
+    damping = joint_damping(model.robot)
+    if damping is not None:
+        loaded = loaded + numbers["step"] / 2 * ca.diag(damping)
     speed = numbers["speed"]
     if "speed" in parts:
         speed = speed * 10 ** logarithms[parts.index("speed")]
@@ -275,6 +279,8 @@ def _posture(model: ImpactModel, point: str, parts: Parts) -> ca.Function:
         given.append(machine.hardware.rotors)
     if "cover" in parts:
         given.append(machine.hardware.cover)
+    if _has_potential(model):
+        given.append(ca.vec(machine.model.potential_stiffness(q)))
     return ca.Function("posture", [x, p], ca.cse([ca.vertcat(*given)]))
 
 
@@ -295,9 +301,12 @@ def _forces(
     model: ImpactModel, given: Matrix, p: Matrix, nodes: int, substeps: int, parts: Parts
 ) -> Matrix:
     n = model.robot.n
-    sizes = [n * n, n, n, n, n * n, n * ("rotors" in parts), int("cover" in parts)]
+    m = n * _has_potential(model)
+    sizes = [n * n, n, n, n, n * n, n * ("rotors" in parts), int("cover" in parts), m * m]
     offsets = np.cumsum([0, *sizes]).tolist()
-    mobility, jacobian, velocity, springs, gains, rotors, cover = ca.vertsplit(given, offsets)
+    mobility, jacobian, velocity, springs, gains, rotors, cover, potential = ca.vertsplit(
+        given, offsets
+    )
     pattern = ca.DM(model.position_gains(ca.SX.sym("q", n)).sparsity(), 1)
     damping = model.drives.damping_gains
     dynamics = ImpactDynamics(
@@ -308,6 +317,8 @@ def _forces(
         gains=ca.project(ca.reshape(gains, n, n), pattern.sparsity()),
         damping=ca.DM.zeros(n) if damping is None else damping,
         velocity=velocity,
+        joint_damping=joint_damping(model.robot),
+        potential=ca.reshape(potential, m, m) if m else None,
     )
     numbers = _split(p)
     contact = ContactParameters(*ca.vertsplit(numbers["contact"]))
@@ -315,6 +326,16 @@ def _forces(
         contact = contact._replace(hertz_stiffness=hertz_in_series(contact.hertz_stiffness, cover))
     laws = MotorLaws(*ca.vertsplit(numbers["motors"]))
     return contact_forces(dynamics, contact, laws, numbers["step"], nodes, substeps)
+
+
+def joint_damping(robot: Robot) -> ca.DM | None:
+    """Return the joints' own damping, length n [N·m·s/rad]; None where there is none."""
+    return ca.DM(robot.damping) if robot.damping.any() else None
+
+
+def _has_potential(model: ImpactModel) -> bool:
+    """Whether the links' potential energy bends: by springs of the file, or gravity."""
+    return model.robot.has_springs or any(model.gravity)
 
 
 def hertz_in_series(first: Matrix, second: Matrix) -> Matrix:
