@@ -8,16 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .dominance import knee as bend
 from .evaluation import largest_deflection
 from .solve import Outcome
 from .study import Study
 
 WORTH = 1e-4
 """Share of the force that a less accurate design must save to be kept: what forces are known to."""
-
-
-FLAT = 1e-6
-"""Share of a front's height below the straight line from which it counts as bent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,11 +84,5 @@ def knee(points: Sequence[ParetoPoint]) -> int | None:
     the logarithm of the deflection, each from 0 to 1. None for fronts of two points or less, and
     for those that are nowhere below it.
     """
-    if len(points) < 3:
-        return None
-    x = np.log([point.deflection for point in points])
-    y = np.array([point.force for point in points])
-    x, y = (x - x[0]) / (x[-1] - x[0]), (y - y[-1]) / (y[0] - y[-1])
-    below = 1 - x - y
-    best = int(np.argmax(below))
-    return best if below[best] > FLAT else None
+    places = [(np.log(point.deflection), point.force) for point in points]
+    return bend(np.array(places)) if len(points) > 2 else None

@@ -15,6 +15,7 @@ from softimpact.optimize.certificate import Worst
 from softimpact.optimize.evaluation import Kept, equipped
 from softimpact.optimize.impact_program import in_series
 from softimpact.optimize.robust import RobustDesign
+from softimpact.optimize.units import figure_in_words
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import Contact, ImpactModel, Robot, impact_model, with_load
 from softimpact.symbolic.robot.rigid import Array, Inertia
@@ -197,12 +198,11 @@ def _bought_in_words(bought: Bought | None) -> list[str]:
 
 
 def _kept(bound: Kept) -> str:
-    scale, unit = (1e3, "mm") if bound.unit == "m" else (1.0, bound.unit)
     words = "at most" if bound.sense == "most" else "at least"
     allowed = "allowed" if bound.sense == "most" else "asked"
     return (
-        f"{bound.name}: {scale * bound.figure:.4g} {unit} {words}, of "
-        f"{scale * bound.limit:.4g} {unit} {allowed}"
+        f"{bound.name}: {figure_in_words(bound.figure, bound.unit)} {words}, of "
+        f"{figure_in_words(bound.limit, bound.unit)} {allowed}"
     )
 
 
