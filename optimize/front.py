@@ -10,6 +10,7 @@ import numpy as np
 
 from .dominance import knee as bend
 from .evaluation import largest_deflection
+from .meaning import Meaning
 from .solve import Outcome
 from .study import Study
 
@@ -25,11 +26,13 @@ class ParetoPoint:
         bound: on the deflection, with which it was sought [m].
         deflection: largest of the tip under the study's forces, by the springs [m].
         outcome: of the search that found it.
+        meaning: prices of its bounds and indifferent ranges, of points that were asked for them.
     """
 
     bound: float
     deflection: float
     outcome: Outcome
+    meaning: Meaning | None = None
 
     @property
     def force(self) -> float:

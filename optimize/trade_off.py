@@ -42,10 +42,12 @@ STARTS = 6
 
 
 @dataclass(frozen=True, eq=False)
-class TradePoint:
+class TradePoint(Record):
     """A design on a front, and what its numbers mean.
 
     Attributes:
+        study: with the objectives held where they were.
+        scenarios: likewise.
         values: of the objectives, in their units, as they were asked for.
         springs: joint stiffness, length n [N·m/rad].
         others: values of the other variables of the hardware.
@@ -58,6 +60,10 @@ class TradePoint:
         prices: what each binding bound costs.
     """
 
+    UNSHOWN = ("study", "scenarios")
+
+    study: Study
+    scenarios: Scenarios
     values: tuple[float, ...]
     springs: Array
     others: Array
@@ -127,7 +133,7 @@ def asks_for_trade_off(study: Study) -> bool:
     return bool(more or study.levels.objectives)
 
 
-def trade_off(
+def trade_off_front(
     study: Study,
     executor: Executor | None = None,
     on_progress: Progress | None = None,
@@ -266,6 +272,8 @@ def _point(trade: Trade, levels: Levels, grid: Grid, node: Node, values: Array) 
     require_thick_cover(setting, state.worst, equipped(study, ca.DM(springs), others))
     worth = worth_of(study, state.worst.force / state.worst.share * state.unit)
     return TradePoint(
+        study=study,
+        scenarios=setting.scenarios,
         values=tuple(values.tolist()),
         springs=springs,
         others=others,

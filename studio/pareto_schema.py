@@ -36,12 +36,26 @@ class Checked(_Part):
     full: float
 
 
+class Price(_Part):
+    """What a bound costs: how much a little more room buys, to first order."""
+
+    bound: str
+    newtons: float | None = Field(description="force saved [N]")
+    room: str = Field(description="how much more")
+    gain: float
+    unit: str = Field(description="of gain")
+
+
 class CheckedPoint(Point):
     """A design on a front, simulated."""
 
     meets_limit: bool
     safe_speed: float = Field(description="at which the force is the limit [m/s]")
     check: Checked
+    prices: list[Price] = Field(description="what each bound that binds costs, the dearest first")
+    indifferent: dict[str, list[float]] = Field(
+        description="range of each value that costs less than 0.5 %, the others held"
+    )
     knee: bool = Field(description="whether the front bends there")
 
 
