@@ -22,12 +22,12 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
 from .catalogue import Bought, bought
-from .certificate import KEEPS, Hardening, Progress, Setting, Worst
+from .certificate import KEEPS, Hardening, Setting, Worst
 from .evaluation import equipped, largest_share
 from .failure import SolverFailure
 from .hardware import Hardware
-from .ipopt import FEASIBLE, IN_TURN, Bounds, Found, Instance, minimise
-from .nlp import Program, Shape, task_numbers
+from .ipopt import FEASIBLE, IN_TURN, Found, Instance, VariableBounds, minimise
+from .nlp import NlpShape, Program, task_numbers
 from .reach import require_reachable
 from .repair import accurate_springs
 from .scenarios import Scenarios
@@ -38,7 +38,7 @@ from .study import Study
 from .timing import Timing
 from .tip_pose import tip_pose
 from .variables.cover import Cover
-from .workers import as_completed, cores, workers, works_elsewhere
+from .workers import Progress, as_completed, cores, workers, works_elsewhere
 
 ROUNDS = 40
 """Most exchanges."""
@@ -277,7 +277,7 @@ def _instance(setting: Setting, active: list[int], poses: list[int], unit: float
     tasks = [task_numbers(study, *tip_pose(study.model, scenarios.poses[k].q)) for k in poses]
     own = [i // len(scenarios.motors) for i in active]
     numbered = {which: k for k, which in enumerate(dict.fromkeys(own))}
-    shape = Shape(
+    shape = NlpShape(
         len(poses),
         tuple((poses.index(each.pose), each.point) for each in places),
         tuple(numbered[which] for which in own),
@@ -312,7 +312,7 @@ def _searched(
 def search(
     program: Program,
     instance: Instance,
-    limits: Bounds,
+    limits: VariableBounds,
     postures: Array,
     springs: Array,
     others: Array | None,

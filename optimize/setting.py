@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from concurrent.futures import Executor
 
-from .certificate import Progress, Setting
+from .certificate import Setting
 from .impact_program import impact_program
-from .ipopt import Bounds
+from .ipopt import VariableBounds
 from .problem import sought_parts, study_program
 from .scenarios import Scenarios
 from .study import Study
 from .timing import Timing, scenario_timing
+from .workers import Progress
 
 
 def setting_of(
@@ -55,7 +56,7 @@ def setting_of(
         scenarios,
         study_program(study, impacts),
         timing,
-        Bounds.of(study),
+        VariableBounds.of(study),
         pool,
         on_progress or (lambda *_: None),
     )

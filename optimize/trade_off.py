@@ -20,7 +20,7 @@ from softimpact.symbolic.robot.rigid import Array
 from .answers import Price, prices_of, worth_of
 from .axes import Axes, BoundAxis, ObjectiveAxis, asked_axes
 from .bounds import Deflection
-from .certificate import Hardening, Progress, Worst
+from .certificate import Hardening, Worst
 from .dominance import knee, undominated
 from .evaluation import equipped
 from .grid import WORTH, Grid, Node, fill, values_at
@@ -35,7 +35,7 @@ from .study_file import ScenariosSection
 from .study_scenarios import scenarios_of
 from .timing import Timing, scenario_timing
 from .trade import Trade
-from .workers import cores, workers, works_elsewhere
+from .workers import Progress, cores, workers, works_elsewhere
 
 STARTS = 6
 """Poses of a study, at most, from which a free posture is first sought."""

@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 
     from .pareto_report import ParetoReport
 
-Out = Annotated[
+OutOption = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder of results; default results/STUDY_pareto."),
 ]
-Points = Annotated[
+PointsOption = Annotated[
     int | None,
     typer.Option(
         metavar="N", help="Number of levels of each instead of the study's.", min=2, max=100
     ),
 ]
-Objectives = Annotated[
+ObjectivesOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST",
@@ -38,27 +38,31 @@ Objectives = Annotated[
 
 
 def pareto(
-    study: o.StudyFile,
-    out: Out = None,
-    points: Points = None,
-    objectives: Objectives = None,
-    region: o.Region = None,
-    speed: o.Speed = None,
-    page: o.Report = None,
-    workers: o.Workers = None,
-    dask: o.Dask = None,
-    resume: o.Resume = False,
-    json: o.Json = False,
+    study: o.StudyFileArgument,
+    out: OutOption = None,
+    points: PointsOption = None,
+    objectives: ObjectivesOption = None,
+    region: o.RegionOption = None,
+    speed: o.SpeedOption = None,
+    page: o.ReportOption = None,
+    workers: o.WorkersOption = None,
+    dask: o.DaskOption = None,
+    resume: o.ResumeOption = False,
+    json: o.JsonOption = False,
 ) -> None:
     """Find designs that no other beats: in force and accuracy, or in objectives of your choice."""
     from softimpact.optimize import load_study
     from softimpact.optimize.execution import Execution
     from softimpact.optimize.trade_off import asks_for_trade_off
 
-    from .execution import running
     from .output import failures_as_json, print_json
-    from .pareto_record import GENERATOR, as_record
-    from .results_folder import replaced_folder, require_folder_of, require_replaceable
+    from .pareto_record import GENERATOR, pareto_record
+    from .results_folder import (
+        replaced_folder,
+        require_folder_of,
+        require_replaceable_results,
+        running,
+    )
     from .values import given
 
     named = None if objectives is None else [name.strip() for name in objectives.split(",")]
@@ -69,7 +73,7 @@ def pareto(
     overrides = {name: part for name, part in changed.items() if part}
     problem = load_study(study, overrides)
     folder = out or Path("results") / f"{problem.source.stem}_pareto"
-    require_replaceable(folder, GENERATOR)
+    require_replaceable_results(folder, GENERATOR)
     require_folder_of(page)
     how = Execution(workers, dask, resume)
     if asks_for_trade_off(problem):
@@ -77,7 +81,7 @@ def pareto(
         return
     with failures_as_json(json), running(how, folder) as pool:
         report = _search(problem, pool)
-        record = as_record(report)
+        record = pareto_record(report)
         with replaced_folder(folder, GENERATOR) as fresh:
             _write(report, record, fresh)
     if page is not None:
@@ -94,12 +98,11 @@ def _trade_off(study: Study, folder: Path, page: Path | None, how: Execution, js
     """Find and write a front over objectives of a machine for scenarios."""
     from softimpact.optimize.trade_off import trade_off_front
 
-    from .execution import running
     from .figures.trade_off import draw_trade_off_figures
     from .output import failures_as_json, print_json, print_table, say, write_json
     from .pareto_record import GENERATOR
     from .progress import optimiser_bar
-    from .results_folder import RESULTS, replaced_folder
+    from .results_folder import RESULTS, replaced_folder, running
     from .trade_off_record import trade_off_record, write_points
     from .trade_off_report import trade_off_report
     from .trade_off_words import columns, heading, in_words, markdown, rows

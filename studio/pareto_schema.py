@@ -12,7 +12,7 @@ class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class Point(_Part):
+class PointRecord(_Part):
     """A design on a front."""
 
     bound: float = Field(description="on the deflection, with which it was sought [m]")
@@ -28,7 +28,7 @@ class Point(_Part):
     springs: list[float] = Field(description="joint stiffness [N·m/rad]")
 
 
-class Checked(_Part):
+class CheckedRecord(_Part):
     """A force by independent simulation [N]."""
 
     nlp: float
@@ -36,7 +36,7 @@ class Checked(_Part):
     full: float
 
 
-class Price(_Part):
+class PriceRecord(_Part):
     """What a bound costs: how much a little more room buys, to first order."""
 
     bound: str
@@ -46,13 +46,15 @@ class Price(_Part):
     unit: str = Field(description="of gain")
 
 
-class CheckedPoint(Point):
+class CheckedPointRecord(PointRecord):
     """A design on a front, simulated."""
 
     meets_limit: bool
     safe_speed: float = Field(description="at which the force is the limit [m/s]")
-    check: Checked
-    prices: list[Price] = Field(description="what each bound that binds costs, the dearest first")
+    check: CheckedRecord
+    prices: list[PriceRecord] = Field(
+        description="what each bound that binds costs, the dearest first"
+    )
     indifferent: dict[str, list[float]] = Field(
         description="range of each value that costs less than 0.5 %, the others held"
     )
@@ -68,7 +70,7 @@ class Unsolved(_Part):
     violation: float
 
 
-class Reference(_Part):
+class ReferenceRecord(_Part):
     """The design to improve on."""
 
     name: str
@@ -82,9 +84,9 @@ class Reference(_Part):
 class Fronts(_Part):
     """Fronts, the most accurate design first; none of a front beats another in both."""
 
-    free: list[CheckedPoint]
-    given: list[CheckedPoint]
-    task: list[CheckedPoint]
+    free: list[CheckedPointRecord]
+    given: list[CheckedPointRecord]
+    task: list[CheckedPointRecord]
 
 
 class Solver(_Part):
@@ -109,7 +111,7 @@ class ParetoResults(_Part):
     accuracy: str
     solver: Solver
     levels: list[float] = Field(description="bounds on the deflection [m]")
-    reference: Reference
+    reference: ReferenceRecord
     fronts: Fronts
-    held: dict[str, list[Point]] = Field(description="front of each given pose")
+    held: dict[str, list[PointRecord]] = Field(description="front of each given pose")
     unsolved: dict[str, list[Unsolved]]

@@ -9,9 +9,9 @@ import numpy as np
 
 from softimpact.optimize import Study
 from softimpact.optimize.axes import Axis
-from softimpact.optimize.searches import Progress
 from softimpact.optimize.trade_off import TradeOff, TradePoint
 from softimpact.optimize.units import SCALES, figure_in_words
+from softimpact.optimize.workers import Progress
 
 from .robust_report import simulated_worst
 

@@ -7,14 +7,14 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from .pareto_schema import Price
+from .pareto_schema import PriceRecord
 
 
 class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class Objective(_Part):
+class ObjectiveRecord(_Part):
     """One of the quantities that the front trades."""
 
     kind: str = Field(description="name of an objective or a bound in study files")
@@ -24,7 +24,7 @@ class Objective(_Part):
     levels: list[float] | None = Field(description="at which it was held; null if it was sought")
 
 
-class Kept(_Part):
+class KeptRecord(_Part):
     """How well a bound is kept, in the pose where it is kept worst."""
 
     name: str
@@ -35,7 +35,7 @@ class Kept(_Part):
     share: float = Field(description="of the limit that is used; above 1 it is broken")
 
 
-class Scenario(_Part):
+class ScenarioRecord(_Part):
     """An impact."""
 
     pose: str
@@ -49,14 +49,14 @@ class Scenario(_Part):
     limit: float = Field(description="largest force that it allows [N]")
 
 
-class Check(_Part):
+class CheckRecord(_Part):
     """The worst scenario's peak [N] as the optimiser has it and by independent simulation."""
 
     nlp: float
     linearised: float
 
 
-class Point(_Part):
+class TradePointRecord(_Part):
     """A design that no other beats in all objectives."""
 
     values: dict[str, float] = Field(description="of the objectives, by kind, in their units")
@@ -66,19 +66,19 @@ class Point(_Part):
     postures: dict[str, list[float]] = Field(description="of each pose [rad]")
     worst_force: float = Field(description="over all scenarios [N]")
     worst_share: float = Field(description="of the region's limit")
-    worst_scenario: Scenario
+    worst_scenario: ScenarioRecord
     meets_limit: bool
-    check: Check
-    bounds: list[Kept]
+    check: CheckRecord
+    bounds: list[KeptRecord]
     indifferent: dict[str, list[float]] = Field(
         description="range of each value that costs less than 0.5 %, the others held"
     )
-    prices: list[Price]
+    prices: list[PriceRecord]
     bound: float = Field(description="share of the limit that the scenarios that decide allow")
     status: str = Field(description="Ipopt's")
 
 
-class Before(_Part):
+class BeforeRecord(_Part):
     """The machine as it is."""
 
     values: dict[str, float]
@@ -89,7 +89,7 @@ class Before(_Part):
     breaks: list[str]
 
 
-class Solver(_Part):
+class TradeSolverRecord(_Part):
     """How the impacts were integrated."""
 
     compiled: bool
@@ -105,11 +105,13 @@ class ObjectivesResults(_Part):
     versions: dict[str, str]
     study: dict[str, Any] = Field(description="what was asked")
     peak_definition: str
-    objectives: list[Objective] = Field(description="in the order in which they were asked for")
+    objectives: list[ObjectiveRecord] = Field(
+        description="in the order they were asked for"
+    )
     scenarios: int
-    points: list[Point] = Field(description="best in the first objective first")
-    before: Before
+    points: list[TradePointRecord] = Field(description="best in the first objective first")
+    before: BeforeRecord
     levels_searched: int
     levels_out_of_reach: int
     levels_unsolved: list[str] = Field(description="Ipopt's statuses where it failed")
-    solver: Solver
+    solver: TradeSolverRecord

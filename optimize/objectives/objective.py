@@ -6,17 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from softimpact.symbolic import Matrix
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
 if TYPE_CHECKING:
     from ..scenarios import Scenarios
-
-Indices = NDArray[np.int64]
-"""Numbers of things."""
 
 
 @dataclass(frozen=True, eq=False)
