@@ -55,7 +55,7 @@ def pareto(
     from softimpact.optimize.execution import Execution
     from softimpact.optimize.trade_off import asks_for_trade_off
 
-    from .output import failures_as_json, print_json
+    from .output import failures_as_json, print_json, print_warnings
     from .pareto_record import GENERATOR, pareto_record
     from .results_folder import (
         replaced_folder,
@@ -88,6 +88,7 @@ def pareto(
         from .report.pareto_pages import write_pareto_report
 
         write_pareto_report(report, page)
+    print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})
     else:
@@ -99,7 +100,14 @@ def _trade_off(study: Study, folder: Path, page: Path | None, how: Execution, js
     from softimpact.optimize.trade_off import trade_off_front
 
     from .figures.trade_off import draw_trade_off_figures
-    from .output import failures_as_json, print_json, print_table, say, write_json
+    from .output import (
+        failures_as_json,
+        print_json,
+        print_table,
+        print_warnings,
+        say,
+        write_json,
+    )
     from .pareto_record import GENERATOR
     from .progress import optimiser_bar
     from .results_folder import RESULTS, replaced_folder, running
@@ -125,6 +133,7 @@ def _trade_off(study: Study, folder: Path, page: Path | None, how: Execution, js
         from .report.trade_off_pages import write_trade_off_report
 
         write_trade_off_report(report, page)
+    print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})
         return

@@ -10,6 +10,7 @@ from typing import Any
 from softimpact.optimize import Front, ParetoPoint
 from softimpact.optimize.answers import by_name
 
+from .cautions import study_warnings
 from .design_report import inputs, limit_kind, versions
 from .pareto_report import FRONTS, CheckedPoint, ParetoReport, price_of_deflection
 
@@ -28,6 +29,7 @@ def pareto_record(report: ParetoReport) -> dict[str, Any]:
         "limit": report.limit,
         "limit_kind": limit_kind(study),
         "peak_definition": "peak",
+        "warnings": study_warnings(study),
         "accuracy": "largest deflection of the tip by the springs under the study's forces [m]",
         "solver": {
             "compiled": pareto.compiled,

@@ -108,6 +108,7 @@ class ParetoResults(_Part):
     limit: float = Field(description="force that reaches a limit of the region [N]")
     limit_kind: str
     peak_definition: str
+    warnings: list[str] = Field(description="what was ignored, and what limits are worth")
     accuracy: str
     solver: Solver
     levels: list[float] = Field(description="bounds on the deflection [m]")

@@ -23,6 +23,7 @@ from softimpact.symbolic import Contact, ImpactModel, Robot, impact_model, with_
 from softimpact.symbolic.robot.rigid import Array, Inertia
 
 from .answers_in_words import answers_in_words
+from .cautions import study_warnings
 from .design_report import GENERATOR, inputs, versions
 
 
@@ -121,6 +122,7 @@ def robust_record(design: RobustDesign) -> dict[str, Any]:
         "versions": versions(),
         "study": inputs(study),
         "peak_definition": "peak",
+        "warnings": study_warnings(study),
         "objective": {
             "kind": study.objective.kind,
             "unit": study.objective.unit,

@@ -10,6 +10,7 @@ from typing import Any
 from softimpact.optimize.answers import by_name
 from softimpact.optimize.trade_off import TradePoint
 
+from .cautions import study_warnings
 from .design_report import inputs, versions
 from .pareto_record import GENERATOR
 from .robust_report import scenario_record
@@ -28,6 +29,7 @@ def trade_off_record(report: TradeOffReport) -> dict[str, Any]:
         "versions": versions(),
         "study": {**inputs(study), "pareto": study.levels.model_dump()},
         "peak_definition": "peak",
+        "warnings": study_warnings(study),
         "objectives": [
             {
                 "kind": axis.kind,

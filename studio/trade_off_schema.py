@@ -105,9 +105,8 @@ class ObjectivesResults(_Part):
     versions: dict[str, str]
     study: dict[str, Any] = Field(description="what was asked")
     peak_definition: str
-    objectives: list[ObjectiveRecord] = Field(
-        description="in the order they were asked for"
-    )
+    warnings: list[str] = Field(description="what was ignored, and what limits are worth")
+    objectives: list[ObjectiveRecord] = Field(description="in the order they were asked for")
     scenarios: int
     points: list[TradePointRecord] = Field(description="best in the first objective first")
     before: BeforeRecord
