@@ -168,6 +168,12 @@ class Study:
         return Range(tuple(names), lower, upper, start)
 
     @property
+    def units(self) -> tuple[str, ...]:
+        """Unit of each of ``range``'s values."""
+        each = [(variable.unit, variable.range(self.model)) for variable in self.variables]
+        return tuple(unit for unit, found in each for _ in found.names)
+
+    @property
     def limit(self) -> float:
         """Largest force that what is hit may bear: its limits of force and energy [N]."""
         return transient_limit(self.contact)

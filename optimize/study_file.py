@@ -108,11 +108,18 @@ class AccuracySection(Section):
 
 
 class ParetoSection(Section):
-    """Between which bounds on the deflection [m], and at how many, a Pareto front is sought."""
+    """What a Pareto front trades, at how many levels of each, and between which ends.
+
+    ``lower`` and ``upper`` are those of the deflection [m].
+    """
 
     points: Annotated[int, Field(ge=2, le=100)] = 11
     lower: Positive | None = None
     upper: Positive | None = None
+    objectives: list[str] | None = None
+    ends: dict[str, Annotated[list[Positive], Field(min_length=2, max_length=2)]] = Field(
+        default_factory=dict
+    )
 
     @model_validator(mode="after")
     def _lower_is_below(self) -> ParetoSection:

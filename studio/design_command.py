@@ -50,7 +50,7 @@ def design(
     from softimpact.optimize.execution import Execution
 
     from .design_report import GENERATOR, design_record, design_report
-    from .output import failures_as_json, print_json
+    from .output import failures_as_json, print_json, print_warnings
     from .results_folder import (
         replaced_folder,
         require_folder_of,
@@ -82,6 +82,7 @@ def design(
         from .report.design_pages import write_design_report
 
         write_design_report(report, page)
+    print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})
     else:
@@ -96,7 +97,7 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
     from softimpact.optimize.study_scenarios import scenarios_of
 
     from .design_report import GENERATOR
-    from .output import failures_as_json, print_json, say, write_json
+    from .output import failures_as_json, print_json, print_warnings, say, write_json
     from .progress import optimiser_bar
     from .results_folder import RESULTS, replaced_folder, running
     from .robust_report import designed_model, robust_in_words, robust_record
@@ -119,6 +120,7 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
         from .report.design_pages import write_robust_report
 
         write_robust_report(found, page)
+    print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})
         return
