@@ -14,7 +14,7 @@ from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
 from .bounds import Bound, Deflection
-from .hardware import Hardware, Machine, Motion
+from .hardware import Hardware, Machine, TaskMotion
 from .study import Study
 from .variables import Variable
 
@@ -89,7 +89,7 @@ def _figures(
     bound: Bound,
     model: ImpactModel,
     variables: tuple[Variable, ...],
-    motions: tuple[Motion, ...],
+    motions: tuple[TaskMotion, ...],
     margin: float,
 ) -> ca.Function:
     size = sum(variable.range(model).lower.size for variable in variables)
