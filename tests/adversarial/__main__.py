@@ -35,6 +35,9 @@ from .search import TURNS, Found, look
 COUNT, CLIMBS = 2000, 50
 """Of a round: random inputs, and climbs."""
 
+WIDTHS = ("plain", "wide")
+"""Of what is drawn: what arms and bodies have, or many decades."""
+
 HERE = Path(__file__).parent
 
 
@@ -73,12 +76,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=str(__doc__).split("\n", maxsplit=1)[0])
     parser.add_argument("robots", nargs="*", default=[*ROBOTS], metavar="ROBOT")
     parser.add_argument("--inputs", type=int, default=1_000_000)
+    parser.add_argument("--widths", nargs="+", choices=WIDTHS, default=WIDTHS)
     parser.add_argument("--seed", type=int, default=1, help="of the first round")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--journal", type=Path, default=Path("results/adversarial.jsonl"))
     parser.add_argument("--out", type=Path, help="for the sums, JSON")
     told = parser.parse_args()
-    kinds = [(name, real, wide) for name in told.robots for real in KINDS for wide in (False, True)]
+    widths = [width == "wide" for width in told.widths]
+    kinds = [(name, real, wide) for name in told.robots for real in KINDS for wide in widths]
     rounds = -(-told.inputs // (len(kinds) * (COUNT + CLIMBS * TURNS)))
     told.journal.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:

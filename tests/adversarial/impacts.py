@@ -95,7 +95,7 @@ class Robot:
         zero = ca.DM.zeros(robot.n)
         known = Drives(beside, zero, (False,) * robot.n, zero)
         model = impact_model(
-            robot, package.tip, drives_=known, gravity=package.manifest.gravity
+            robot, package.tip, drives=known, gravity=package.manifest.gravity
         )
         self.independent = list(closed_chain(robot).independent)
         self.actuated = np.array(model.actuated, dtype=bool)

@@ -55,5 +55,5 @@ def package_of(name: str, folder: Path) -> Generated:
     """Return the package of a robot by name, generated anew."""
     robot = ROBOTS[name]()
     known = drives(robot, rotor_inertia=0.1) if name == "solo12" else None
-    manifest = generate_package(robot, folder, name=name, drives_=known)
+    manifest = generate_package(robot, folder, name=name, drives=known)
     return Generated(robot, str(robot.tip), folder, manifest)
