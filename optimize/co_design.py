@@ -141,7 +141,7 @@ class Design(Record):
 
     def rows(self) -> list[Row]:
         """Return a line for each search: the pose it began with, posture, springs and force."""
-        names = self.study.robot.joint_names
+        names, springs = self.study.robot.joint_names, self.study.spring_names
         return [
             {
                 "pose": found.name,
@@ -151,7 +151,7 @@ class Design(Record):
                 "deflection": largest_deflection(self.study, found.q, found.springs),
                 "solved": found.solved,
                 **{f"q_{name}": float(x) for name, x in zip(names, found.q, strict=True)},
-                **{f"k_{name}": float(k) for name, k in zip(names, found.springs, strict=True)},
+                **{f"k_{name}": float(k) for name, k in zip(springs, found.springs, strict=True)},
             }
             for pose in self.poses
             for mode, found in (("table", pose.table), ("free", pose.free))

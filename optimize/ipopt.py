@@ -13,12 +13,12 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import posture_limits
 from .nlp import SPEED, Program, Shape, nlp_solver, peak_rows
 from .objectives import Objective, WorstForce
 from .peaks import WINDOWS, hides_a_peak, valley
 from .solver_options import quiet
 from .study import Study
-from .tip_pose import POSE
 
 IPOPT: dict[str, Any] = {
     "hessian_approximation": "limited-memory",
@@ -80,7 +80,9 @@ class Bounds:
         """Return the limits of a study."""
         ends = study.range
         logarithms = (np.log10(each) for each in (ends.lower, ends.upper, ends.start))
-        return Bounds(*study.robot.limits, study.lower, study.upper, study.groups, *logarithms)
+        return Bounds(
+            *posture_limits(study.model), study.lower, study.upper, study.groups, *logarithms
+        )
 
     @property
     def springs(self) -> int:
@@ -312,12 +314,12 @@ def _round(
 
 
 def constraint_bounds(program: Program, shape: Shape, *, free: bool) -> tuple[Array, Array]:
-    """Bounds on g: the tip's pose is held where the posture is free, all else is at most zero."""
+    """Bounds on g: a free posture holds the tip's pose and loops; all else is at most zero."""
     lower = np.full(peak_rows(program, shape).stop, -np.inf)
     upper = np.zeros(lower.size)
     for k in range(shape.postures):
-        pose = slice(k * program.rows, k * program.rows + POSE)
-        lower[pose], upper[pose] = (0.0, 0.0) if free else (-np.inf, np.inf)
+        held = slice(k * program.rows, k * program.rows + program.held)
+        lower[held], upper[held] = (0.0, 0.0) if free else (-np.inf, np.inf)
     return lower, upper
 
 

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import freedom, posture_limits
 from .evaluation import largest_deflection
 from .solver_options import quiet
 from .study import Study
-from .tip_pose import POSE, tip_pose_error
+from .tip_pose import POSE, posture_error
 
 HELD = 1e-9
 """Pose error [m, rad] up to which a posture holds the tip as it is."""
@@ -34,10 +35,10 @@ def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) ->
     pose = np.concatenate([position, rotation.ravel(order="F")])
     if abs(np.array(_pose_error(study.model)(q, pose))).max() < HELD:
         return q
-    if study.robot.n < POSE:  # Ipopt refuses what has more equations than unknowns
+    if freedom(study.model) < POSE:  # Ipopt refuses what has more equations than unknowns
         return None
     solver = _posture_solver(study.model)
-    lower, upper = study.robot.limits
+    lower, upper = posture_limits(study.model)
     p = np.concatenate([q, pose])
     found = solver(x0=q, p=p, lbx=lower, ubx=upper, lbg=0, ubg=0)
     return np.array(found["x"]).ravel() if solver.stats()["success"] else None
@@ -56,7 +57,7 @@ def held_elsewhere(
 def _pose_error(model: ImpactModel) -> ca.Function:
     q = ca.SX.sym("q", model.robot.n)
     position, rotation = ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)
-    error = tip_pose_error(model, q, position, rotation)
+    error = posture_error(model, q, position, rotation)
     return ca.Function("error", [q, ca.vertcat(position, ca.vec(rotation))], [error])
 
 
@@ -69,7 +70,7 @@ def _posture_solver(model: ImpactModel) -> ca.Function:
         "x": q,
         "p": ca.vertcat(wanted, position, ca.vec(rotation)),
         "f": ca.sumsqr(q - wanted),
-        "g": tip_pose_error(model, q, position, rotation),
+        "g": posture_error(model, q, position, rotation),
     }
     return ca.nlpsol("posture", "ipopt", problem, quiet({"tol": 1e-9}))
 
@@ -83,10 +84,10 @@ def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
     Args:
         study: whose forces and bounds count.
         q: posture, length n [rad].
-        springs: proportions of the stiffness, length n [N·m/rad].
+        springs: proportions of the stiffness, one for each spring [N·m/rad].
     """
     scaled = np.clip(springs, study.lower, study.upper)
-    for _ in range(4 * study.robot.n):
+    for _ in range(4 * len(study.groups)):
         share = largest_deflection(study, q, scaled) / study.max_deflection
         if abs(share - 1.0) < 1e-3:
             break

@@ -140,7 +140,7 @@ def _forces(
         mobility=mobility,
         jacobian=jacobian,
         springs=ca.MX(ca.DM(drives.springs)),
-        rotors=ca.MX(known_rotors(model)),
+        rotor_mobility=ca.MX(1 / known_rotors(model)),
         gains=ca.MX(gains),
         damping=ca.MX(ca.DM.zeros(n) if drives.damping_gains is None else drives.damping_gains),
         velocity=rate,

@@ -11,6 +11,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import sprung, with_springs
 from .impact_program import ImpactProgram, impact_numbers, impact_program, known_rotors
 from .scenarios import Scenarios
 from .study import Study
@@ -123,7 +124,7 @@ def stiffest_in_time(model: ImpactModel, q: Array, direction: Array, horizon: fl
         direction: of the impact.
         horizon: of the impacts [s].
     """
-    frequency = _largest_frequency(model, np.ones(model.robot.n), q, direction)
+    frequency = _largest_frequency(model, np.ones(len(sprung(model))), q, direction)
     return (MOST_STEPS * LARGEST_PHASE / horizon / frequency) ** 2
 
 
@@ -147,8 +148,8 @@ def _of_study(study: Study, postures: Sequence[Array], direction: Array) -> floa
 
 def _largest_frequency(model: ImpactModel, springs: Array, q: Array, direction: Array) -> float:
     """Return the largest angular frequency of a robot with some springs [rad/s]."""
-    drives = replace(model.drives, rotors=known_rotors(model), springs=springs)
-    linear = replace(model, drives=drives).linear(q, direction)
+    known = replace(model, drives=replace(model.drives, rotors=known_rotors(model)))
+    linear = with_springs(known, springs).linear(q, direction)
     mass, stiffness = np.array(linear.mass.matrix), np.array(linear.stiffness)
     return float(np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(mass, stiffness))).max()))
 

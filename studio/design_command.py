@@ -163,7 +163,7 @@ def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:
 
     write_json(folder / RESULTS, record)
     draw_figures(report, folder)
-    model = report.study.model.with_springs(report.design.winner.springs)
+    model = report.study.with_springs(report.design.winner.springs)
     generate_package(model.robot, folder / "c", drives_=model.drives)
 
 

@@ -191,11 +191,15 @@ def floating_model(
     """
     own = drives_ or drives(robot.fixed)
     none = ca.DM.zeros(BASE_COORDINATES)
+    damping, limits, known = own.damping_gains, own.torque_limits, own.rotors_known
     padded = Drives(
         ca.vertcat(none, own.rotors),
         ca.vertcat(none, own.springs),
         (False,) * BASE_COORDINATES + own.elastic,
         ca.vertcat(none, own.gains),
         own.computed_torque_gain,
+        None if damping is None else ca.vertcat(none, damping),
+        None if limits is None else np.concatenate([np.full(BASE_COORDINATES, np.inf), limits]),
+        None if known is None else (True,) * BASE_COORDINATES + known,
     )
     return impact_model(robot.freed, tip, drives_=padded)
