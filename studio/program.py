@@ -35,6 +35,7 @@ from .motion_file import limits_left
 from .motion_source import MotionSource, Survey, motion_source, require_all_move, survey
 from .program_record import ProgramResult, program_record
 from .program_run import Question, slowed_program
+from .program_trust import doubts
 from .progress import progress_bar
 from .situation import (
     TypedArm,
@@ -101,7 +102,8 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     rigid = counted_as_rigid(model, how.drives)
     cautions = _cautions(robot, bodies, seen)
     warnings = [*arm.warnings, *rigid, *told, *limits, *assumed, *cautions]
-    record = program_record(path, question, answer, [*warnings, *answer.warnings])
+    warnings += [*answer.warnings, *doubts(question, answer.worst)]
+    record = program_record(path, question, answer, warnings)
     return ProgramResult(question, answer, record)
 
 
