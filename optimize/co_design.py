@@ -246,7 +246,7 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
 
     task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
     accurate = study.nominal
-    if task.deflection_before > study.max_deflection * KEEPS:
+    if largest_share(study, task.candidate.q, study.nominal) > KEEPS:
         accurate = accurate_springs(study, task.candidate.q, study.nominal)
     at = task.candidate.q
     return Answers(

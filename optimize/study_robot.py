@@ -23,7 +23,7 @@ from softimpact.symbolic import (
     lock_joints,
 )
 from softimpact.symbolic.impact.drives import PerJoint, require_rotors
-from softimpact.symbolic.impact.floating import BASE_COORDINATES, BASE_JOINTS
+from softimpact.symbolic.impact.floating import BASE_COORDINATES, is_floating
 from softimpact.symbolic.loops.closure import closed_near, require_closed_at
 from softimpact.symbolic.loops.couplings import whole_configuration
 from softimpact.symbolic.loops.loops import closed_chain
@@ -181,8 +181,7 @@ def posture_of(model: ImpactModel, field: str, values: Sequence[float]) -> Array
         LoopError: loops that do not close there.
     """
     robot = model.robot
-    base = robot.joint_names[:BASE_COORDINATES] == BASE_JOINTS
-    if base:
+    if is_floating(robot):
         names = robot.joint_names[BASE_COORDINATES:]
         own = len(names) - len(robot.followers)
         if len(values) not in (own, len(names)):

@@ -25,6 +25,7 @@ from ..matrices import Matrix
 from ..robot.plausibility import require_sound_masses
 from ..robot.rigid import Inertia, Placement
 from ..robot.robot import Joint, JointKind, Robot
+from ..robot.welding import lock_joints
 from .drives import Drives, drives
 from .impact_model import ImpactModel, impact_model
 
@@ -161,6 +162,29 @@ def floating_robot(robot: Robot, base_inertia: Inertia | None = None) -> Floatin
     joints = _free_joint(inertia) + own
     freed = replace(robot, joints=joints, frames=frames, rotor_inertia_sets=sets)
     return FloatingRobot(robot, replace(freed, base_inertia=Inertia.zero()))
+
+
+def is_floating(robot: Robot) -> bool:
+    """Return whether a robot begins with the joints that stand for a free base."""
+    return robot.joint_names[:BASE_COORDINATES] == BASE_JOINTS
+
+
+def base_held(model: ImpactModel) -> ImpactModel:
+    """Return a floating model with its base held where it is: heavier for all that it hits."""
+    held = lock_joints(model.robot, dict.fromkeys(BASE_JOINTS, 0.0))
+    own, shift = model.drives, BASE_COORDINATES
+    damping, limits, known = own.damping_gains, own.torque_limits, own.rotors_known
+    cut = Drives(
+        own.rotors[shift:],
+        own.springs[shift:],
+        own.elastic[shift:],
+        own.gains[shift:],
+        own.computed_torque_gain,
+        None if damping is None else damping[shift:],
+        None if limits is None else limits[shift:],
+        None if known is None else known[shift:],
+    )
+    return impact_model(held, model.tip, drives_=cut, gravity=model.gravity)
 
 
 def _free_joint(inertia: Inertia) -> tuple[Joint, ...]:
