@@ -12,7 +12,7 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array
 
 from .bounds import STEEPNESS, Bound
-from .ipopt import Bounds, Found, Instance
+from .ipopt import Found, Instance, VariableBounds
 from .nlp import Program
 from .study import Study
 
@@ -49,7 +49,7 @@ class Price:
 
 
 def indifferent_ranges(
-    bounds: Bounds,
+    bounds: VariableBounds,
     v: Array,
     cost: Callable[[Array], float],
     keeps: Callable[[Array], bool],

@@ -74,7 +74,7 @@ class Gains:
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class DesignReference:
     """The design to compare with: the task's pose, springs in the nominal proportions.
 
     They are the nominal ones where these keep the bound on the deflection, else just stiff enough.
@@ -107,7 +107,7 @@ class Answers:
     indifferent: Array
     prices: tuple[Price, ...]
     worst_motors: Motors
-    reference: Reference
+    reference: DesignReference
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +185,7 @@ def design(
         SolverFailure: no search was solved.
     """
     modes = applicable(study, modes)
-    require_reachable(study, modes)
+    require_a_reachable_pose(study, modes)
     outcomes: dict[tuple[str, Mode], Outcome] = {}
     with workers(min(len(study.poses), cores()), executor) as pool:
         awake(pool, len(study.poses))
@@ -258,7 +258,7 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
             study, instance, again, worth_of(study, float(instance.units[0])), program
         ),
         worst_motors=_worst_motors(problem, winner),
-        reference=Reference(
+        reference=DesignReference(
             accurate,
             peak_force(study, program.impacts[0], problem.timing, at, accurate),
             largest_deflection(study, at, accurate),
@@ -276,7 +276,7 @@ def _worst_motors(problem: Problem, winner: Outcome) -> Motors:
     return problem.study.motors[int(np.argmax(forces))]
 
 
-def require_reachable(study: Study, modes: Sequence[Mode]) -> None:
+def require_a_reachable_pose(study: Study, modes: Sequence[Mode]) -> None:
     """Raise Infeasible if no hardware keeps the bounds in any pose, moved if that is sought."""
     poses, free = candidates(study), "free" in modes
     if any(reachable(study, pose.q, free=free) for pose in poses):

@@ -15,7 +15,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .bounds import Bound, Deflection
 from .coordinates import sprung
-from .hardware import Hardware, Machine, Motion
+from .hardware import Hardware, Machine, TaskMotion
 from .study import Study
 from .variables import Variable
 
@@ -90,7 +90,7 @@ def _figures(
     bound: Bound,
     model: ImpactModel,
     variables: tuple[Variable, ...],
-    motions: tuple[Motion, ...],
+    motions: tuple[TaskMotion, ...],
     margin: float,
 ) -> ca.Function:
     size = sum(variable.range(model).lower.size for variable in variables)

@@ -115,11 +115,14 @@ def contact_forces(
     n = dynamics.springs.shape[0]
     node = _leapfrog(n, substeps, dynamics.gains.sparsity(), dynamics.rigid)
     start = ca.vertcat(
-        ca.MX.zeros(2 * n), dynamics.velocity, dynamics.velocity, ca.MX.zeros(len(Body._fields))
+        ca.MX.zeros(2 * n),
+        dynamics.velocity,
+        dynamics.velocity,
+        ca.MX.zeros(len(BodyState._fields)),
     )
     given = ca.vertcat(ca.repmat(parameters, 1, nodes), laws.at_nodes(step, substeps, nodes))
     states = node.mapaccum("impact", nodes, 1, FEW_DIRECTIONS)(start, given)
-    return states[4 * n + Body._fields.index("force"), :].T
+    return states[4 * n + BodyState._fields.index("force"), :].T
 
 
 def _nonzeros(matrix: Matrix) -> Matrix:
@@ -128,7 +131,7 @@ def _nonzeros(matrix: Matrix) -> Matrix:
     return ca.vertcat(*picked) if picked else ca.DM(0, 1)
 
 
-class Body(NamedTuple):
+class BodyState(NamedTuple):
     """State of the body region during the impact, and the time.
 
     Attributes:
@@ -152,7 +155,7 @@ def _leapfrog(n: int, steps: int, gains: ca.Sparsity, rigid: tuple[int, ...]) ->
     The state is link angles, motor angles, their velocities half a step ahead, and the body's. The
     parameters end with what the motors do meanwhile.
     """
-    state = ca.SX.sym("state", 4 * n + len(Body._fields))
+    state = ca.SX.sym("state", 4 * n + len(BodyState._fields))
     M_inv, j, k_s = ca.SX.sym("M_inv", n, n), ca.SX.sym("j", n), ca.SX.sym("k_s", n)
     B_inv, K_d, velocity = ca.SX.sym("B_inv", n), ca.SX.sym("K_d", n), ca.SX.sym("dq0", n)
     K_p, law = ca.SX.sym("K_p", gains), ca.SX.sym("law", LAW)
@@ -160,7 +163,7 @@ def _leapfrog(n: int, steps: int, gains: ca.Sparsity, rigid: tuple[int, ...]) ->
     h = ca.SX.sym("h")
     R, carried = list(rigid), ca.SX.sym("carried", n if rigid else 0, len(rigid))
     x, theta, dx, dtheta, rest = ca.vertsplit(state, [0, n, 2 * n, 3 * n, 4 * n, state.numel()])
-    body = Body(*ca.vertsplit(rest))
+    body = BodyState(*ca.vertsplit(rest))
     moves, share, servo = ca.vertsplit(law)
     for _ in range(steps):
         x, theta = x + h * dx, theta + h * dtheta
@@ -194,7 +197,7 @@ def _leapfrog(n: int, steps: int, gains: ca.Sparsity, rigid: tuple[int, ...]) ->
     return ca.Function("leapfrog", [state, parameters], [after], FEW_DIRECTIONS)
 
 
-def _press(body: Body, tip: Matrix, contact: ContactParameters, h: Matrix) -> Body:
+def _press(body: BodyState, tip: Matrix, contact: ContactParameters, h: Matrix) -> BodyState:
     """Move the body by one step to where the robot's contact point is now."""
     position = body.position + h * body.velocity
     depth = tip - position
@@ -210,4 +213,4 @@ def _press(body: Body, tip: Matrix, contact: ContactParameters, h: Matrix) -> Bo
         y = y - residual / (drag + k_h + 1.5 * k_f * root)
     skin = ca.fmax(depth - y, 0)
     force = k_f * skin * ca.sqrt(skin + ROUNDING)
-    return Body(position, body.velocity + h * mobility * force, y, force, body.time + h)
+    return BodyState(position, body.velocity + h * mobility * force, y, force, body.time + h)

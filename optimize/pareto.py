@@ -24,13 +24,13 @@ from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
 from .levels import ROOM, even_bounds, level_range
 from .problem import Problem, prepare
-from .searches import Progress, Searches
+from .searches import Searches
 from .solve import Outcome, Start, better, preference, solve
 from .stiffest import Stiffest, stiffest
 from .study import Study
 from .sweep import Level, sweep
 from .timing import Timing
-from .workers import cores, workers, works_elsewhere
+from .workers import Progress, cores, workers, works_elsewhere
 
 RIGID = 1e-12
 """Deflection [m] that counts as none."""
@@ -40,7 +40,7 @@ Outcomes = list[Outcome | None]
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class FrontReference:
     """The design to improve on: the task's pose with the nominal stiffness.
 
     Attributes:
@@ -78,7 +78,7 @@ class Pareto(Record):
     free: Front
     given: Front
     held: dict[str, Front]
-    reference: Reference
+    reference: FrontReference
     timing: Timing
     compiled: bool
 
@@ -242,10 +242,10 @@ def _least(outcomes: Sequence[Outcome | None]) -> Outcome | None:
     return min(found, key=preference, default=None)
 
 
-def _reference(problem: Problem) -> Reference:
+def _reference(problem: Problem) -> FrontReference:
     study = problem.study
     names = [pose.pose.name for pose in problem.poses]
     i = names.index(study.task_pose.name)
     q = problem.poses[i].q
     deflection = largest_deflection(study, q, study.nominal)
-    return Reference(q, study.nominal, deflection, problem.before[i])
+    return FrontReference(q, study.nominal, deflection, problem.before[i])

@@ -22,13 +22,13 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
 from .catalogue import Bought, bought
-from .certificate import KEEPS, Hardening, Progress, Setting, Worst
+from .certificate import KEEPS, Hardening, Setting, Worst
 from .evaluation import equipped, largest_share
 from .failure import SolverFailure
 from .hardware import Hardware
 from .impact_program import impact_program
-from .ipopt import FEASIBLE, IN_TURN, Bounds, Found, Instance, minimise
-from .nlp import Program, Shape, task_numbers
+from .ipopt import FEASIBLE, IN_TURN, Found, Instance, VariableBounds, minimise
+from .nlp import NlpShape, Program, task_numbers
 from .problem import sought_parts, study_program
 from .reach import require_reachable
 from .repair import accurate_springs
@@ -39,7 +39,7 @@ from .study import Study, transient_limit
 from .timing import Timing, scenario_timing
 from .tip_pose import tip_pose
 from .variables.cover import Cover
-from .workers import as_completed, cores, workers, works_elsewhere
+from .workers import Progress, as_completed, cores, workers, works_elsewhere
 
 ROUNDS = 40
 """Most exchanges."""
@@ -149,7 +149,7 @@ def robust_design(
             scenarios,
             study_program(study, impacts),
             timing,
-            Bounds.of(study),
+            VariableBounds.of(study),
             pool,
             on_progress or (lambda *_: None),
         )
@@ -282,7 +282,7 @@ def _instance(setting: Setting, active: list[int], poses: list[int], unit: float
     tasks = [task_numbers(study, *tip_pose(study.model, scenarios.poses[k].q)) for k in poses]
     own = [i // len(scenarios.motors) for i in active]
     numbered = {which: k for k, which in enumerate(dict.fromkeys(own))}
-    shape = Shape(
+    shape = NlpShape(
         len(poses),
         tuple((poses.index(each.pose), each.point) for each in places),
         tuple(numbered[which] for which in own),
@@ -317,7 +317,7 @@ def _searched(
 def search(
     program: Program,
     instance: Instance,
-    limits: Bounds,
+    limits: VariableBounds,
     postures: Array,
     springs: Array,
     others: Array | None,

@@ -8,17 +8,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from softimpact.symbolic import Contact, Motors
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
 from .impact_program import impact_numbers
 from .poses import Candidate
 from .study import transient_limit
-
-Indices = NDArray[np.int64]
-"""Rows of places on the axes, in the order of ``Scenario``."""
 
 
 class Scenario(NamedTuple):

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
 from .impact_program import NUMBERS
 from .nlp import Program
-from .scenarios import Indices, Scenario, Scenarios
+from .scenarios import Scenario, Scenarios
 from .study import transient_limit
 
 CHUNK = 128
@@ -91,7 +91,7 @@ def forces_at(
     if speeds is not None:
         which = np.arange(begin, end) // len(scenarios.motors) if speeds.size > 1 else 0
         x = np.column_stack([x, np.broadcast_to(np.log10(speeds[which]), len(places))])
-    numbers = numbers_of(scenarios, places, step)
+    numbers = impact_numbers(scenarios, places, step)
     force = np.empty(len(places))
     for point in np.unique(places[:, 1]):
         at = np.flatnonzero(places[:, 1] == point)
@@ -99,7 +99,7 @@ def forces_at(
     return force
 
 
-def numbers_of(scenarios: Scenarios, places: Indices, step: float) -> Array:
+def impact_numbers(scenarios: Scenarios, places: Indices, step: float) -> Array:
     """Return the impacts' numbers, a row each; those that differ in nothing but the pose once."""
     found: dict[tuple[int, ...], Array] = {}
     rows = np.empty((len(places), NUMBERS))

@@ -24,12 +24,12 @@ from softimpact.symbolic import (
     limits_of,
     unit_direction,
 )
+from softimpact.symbolic.impact.approach import singular_postures
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import singular_postures
 from .bounds import Bound, Deflection
 from .coordinates import spring_names, with_springs
-from .hardware import Motion
+from .hardware import TaskMotion
 from .objectives import Objective, WorstForce
 from .study_file import (
     ParetoSection,
@@ -40,7 +40,7 @@ from .study_file import (
     StudyFile,
     read_study_file,
 )
-from .study_motors import motors_of
+from .study_motors import study_motors
 from .study_numbers import catalogue_of, moments_of, stiffness_of
 from .study_parts import asked_bounds, asked_objective, asked_variables, require_fit
 from .study_robot import (
@@ -185,14 +185,14 @@ class Study:
         return transient_limit(self.contact)
 
     @property
-    def motions(self) -> tuple[Motion, ...]:
+    def motions(self) -> tuple[TaskMotion, ...]:
         """The motions that the study's impacts ask of the robot, each at its greatest speed."""
         fastest: dict[tuple[str, tuple[float, ...]], float] = {}
         for point, direction, speed in self._impacts():
             key = point, tuple(unit_direction(direction).tolist())
             fastest[key] = max(speed, fastest.get(key, 0.0))
         return tuple(
-            Motion(self.robot.frame(point).name, (speed * x, speed * y, speed * z))
+            TaskMotion(self.robot.frame(point).name, (speed * x, speed * y, speed * z))
             for (point, (x, y, z)), speed in fastest.items()
         )
 
@@ -258,7 +258,7 @@ def build_study(file: StudyFile, source: Path) -> Study:
         if file.motors.kind != "driven":
             require_known_rotors(model)
     with _naming(source, "motors", "kind"):
-        motors = motors_of(file.motors, model)
+        motors = study_motors(file.motors, model)
     with _naming(source, "hardware", "joint_stiffness"):
         groups = joint_groups(model, file.hardware.joint_stiffness)
     with _naming(source, "impact", "direction"):

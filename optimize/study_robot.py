@@ -132,9 +132,9 @@ def model_of(chain: Robot, file: StudyFile, places: Sequence[int], nominal: Arra
         damping_gain=motors.damping_gain,
     )
     if section.floating:
-        model = floating_model(floating_robot(chain), drives_=built)
+        model = floating_model(floating_robot(chain), drives=built)
     else:
-        model = impact_model(chain, drives_=built)
+        model = impact_model(chain, drives=built)
     return with_springs(model, nominal)
 
 

@@ -125,7 +125,7 @@ def _reactions(study: Study, q: Array, springs: Array) -> dict[float, float]:
     return {} if unknown_rotors(study.model) else peaks_by_reaction(study, q, springs)
 
 
-def as_record(report: DesignReport) -> dict[str, Any]:
+def design_record(report: DesignReport) -> dict[str, Any]:
     """Return a report as plain data, for ``results.json``."""
     study, design = report.study, report.design
     region = study.contact.region

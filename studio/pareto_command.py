@@ -17,47 +17,51 @@ if TYPE_CHECKING:
 
     from .pareto_report import ParetoReport
 
-Out = Annotated[
+OutOption = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder of results; default results/STUDY_pareto."),
 ]
-Points = Annotated[
+PointsOption = Annotated[
     int | None,
     typer.Option(metavar="N", help="Number of accuracies instead of the study's.", min=2, max=100),
 ]
 
 
 def pareto(
-    study: o.StudyFile,
-    out: Out = None,
-    points: Points = None,
-    region: o.Region = None,
-    speed: o.Speed = None,
-    page: o.Report = None,
-    workers: o.Workers = None,
-    dask: o.Dask = None,
-    resume: o.Resume = False,
-    json: o.Json = False,
+    study: o.StudyFileArgument,
+    out: OutOption = None,
+    points: PointsOption = None,
+    region: o.RegionOption = None,
+    speed: o.SpeedOption = None,
+    page: o.ReportOption = None,
+    workers: o.WorkersOption = None,
+    dask: o.DaskOption = None,
+    resume: o.ResumeOption = False,
+    json: o.JsonOption = False,
 ) -> None:
     """Find the least peak force at every accuracy: fronts with the posture free and held."""
     from softimpact.optimize import load_study
     from softimpact.optimize.execution import Execution
 
-    from .execution import running
     from .output import failures_as_json, print_json
-    from .pareto_record import GENERATOR, as_record
-    from .results_folder import replaced_folder, require_folder_of, require_replaceable
+    from .pareto_record import GENERATOR, pareto_record
+    from .results_folder import (
+        replaced_folder,
+        require_folder_of,
+        require_replaceable_results,
+        running,
+    )
     from .values import given
 
     overrides = {"impact": given(region=region, speed=speed), "pareto": given(points=points)}
     problem = load_study(study, overrides)
     folder = out or Path("results") / f"{problem.source.stem}_pareto"
-    require_replaceable(folder, GENERATOR)
+    require_replaceable_results(folder, GENERATOR)
     require_folder_of(page)
     how = Execution(workers, dask, resume)
     with failures_as_json(json), running(how, folder) as pool:
         report = _search(problem, pool)
-        record = as_record(report)
+        record = pareto_record(report)
         with replaced_folder(folder, GENERATOR) as fresh:
             _write(report, record, fresh)
     if page is not None:

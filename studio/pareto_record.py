@@ -16,7 +16,7 @@ GENERATOR = "softimpact pareto"
 """Marks a folder of results as one that may be replaced."""
 
 
-def as_record(report: ParetoReport) -> dict[str, Any]:
+def pareto_record(report: ParetoReport) -> dict[str, Any]:
     """Return a report as plain data, for ``results.json``."""
     study, pareto = report.study, report.pareto
     return {

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from softimpact.optimize import Front, Pareto, ParetoPoint, Study
 from softimpact.optimize.front import knee
-from softimpact.optimize.searches import Progress
+from softimpact.optimize.workers import Progress
 
 from .checks import Check, checked, safe_speed
 

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
@@ -33,6 +32,7 @@ from softimpact.symbolic.robot.robot import BASE
 from . import values
 from .motion_file import limits_left
 from .motion_source import MotionSource, Survey, motion_source, require_all_move, survey
+from .program_engine import Engine
 from .program_record import ProgramResult, program_record
 from .program_run import Question, slowed_program
 from .program_trust import doubts
@@ -45,7 +45,7 @@ from .situation import (
     gravity_of,
     loaded_arm,
 )
-from .typed_motors import TypedMotors, motors_of
+from .typed_motors import TypedMotors, motors_meant
 from .zones_file import read_zones
 
 APART = 0.15
@@ -53,8 +53,6 @@ APART = 0.15
 
 COARSE = 0.05
 """Way of a watched point between two samples from which on a motion is called coarse [m]."""
-
-Engine = Literal["auto", "c", "python"]
 
 
 @dataclass(frozen=True)
@@ -79,7 +77,7 @@ class TypedProgram:
 def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     """Return how fast a program may run; raises SoftImpactError."""
     engine: Engine = values.one_of("engine", how.engine, Engine)
-    motors, reaction = motors_of(how.motors, how.drives)
+    motors, reaction = motors_meant(how.motors, how.drives)
     if motors is not None:
         refuse_held(motors, "a safe program")
     bodies = _bodies(how)
@@ -88,7 +86,7 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     robot = arm.robot
     source, told = motion_source(path, robot, whole)
     model = impact_model(
-        robot, drives_=drives_of(robot, how.drives), gravity=gravity_of(how.gravity)
+        robot, drives=drives_of(robot, how.drives), gravity=gravity_of(how.gravity)
     )
     found, assumed = bracket(model, motors, reaction)
     ends = {kind: end for kind, end in found.items() if isinstance(end, Motors)}

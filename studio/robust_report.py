@@ -13,7 +13,7 @@ from softimpact.optimize.answers import by_name
 from softimpact.optimize.catalogue import Bought
 from softimpact.optimize.certificate import Worst
 from softimpact.optimize.evaluation import Kept, equipped
-from softimpact.optimize.impact_program import in_series
+from softimpact.optimize.impact_program import hertz_in_series
 from softimpact.optimize.robust import RobustDesign
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import Contact, ImpactModel, Robot, impact_model, with_load
@@ -32,7 +32,7 @@ def designed_model(design: RobustDesign) -> ImpactModel:
     robot = model.robot
     if hardware.masses is not None:
         robot = _scaled(robot, np.array(ca.DM(hardware.masses)).ravel())
-    return impact_model(robot, model.tip, drives_=drives)
+    return impact_model(robot, model.tip, drives=drives)
 
 
 def _scaled(robot: Robot, masses: Array) -> Robot:
@@ -51,7 +51,7 @@ def _covered(design: RobustDesign, contact: Contact) -> Contact:
     if cover is None:
         return contact
     own = contact.series_stiffness
-    return replace(contact, cover=None, hertz_stiffness=float(in_series(own, ca.DM(cover))))
+    return replace(contact, cover=None, hertz_stiffness=float(hertz_in_series(own, ca.DM(cover))))
 
 
 def simulated_worst(design: RobustDesign) -> float:
@@ -63,7 +63,7 @@ def simulated_worst(design: RobustDesign) -> float:
     robot, point = model.robot, scenarios.points[one.point]
     if load:
         robot = with_load(robot, study.model.tip, load)
-    hit = impact_model(robot, point, drives_=model.drives)
+    hit = impact_model(robot, point, drives=model.drives)
     speed = scenarios.speeds[one.speed] * _factor(design, design.worst)
     approach = Approach(design.postures[one.pose], scenarios.directions[one.direction], speed)
     motors = scenarios.motors[one.motors]

@@ -43,7 +43,7 @@ from .situation import (
     gravity_of,
     loaded_arm,
 )
-from .typed_motors import TypedMotors, motors_of
+from .typed_motors import TypedMotors, motors_meant
 from .worst_directions import worst_directions
 
 Over = Literal["plane", "self-motion"]
@@ -158,7 +158,7 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         seen: called with the number of impacts that were looked at.
     """
     over: Over = values.one_of("map's ground", how.over, Over)
-    motors, reaction = motors_of(how.motors, how.drives)
+    motors, reaction = motors_meant(how.motors, how.drives)
     if motors is not None:
         refuse_held(motors, "a map of safe speeds")
     if not 0 < how.speed < np.inf:
@@ -171,7 +171,7 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
     if robot.loops:
         raise InvalidValue("model", f"'{robot.name}' has closed loops; maps are of open chains")
     drives = drives_of(robot, how.drives)
-    model = impact_model(robot, drives_=drives, gravity=gravity_of(how.gravity))
+    model = impact_model(robot, drives=drives, gravity=gravity_of(how.gravity))
     body = _body(how)
     asked = None if how.direction is None else unit_direction(
         values.vector("direction", how.direction, 3)

@@ -9,17 +9,17 @@ import typer
 
 from . import options as o
 
-By = Annotated[
+ByOption = Annotated[
     str, typer.Option(metavar="FIGURE", help="peak_force, m_c, giaf or directional_giaf.")
 ]
 
 
 def select(
-    study: o.StudyFile,
-    by: By = "peak_force",
-    fidelity: o.Fidelity = "linearised",
-    report: o.Report = None,
-    json: o.Json = False,
+    study: o.StudyFileArgument,
+    by: ByOption = "peak_force",
+    fidelity: o.FidelityOption = "linearised",
+    report: o.ReportOption = None,
+    json: o.JsonOption = False,
 ) -> None:
     """Rank the configurations of a study at its nominal joint stiffness."""
     from softimpact.optimize import load_study

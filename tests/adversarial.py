@@ -94,7 +94,7 @@ def generated(name: str, folder: Path) -> Generated:
     if name == "solo12":
         robot = arm_of(load_robot(example_urdf("solo12.urdf")), "FL_FOOT").robot
         known = drives(robot, rotor_inertia=0.1)
-        manifest = generate_package(robot, folder, name="solo12", drives_=known)
+        manifest = generate_package(robot, folder, name="solo12", drives=known)
         return Generated(robot, "FL_FOOT", folder, manifest)
     robot = two_links() if name == "rr" else load_robot(name)  # whose springs are no inputs
     tip = str(robot.tip)

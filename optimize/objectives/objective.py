@@ -6,14 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from softimpact.symbolic import Matrix
-from softimpact.symbolic.robot.rigid import Array
-
-Indices = NDArray[np.int64]
-"""Numbers of things."""
+from softimpact.symbolic.robot.rigid import Array, Indices
 
 
 @dataclass(frozen=True, eq=False)

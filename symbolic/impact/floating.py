@@ -21,12 +21,14 @@ from numpy.typing import ArrayLike
 from ..dynamics.equations_of_motion import STANDARD_GRAVITY, Gravity, bias_torques, mass_matrix
 from ..dynamics.kinematics import FramePose, cross, frame_jacobian, frame_pose
 from ..errors import InvalidInertia, MasslessBase
+from ..former_names import renamed
 from ..matrices import Matrix
 from ..robot.plausibility import require_sound_masses
 from ..robot.rigid import Inertia, Placement
 from ..robot.robot import Joint, JointKind, Robot
 from ..robot.welding import lock_joints
-from .drives import Drives, drives
+from .drives import Drives
+from .drives import drives as drives_with
 from .impact_model import ImpactModel, impact_model
 
 BASE_COORDINATES = 6
@@ -184,7 +186,7 @@ def base_held(model: ImpactModel) -> ImpactModel:
         None if limits is None else limits[shift:],
         None if known is None else known[shift:],
     )
-    return impact_model(held, model.tip, drives_=cut, gravity=model.gravity)
+    return impact_model(held, model.tip, drives=cut, gravity=model.gravity)
 
 
 def _free_joint(inertia: Inertia) -> tuple[Joint, ...]:
@@ -200,8 +202,9 @@ def _free_joint(inertia: Inertia) -> tuple[Joint, ...]:
     return (*joints[:-1], replace(joints[-1], inertia=inertia))
 
 
+@renamed(drives_="drives")
 def floating_model(
-    robot: FloatingRobot, tip: str | None = None, *, drives_: Drives | None = None
+    robot: FloatingRobot, tip: str | None = None, *, drives: Drives | None = None
 ) -> ImpactModel:
     """Return the impact model of a floating robot.
 
@@ -211,9 +214,9 @@ def floating_model(
     Args:
         robot: with its base free.
         tip: contact frame; default the robot's own; raises FrameNotFound.
-        drives_: of its joints, without the base; default rigid joints with the file's armature.
+        drives: of its joints, without the base; default rigid joints with the file's armature.
     """
-    own = drives_ or drives(robot.fixed)
+    own = drives or drives_with(robot.fixed)
     none = ca.DM.zeros(BASE_COORDINATES)
     damping, limits, known = own.damping_gains, own.torque_limits, own.rotors_known
     padded = Drives(
@@ -226,4 +229,4 @@ def floating_model(
         None if limits is None else np.concatenate([np.full(BASE_COORDINATES, np.inf), limits]),
         None if known is None else (True,) * BASE_COORDINATES + known,
     )
-    return impact_model(robot.freed, tip, drives_=padded)
+    return impact_model(robot.freed, tip, drives=padded)

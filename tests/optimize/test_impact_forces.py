@@ -153,7 +153,7 @@ def test_peaks_in_any_posture(head: Impacts) -> None:
 def test_a_load_at_the_end_counts(head: Impacts) -> None:
     q, springs = head.postures[1], head.study.nominal
     loaded = with_load(head.study.robot, head.study.model.tip, 3.0)
-    model = impact_model(loaded, head.study.model.tip, drives_=head.study.model.drives)
+    model = impact_model(loaded, head.study.model.tip, drives=head.study.model.drives)
     peak = simulate_impact(
         model,
         Approach(q, head.study.direction, head.study.speed),
