@@ -24,7 +24,7 @@ from softimpact.toolchain import c_compiler
 
 from .compiled import compiled_functions
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
-from .impact_program import joint_damping, known_rotors
+from .impact_program import known_rotors
 from .motor_laws import MotorLaws
 
 STEP = 2e-4
@@ -118,12 +118,15 @@ def _arrival(model: ImpactModel, point: str) -> ca.Function:
     J = contact_point_jacobian(model.robot, model.robot.frame(point).name, q)
     velocity = ca.mtimes(J, rate)
     direction = velocity / ca.sqrt(ca.dot(velocity, velocity) + SLOW**2)
-    mass, damping = mass_matrix(model.robot, q), joint_damping(model.robot)
-    if damping is not None:
-        mass = mass + STEP / 2 * ca.diag(damping)
+    mass = mass_matrix(model.robot, q) + STEP / 2 * _joint_damping(model)
     mobility = Factorisation(mass).solve(ca.SX.eye(n))
     row = ca.SX(ca.densify(ca.mtimes(direction.T, J)))
     return ca.Function("arrival", [q, rate], [ca.SX(ca.densify(mobility)), row])
+
+
+def _joint_damping(model: ImpactModel) -> ca.DM:
+    """Return the joints' own damping, n×n [N·m·s/rad]."""
+    return ca.sparsify(ca.diag(ca.DM(model.robot.damping)))
 
 
 def _forces(
@@ -141,11 +144,11 @@ def _forces(
         mobility=mobility,
         jacobian=jacobian,
         springs=ca.MX(ca.DM(drives.springs)),
-        rotors=ca.MX(known_rotors(model)),
+        rotor_mobility=ca.MX(1 / known_rotors(model)),
         gains=ca.MX(gains),
         damping=ca.MX(ca.DM.zeros(n) if drives.damping_gains is None else drives.damping_gains),
         velocity=rate,
-        joint_damping=joint_damping(model.robot),
+        joint_damping=_joint_damping(model),
     )
     nodes = ceil(horizon / STEP)
     laws = MotorLaws.of(motors)

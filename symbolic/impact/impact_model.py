@@ -129,7 +129,7 @@ class ImpactModel(ByContent):
 
     def contact_jacobian(self, q: Matrix, direction: Matrix) -> Matrix:
         """Return J_c over motors and deflections, 1×N (MSM Eq. 4)."""
-        return elastic_jacobian(self._direction_row(q, direction), self.elastic)
+        return elastic_jacobian(self.direction_row(q, direction), self.elastic)
 
     def linear(self, q: Matrix, direction: Matrix, law: MotorLaw | None = None) -> LinearModel:
         """Return M0, K0, D and J_c at q, hit along the unit vector ``direction``.
@@ -168,7 +168,7 @@ class ImpactModel(ByContent):
         """Return m_c [kg] (MSM Eq. 36); rotors behind springs do not count."""
         mass = self.generalised_mass(q)
         if isinstance(mass, ElasticMass):
-            return reflected_mass(mass.links, self._direction_row(q, direction))
+            return reflected_mass(mass.links, self.direction_row(q, direction))
         return reflected_mass(mass.matrix, self.contact_jacobian(q, direction))
 
     def reduced(self, q: Matrix, direction: Matrix) -> ReducedModel:
@@ -230,7 +230,8 @@ class ImpactModel(ByContent):
             return constrained_stiffness(self.robot, q, self.gravity)
         return stiffness_of_potential(self.robot, q, self.gravity)
 
-    def _direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+    def direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+        """Return nᵀJ over the links, 1×n."""
         row = direction_jacobian(self.robot, self.tip, q, direction)
         return ca.mtimes(row, loop_tangent(self.robot, q)) if self.robot.loops else row
 
