@@ -14,7 +14,6 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import ImpactModel, Matrix, loop_gaps, loop_tangent
-from softimpact.symbolic.matrices import symmetric
 from softimpact.symbolic.robot.rigid import Array
 
 
@@ -101,15 +100,6 @@ def onto(model: ImpactModel, q: Matrix, of_joints: Matrix) -> Matrix:
     if not model.robot.loops:
         return of_joints
     return ca.mtimes(loop_tangent(model.robot, q).T, of_joints)
-
-
-def congruent(model: ImpactModel, q: Matrix, of_joints: Matrix) -> Matrix:
-    """Return what a symmetric matrix over all joints is over the coordinates: GᵀXG."""
-    if not model.robot.loops:
-        return of_joints
-    G = loop_tangent(model.robot, q)
-    product = ca.mtimes([G.T, of_joints, G])
-    return symmetric(lambda i, j: product[i, j], product.shape[0])
 
 
 def closure(model: ImpactModel, q: Matrix) -> Matrix:

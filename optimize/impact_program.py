@@ -27,7 +27,7 @@ from softimpact.symbolic.robot.rigid import Array
 from softimpact.toolchain import c_compiler, cache_folder
 
 from .compiled import compiled_functions
-from .coordinates import at_coordinates, congruent, is_plain, of_springs, rigid, sprung
+from .coordinates import at_coordinates, is_plain, of_springs, rigid, sprung
 from .hardware import Hardware, Machine, least_motion
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .motor_laws import MotorLaws
@@ -259,7 +259,7 @@ def _posture(model: ImpactModel, point: str, parts: Parts) -> ca.Function:
     machine = Machine.of(model, hardware_of(model, parts, logarithms))
     end, at = machine.jacobian(q), replace(model, tip=point)
     loaded = machine.mass_matrix(q) + numbers["payload"] * ca.mtimes(end.T, end)
-    damping = congruent(model, q, ca.sparsify(ca.diag(ca.DM(model.robot.damping))))
+    damping = model.congruent(q, ca.sparsify(ca.diag(ca.DM(model.robot.damping))))
     loaded = loaded + numbers["step"] / 2 * damping
     turning = _turning_with_links(machine, q)
     if turning is not None:
@@ -304,7 +304,7 @@ def _turning_with_links(machine: Machine, q: Matrix) -> Matrix | None:
     if is_plain(model):
         return None
     behind = [float(e) for e in model.drives.elastic]
-    return congruent(model, q, ca.diag(machine.hardware.reflected_rotors * (1 - ca.DM(behind))))
+    return model.congruent(q, ca.diag(machine.hardware.reflected_rotors * (1 - ca.DM(behind))))
 
 
 def _split(p: Matrix) -> dict[str, Matrix]:
