@@ -236,7 +236,7 @@ class ImpactModel(ByContent):
         return ca.mtimes(row, loop_tangent(self.robot, q)) if self.robot.loops else row
 
     def congruent(self, q: Matrix, matrix: Matrix) -> Matrix:
-        """Return a symmetric X over all joints over the coordinates: GᵀXG, X itself without loops."""
+        """Return a symmetric X over all joints over the coordinates: GᵀXG, or X without loops."""
         if not self.robot.loops:
             return matrix
         G = loop_tangent(self.robot, q)
