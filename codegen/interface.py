@@ -28,7 +28,7 @@ NUMPY = {"int": "i4", "unsigned int": "u4", "unsigned char": "u1", "double": "f8
 
 
 @dataclass(frozen=True)
-class Variable:
+class CVariable:
     """A member of a struct, an argument, or a table.
 
     Attributes:
@@ -53,7 +53,7 @@ class Struct:
     """A struct; its name is without the prefix."""
 
     name: str
-    fields: tuple[Variable, ...]
+    fields: tuple[CVariable, ...]
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Entry:
 
     name: str
     returns: str
-    arguments: tuple[Variable, ...]
+    arguments: tuple[CVariable, ...]
     comment: str
 
 
@@ -95,7 +95,7 @@ class Interface:
     enums: Mapping[str, Mapping[str, int]]
     numbers: Mapping[str, int]
     texts: Mapping[str, str]
-    tables: Mapping[str, Variable]
+    tables: Mapping[str, CVariable]
     layout: int | None
 
     def layout_in(self, real: str) -> int:
@@ -193,7 +193,7 @@ class _Header:
         structs = [self._struct(m[2], m[1], numbers) for m in STRUCT.finditer(self.text)]
         entries = [self._entry(m, numbers) for m in FUNCTION.finditer(self.text)]
         tables = [
-            Variable(self._short(m[2]), self._type(m[1]), self._shape(m[3], numbers))
+            CVariable(self._short(m[2]), self._type(m[1]), self._shape(m[3], numbers))
             for m in TABLE.finditer(self.text)
         ]
         layout = LAYOUT.search(self.text)
@@ -229,7 +229,7 @@ class _Header:
 
     def _struct(self, name: str, body: str, numbers: Mapping[str, int]) -> Struct:
         fields = [
-            Variable(m[2], self._type(m[1]), self._shape(m[3], numbers), comment=m[4] or "")
+            CVariable(m[2], self._type(m[1]), self._shape(m[3], numbers), comment=m[4] or "")
             for m in MEMBER.finditer(body)
         ]
         if re.sub(r"/\*.*?\*/", "", MEMBER.sub("", body), flags=re.DOTALL).strip():
@@ -246,7 +246,7 @@ class _Header:
                 raise UnknownDeclaration(self.prefix, text)
             pointer = bool(m[3] or m[5])
             arguments.append(
-                Variable(m[4], self._type(m[2]), self._shape(m[5], numbers), pointer,
+                CVariable(m[4], self._type(m[2]), self._shape(m[5], numbers), pointer,
                          pointer and not m[1])
             )  # fmt: skip
         comment = re.sub(r"^ \* ?", "", found["comment"] or "", flags=re.MULTILINE).strip()

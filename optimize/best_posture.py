@@ -13,15 +13,16 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import posture_limits
 from .impact_program import impact_program
-from .ipopt import Bounds, Instance, one_posture
+from .ipopt import Instance, VariableBounds, one_posture
 from .nlp import task_numbers
 from .problem import study_impacts, study_program
 from .solve import Start, solve
 from .solver_options import quiet
 from .study import Study
 from .timing import impact_timing
-from .tip_pose import tip_pose, tip_pose_error
+from .tip_pose import posture_error, tip_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +58,10 @@ def best_posture(
     problem: dict[str, Any] = {
         "x": q,
         "f": measure(q),
-        "g": tip_pose_error(model, q, ca.DM(position), ca.DM(rotation)),
+        "g": posture_error(model, q, ca.DM(position), ca.DM(rotation)),
     }
     solver = ca.nlpsol("posture", "ipopt", problem, quiet({"tol": 1e-9}))
-    lower, upper = model.robot.limits
+    lower, upper = posture_limits(model)
     found = solver(x0=start, lbx=lower, ubx=upper, lbg=0, ubg=0)
     stats = solver.stats()
     value, best = float(found["f"]), np.array(found["x"]).ravel()
@@ -83,5 +84,7 @@ def posture_of_least_force(study: Study, start: Array) -> BestPosture:
     shape = one_posture(len(impacts))
     instance = Instance(shape, task[None, :], impacts, np.full(len(impacts), 100.0))
     program = study_program(free, (impact,))
-    found = solve(program, Start("start", "free", ((start, springs),)), Bounds.of(free), instance)
+    found = solve(
+        program, Start("start", "free", ((start, springs),)), VariableBounds.of(free), instance
+    )
     return BestPosture(found.q, found.force, found.status, found.solved)

@@ -18,17 +18,16 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import Matrix
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
 from .bounds import row
 from .evaluation import equipped
 from .hardware import Hardware, Machine
 from .impact_program import NUMBERS, SIZES, ImpactProgram, Parts
 from .objectives import Objective, WorstForce
-from .objectives.objective import Indices
 from .peaks import WINDOWS
 from .study import Study
-from .tip_pose import tip_pose_error
+from .tip_pose import posture_error
 
 
 @dataclass(frozen=True)
@@ -44,6 +43,7 @@ class Program:
         variables: number of entries of v.
         bound_rows: number of rows of each bound.
         rows: of the task.
+        held: of these that are zero where a posture is sought: the tip's pose, and loops.
         size: of its numbers b.
     """
 
@@ -55,6 +55,7 @@ class Program:
     bound_rows: tuple[int, ...]
     rows: int
     size: int
+    held: int
 
     @property
     def library(self) -> bool:
@@ -63,7 +64,7 @@ class Program:
 
 
 @dataclass(frozen=True)
-class Shape:
+class NlpShape:
     """Which postures and impacts an NLP has, and what it makes small.
 
     Attributes:
@@ -106,6 +107,8 @@ def _hardware(study: Study, v: Matrix) -> Hardware:
 def task_function(study: Study) -> tuple[ca.Function, tuple[int, ...]]:
     """Return (x, b) -> (rows, their derivative by x), and how many rows each bound has.
 
+    The first rows are ``posture_error``.
+
     x is [q, v], and b as ``task_numbers`` has it.
     """
     n, bounds = study.robot.n, study.bounds
@@ -114,7 +117,7 @@ def task_function(study: Study) -> tuple[ca.Function, tuple[int, ...]]:
     position, rotation, limits = ca.vertsplit(b, [0, 3, 12, b.numel()])
     q, v = ca.vertsplit(x, [0, n, x.numel()])
     machine = Machine.of(study.model, _hardware(study, v), study.motions, study.margin)
-    error = tip_pose_error(study.model, q, position, ca.reshape(rotation, 3, 3))
+    error = posture_error(study.model, q, position, ca.reshape(rotation, 3, 3))
     kept = [row(b.sense, b.figures(machine, q), limits[i]) for i, b in enumerate(bounds)]
     rows = ca.vertcat(error, *kept)
     task = ca.Function("task", [x, b], ca.cse([rows, ca.densify(ca.jacobian(rows, x))]))
@@ -133,7 +136,7 @@ def task_numbers(study: Study, position: Array, rotation: Array) -> Array:
     return np.concatenate([position, rotation.ravel(order="F"), limits])
 
 
-def problem_functions(program: Program, shape: Shape) -> dict[str, ca.Function]:
+def problem_functions(program: Program, shape: NlpShape) -> dict[str, ca.Function]:
     """Return the NLP's functions by the names of CasADi's ``nlpsol``, with their derivatives.
 
     Parameters are each posture's numbers b, then each impact's: its own, the force that counts as
@@ -198,7 +201,7 @@ SPEED = list(SIZES).index("speed") + SIZES["direction"] - 1
 """Place of the speed among an impact's numbers."""
 
 
-def nlp_solver(program: Program, shape: Shape, options: dict[str, Any]) -> ca.Function:
+def nlp_solver(program: Program, shape: NlpShape, options: dict[str, Any]) -> ca.Function:
     """Return Ipopt on the problem."""
     functions = problem_functions(program, shape)
     x, p = (ca.MX.sym(name, functions["g"].numel_in(name)) for name in ("x", "p"))
@@ -213,7 +216,7 @@ def nlp_solver(program: Program, shape: Shape, options: dict[str, Any]) -> ca.Fu
     return ca.nlpsol("design", "ipopt", problem, {**options, **given, **unasked})
 
 
-def peak_rows(program: Program, shape: Shape) -> slice:
+def peak_rows(program: Program, shape: NlpShape) -> slice:
     """Entries of g that are peaks less F: ``WINDOWS`` for each impact."""
     begin = shape.postures * program.rows
     return slice(begin, begin + WINDOWS * len(shape.impacts))

@@ -13,14 +13,14 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .evaluation import equipped
 from .impact_program import PARTS, ImpactProgram, Parts, impact_numbers, impact_program
-from .ipopt import Bounds, Instance, one_posture
+from .ipopt import Instance, VariableBounds, one_posture
 from .nlp import Program, hardware_function, task_function, task_numbers
 from .objectives import WorstForce
 from .poses import Candidate, candidates, leaves_a_choice
 from .solve import Mode
 from .study import Study
 from .timing import Timing, impact_timing
-from .tip_pose import tip_pose
+from .tip_pose import posture_equations, tip_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class Problem:
     before: tuple[float, ...]
     timing: Timing
     program: Program
-    bounds: Bounds
+    bounds: VariableBounds
 
     @property
     def freest(self) -> Mode:
@@ -84,7 +84,7 @@ def prepare(study: Study, *, elsewhere: bool = False) -> Problem:
     )
     program = study_program(study, (impact,))
     before = tuple(peak_force(study, impact, timing, pose.q, study.nominal) for pose in poses)
-    return Problem(study, poses, before, timing, program, Bounds.of(study))
+    return Problem(study, poses, before, timing, program, VariableBounds.of(study))
 
 
 def _require_forces_alone(study: Study) -> None:
@@ -116,7 +116,8 @@ def study_program(study: Study, impacts: tuple[ImpactProgram, ...]) -> Program:
     variables = study.range.lower.size
     rows, size = task.numel_out(0), task.numel_in(1)
     serialised = task.serialize(), hardware.serialize()
-    return Program(impacts, *serialised, study.robot.n, variables, each, rows, size)
+    held = posture_equations(study.model)
+    return Program(impacts, *serialised, study.robot.n, variables, each, rows, size, held)
 
 
 def study_impacts(study: Study, step: float) -> Array:
@@ -137,7 +138,7 @@ def felt_numbers(
     Args:
         study: whose variables they are.
         parts: that are sought.
-        springs: joint stiffness, length n [N·m/rad].
+        springs: stiffness of each spring [N·m/rad].
         others: values of the other variables; default the machine as it is.
         speed: factor on the speed.
     """

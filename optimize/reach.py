@@ -18,13 +18,13 @@ from softimpact.symbolic.robot.rigid import Array
 from .bounds import Bound
 from .evaluation import figures, largest_deflection, largest_share
 from .failure import Infeasible
-from .ipopt import Bounds
+from .ipopt import VariableBounds
 from .nlp import task_function, task_numbers
 from .poses import Candidate
 from .solver_options import quiet
 from .stiffest import Stiffest
 from .study import Study
-from .tip_pose import POSE, tip_pose
+from .tip_pose import posture_equations, tip_pose
 
 WITHIN = 1e-5
 """Excess of a bound's row up to which it counts as kept: Ipopt's tolerance."""
@@ -68,7 +68,7 @@ def reach(
     asked = replace(study, other_bounds=tuple(b for b in bounds if b != study.deflection))
     with_deflection = any(b == study.deflection for b in bounds)
     task, rows = task_function(asked)
-    limits = Bounds.of(study)
+    limits, rows_held = VariableBounds.of(study), posture_equations(study.model)
     n, V, K = study.robot.n, limits.lower.size, len(postures)
     chosen = [with_deflection, *(True for _ in asked.other_bounds)]
     soft = [sought is None or bound in sought for bound in asked.bounds]
@@ -77,8 +77,8 @@ def reach(
     held, poses = [], []
     for q, given in zip(qs, postures, strict=True):
         found = task(ca.vertcat(q, v), task_numbers(asked, *tip_pose(study.model, given)))[0]
-        poses.append(found[:POSE])
-        pieces = ca.vertsplit(found[POSE:], np.cumsum([0, *rows]).tolist())
+        poses.append(found[:rows_held])
+        pieces = ca.vertsplit(found[rows_held:], np.cumsum([0, *rows]).tolist())
         for piece, is_chosen, is_soft in zip(pieces, chosen, soft, strict=True):
             if is_chosen:
                 held.append(piece - t if is_soft else piece)
@@ -91,7 +91,7 @@ def reach(
     solver = ca.nlpsol("reach", "ipopt", problem, quiet(IPOPT))
     loose = 0.0 if free else np.inf
     flat = np.concatenate(list(postures))
-    lower, upper = study.robot.limits
+    lower, upper = limits.q_lower, limits.q_upper
     least = np.concatenate([limits.lower, np.tile(lower, K) if free else flat, [-np.inf]])
     most = np.concatenate([limits.upper, np.tile(upper, K) if free else flat, [np.inf]])
     best: Reach | None = None
@@ -145,12 +145,12 @@ def infeasible(study: Study, poses: Sequence[Candidate], *, free: bool) -> Infea
     ends = []
     for bound in bounds:
         found = reach(study, postures, bounds, [bound], free=free)
-        springs, others = Bounds.of(study).parted(found.v)
+        springs, others = VariableBounds.of(study).parted(found.v)
         each = [figures(bound, study, q, springs, others) for q in found.postures]
         figure = max(e.max() for e in each) if bound.sense == "most" else min(e.min() for e in each)
         ends.append((bound, float(figure), found))
     at = _at_their_ends(study, ends[0][2].v)
-    springs, _ = Bounds.of(study).parted(ends[0][2].v)
+    springs, _ = VariableBounds.of(study).parted(ends[0][2].v)
     q = ends[0][2].postures[0]
     least = Stiffest(q, springs, largest_deflection(study, q, springs))
     names = [pose.pose.name for pose in some]

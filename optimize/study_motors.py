@@ -13,7 +13,7 @@ from softimpact.symbolic.impact.motors import MotorKind, check_motors, refuse_he
 from .study_file import MotorsSection
 
 
-def motors_of(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ...]:
+def study_motors(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ...]:
     """Return what the motors may do; the worst of several counts.
 
     Without a kind, motors with gains are a servo. Without gains either, what they do is unknown:
@@ -24,7 +24,7 @@ def motors_of(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ...]:
         InvalidValue: motors that are held, or a servo without gains.
     """
     kind, has_gains = section.kind, model.drives.has_gains
-    if kind == "driven" and (np.array(model.drives.rotors) == 0).any():
+    if kind == "driven" and _unknown_rotors(model):
         return (Motors("driven", inf),)
     if kind is None and has_gains:
         kind = "servo"
@@ -39,3 +39,11 @@ def motors_of(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ...]:
         refuse_held(motors, "a design")
         check_motors(motors)
     return found
+
+
+def _unknown_rotors(model: ImpactModel) -> bool:
+    """Return whether a motor's rotor is not known: one behind a spring needs an inertia."""
+    drives, actuated = model.drives, np.array(model.robot.actuated)
+    without = (np.array(drives.rotors).ravel() == 0) & np.array(drives.elastic)
+    known = np.array(drives.rotors_known or (True,) * model.robot.n)
+    return bool((actuated & (without | ~known)).any())

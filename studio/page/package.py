@@ -62,16 +62,17 @@ class PlacedContact(ImpactModel):
         """Return J of the point in the base's axes, whatever axes are asked for."""
         return placed_point_jacobian(self.robot, q, self.contact, self.moved_by)
 
-    def _direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+    def direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+        """Return nᵀJ over the links, 1×n."""
         return ca.mtimes(ca.reshape(direction, 1, 3), self.jacobian(q))
 
 
-def page_package(robot: Robot, drives_: Drives) -> Package:
+def page_package(robot: Robot, drives: Drives) -> Package:
     """Return the package of a robot's page.
 
     Args:
         robot: whose tip is where it holds its payload.
-        drives_: defaults of the parameters.
+        drives: defaults of the parameters.
 
     Raises:
         InvalidValue: the robot is no open chain, or no contact is possible.
@@ -90,7 +91,7 @@ def page_package(robot: Robot, drives_: Drives) -> Package:
         functions.append(reduced_model(symbols))
     if moves_in_space(replace(at_tip, robot=robot)):
         functions += [impact_factors(symbols), directional_factor(symbols)]
-    numbers = defaults_of(robot, parameters[: -len(_placed(robot))], drives_, Payload())
+    numbers = defaults_of(robot, parameters[: -len(_placed(robot))], drives, Payload())
     return Package(
         prefix=PREFIX,
         robot=robot,

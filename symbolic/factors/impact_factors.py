@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 
 from ..dynamics.kinematics import direction_jacobian
 from ..errors import InvalidValue, SingularDirection
-from ..impact.analysis import IMMOBILE, reach
+from ..impact.analysis import IMMOBILE, stretched_length
 from ..impact.approach import unit_direction
-from ..impact.floating import BASE_COORDINATES, BASE_JOINTS
+from ..impact.floating import BASE_COORDINATES, is_floating
 from ..impact.impact_model import ImpactModel
 from ..loops.closure import require_closed_at
 from ..loops.loops import loop_tangent
@@ -157,7 +157,7 @@ def impact_factors(
     require_closed_at(model.robot, angles)
     n = unit_direction(direction)
     J = np.array(model.jacobian(angles))
-    still = IMMOBILE * reach(model)
+    still = IMMOBILE * stretched_length(model)
     if np.linalg.norm(J.T @ n) <= still:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")
     M, rotors = ca.DM(model.mass_matrix(angles)), ca.DM(model.drives.rotors)
@@ -165,7 +165,7 @@ def impact_factors(
     free, real = model.free_mobility(angles), model.mobility(angles)
     rank = int(np.linalg.matrix_rank(J, tol=still))
     masses = [1 / float(n @ np.array(mobility.matrix) @ n) for mobility in (free, real)]
-    floating = model.robot.joint_names[:BASE_COORDINATES] == BASE_JOINTS
+    floating = is_floating(model.robot)
     own = slice(BASE_COORDINATES if floating else 0, None)
     row = ca.DM(direction_jacobian(model.robot, model.tip, angles, n))
     impulse = impulse_along(M, rotors, row.T, speed, restitution, 1 / other_mass, G)
