@@ -24,6 +24,7 @@ from .functions import coordinates_of
 from .impact_source import ImpactSource
 from .inputs import SCALARS, Parameter, is_elastic
 from .interface import interface_of
+from .law_points import MOST_POINTS
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
@@ -190,6 +191,7 @@ class Templates:
             "sine": sine,
             "regions": list(REGIONS.values()),
             "hertz_stiffness": HERTZ_STIFFNESS,
+            "most_law_points": MOST_POINTS,
             "measured": MEASURED_SAMPLES,
             "layout": 0,
         }

@@ -11,13 +11,14 @@ int robot_check_impact(const robot_region *region, const robot_params *p)
     if (p->layout != ROBOT_LAYOUT) {
         return ROBOT_FOREIGN_PARAMS;
     }
-    const robot_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
+    const robot_real numbers[4] = {region->stiffness, region->damping,
+        region->law != NULL ? ROBOT_R(1.0) : region->hertz_stiffness,
         region->clamped != 0 ? ROBOT_R(1.0) : region->effective_mass};
     if (!robot_all_finite(numbers, 4)) {
         return ROBOT_NOT_FINITE;
     }
     const bool body = region->stiffness > ROBOT_R(0.0) && region->damping >= ROBOT_R(0.0)
-        && region->hertz_stiffness > ROBOT_R(0.0) && numbers[3] > ROBOT_R(0.0);
+        && numbers[3] > ROBOT_R(0.0) && robot_law_is_one(region);
     const robot_real horizon = ROBOT_HORIZON(p);
     const robot_real reaction = ROBOT_REACTION_TIME(p);
     int status = robot_check_positive(&horizon, 1);

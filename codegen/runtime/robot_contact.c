@@ -2,10 +2,10 @@
 /*
  * One impact of robot_ over time: all contacts up to the horizon.
  *
- * Skin and body in series: f = k_f d^1.5 = k_h s + c_h s' with s = x - u, where x is how far the
- * contact point has come and u = d + (compliance of modes that stand) f. x' is exact at every node and u'
- * a backward difference, so that no damping makes it unstable. The force is quadratic between nodes;
- * steps are halved where it bends too much for that.
+ * Skin and body in series: f(d) = k_h s + c_h s' with s = x - u, where x is how far the contact point
+ * has come, u = d + (compliance of modes that stand) f, and f(d) = k_f d^1.5 or a law of robot_law.c. x' is
+ * exact at every node and u' a backward difference, so that no damping makes it unstable. The force is
+ * quadratic between nodes; steps are halved where it bends too much for that.
  */
 #include "robot_state.h"
 
@@ -133,10 +133,16 @@ void robot_press(const robot_state *s, robot_trial *t)
     t->f = ROBOT_R(0.0);
     t->u = ROBOT_R(0.0);
     t->root = ROBOT_R(0.0);
+    t->depth = ROBOT_R(0.0);
     if (pressed > ROBOT_R(0.0)) {
-        t->root = root_of(pressed/hold, region->hertz_stiffness*soft/hold, s->root);
-        t->f = region->hertz_stiffness*t->root*t->root*t->root;
-        t->u = t->root*t->root + phase->compliance*t->f;
+        if (region->law == NULL) {
+            t->root = root_of(pressed/hold, region->hertz_stiffness*soft/hold, s->root);
+            t->depth = t->root*t->root;
+            t->f = region->hertz_stiffness*t->root*t->depth;
+        } else {
+            t->f = robot_law_press(region, hold, soft, pressed, &t->depth);
+        }
+        t->u = t->depth + phase->compliance*t->f;
     }
     t->x = x - yields*t->f;
     t->bump = plain - plain_share*t->f;

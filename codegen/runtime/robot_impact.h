@@ -155,6 +155,21 @@ robot_real robot_bound(const robot_impact *impact);
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void robot_kinds_of_motors(const robot_params *p, int *first, int *last);
 
+/*
+ * What is known of a region's law of contact: its depth under a force, twice the work done by then, and the
+ * largest stiffness up to it.
+ */
+robot_real robot_law_depth(const robot_region *region, robot_real force);
+robot_real robot_law_twice_work(const robot_region *region, robot_real force);
+robot_real robot_law_stiffness(const robot_region *region, robot_real force);
+
+/* Force of a law through points whose depth d makes hold d + soft f(d) = pressed > 0; and that depth. */
+robot_real robot_law_press(const robot_region *region, robot_real hold, robot_real soft, robot_real pressed,
+    robot_real *depth);
+
+/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+bool robot_law_is_one(const robot_region *region);
+
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 robot_real robot_two_body_force(const robot_region *region, robot_real mobility, robot_real speed);
 robot_real robot_two_body_speed(const robot_region *region, robot_real mobility, robot_real force);

@@ -60,7 +60,7 @@ static bool step_pressed(robot_state *s, robot_trial *t, robot_real bends, int s
     }
     const robot_level *const level = &s->phase->level[s->level];
     robot_take(t, s);
-    s->depth = t->f > peak->force ? t->root*t->root : s->depth;
+    s->depth = t->f > peak->force ? t->depth : s->depth;
     see(s, t->f, level->h, peak);
     const robot_real rest = (s->x - s->u)*level->relax;
     s->bump = t->bump;
@@ -68,6 +68,7 @@ static bool step_pressed(robot_state *s, robot_trial *t, robot_real bends, int s
     s->f = t->f;
     s->u_before = s->u;
     s->u = t->u;
+    s->now = t->depth;
     s->root = t->root;
     s->x = t->x;
     ++s->past;
@@ -94,6 +95,7 @@ static bool step_apart(robot_state *s, robot_trial *t, int shortest, robot_peak 
         s->u = s->x - s->rest;
         s->f = ROBOT_R(0.0);
         s->rise = ROBOT_R(0.0);
+        s->now = ROBOT_R(0.0);
         s->root = ROBOT_R(0.0);
         ++peak->contacts;
         return false;
@@ -134,6 +136,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->rise = zero;
     s->u = zero;
     s->u_before = zero;
+    s->now = zero;
     s->root = zero;
     s->rest = zero;
     s->depth = zero;

@@ -20,7 +20,8 @@ typedef struct {
     robot_real h, h_before, x; /* last steps, contact point */
     robot_real bump; /* what the bend adds to the force on average of the last step */
     robot_real f, rise; /* force, and by how much it grew in the last step */
-    robot_real u, u_before, root; /* deformation of the skin; root of its depth */
+    robot_real u, u_before; /* deformation of the skin and of what stands */
+    robot_real now, root; /* depth of the skin, and its root where it is Hertz's */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
 } robot_state;
@@ -30,7 +31,7 @@ typedef struct {
     robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
     robot_real x, v; /* of the contact point without the force at the end */
     robot_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    robot_real u, root;
+    robot_real u, depth, root;
 } robot_trial;
 
 /* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */

@@ -51,6 +51,7 @@ class CompiledPackage:
     sources: Sources
     threads: int
     _entries: dict[str, Callable[..., int]] = field(default_factory=dict, init=False, repr=False)
+    _laws: dict[bytes, NDArray[Any]] = field(default_factory=dict, init=False, repr=False)
 
     def __getattr__(self, name: str) -> Any:
         """Return a method for a function of the package."""
@@ -178,13 +179,27 @@ class CompiledPackage:
     def _region(self, region: str | Mapping[str, Any], clamped: bool) -> NDArray[Any]:
         row = np.zeros(1, self.interface.dtype("region", self.sources.real))
         if not isinstance(region, str):
-            return _filled(row, {**region, "clamped": region.get("clamped", clamped)}, "region")
+            given = {**region, "clamped": region.get("clamped", clamped)}
+            if given.get("law") is not None:
+                given["law_points"], given["law"] = self._law(given["law"])
+            else:
+                given.pop("law", None)
+            return _filled(row, given, "region")
         parts = {name.lower(): n for name, n in self.interface.enums["body_part"].items()}
         if region not in parts:
             raise InvalidValue("region", f"must be one of {', '.join(parts)}, not '{region}'")
         entry = self._common.batched_body_region
         entry(ctypes.c_int(parts[region]), ctypes.c_int(clamped), ctypes.c_void_p(row.ctypes.data))
         return row
+
+    def _law(self, law: Any) -> tuple[int, int]:
+        """Return how many points a law has, and their address, which holds as long as the package."""
+        points = np.ascontiguousarray(law, dtype=self._kind("real"))
+        width = len(self.interface.structs["law_point"].fields)
+        if points.ndim != 2 or points.shape[1] != width:
+            raise InvalidValue("law", f"needs rows of {width} numbers, not {points.shape}")
+        kept = self._laws.setdefault(points.tobytes(), points)
+        return len(kept), kept.ctypes.data
 
     def _parameters(self, options: dict[str, Any]) -> NDArray[Any]:
         """Return parameter structs, one or one a row; takes the fields out of ``options``."""

@@ -23,11 +23,16 @@ export function solverOf(pkg, content) {
       damping: found.damping * (scale.damping ?? 1),
       effective_mass: found.effective_mass,
       hertz_stiffness: found.hertz_stiffness * (scale.law ?? 1),
+      law: stiffer(found.law, scale.law ?? 1),
+      law_points: found.law?.length ?? 0,
       force_limit: found.transient,
       quasi_static_limit: found.quasi_static,
       clamped: state.clamped ? 1 : 0,
     };
   }
+
+  /* A law's points are depth and force, and the same of the knee. */
+  const stiffer = (law, by) => law?.map(([depth, force, ...knee]) => [depth, force * by, knee[0], knee[1] * by]);
 
   function parameters(state, contact, motors, scale = {}) {
     const scaled = (values, name) => values.map((x, i) => x * (scale[name]?.[i] ?? 1));
