@@ -29,6 +29,7 @@ def inspect(
 def _print_tables(found: Mapping[str, Any]) -> None:
     from .output import print_table
 
+    entries = {name: str(i) for i, name in enumerate(found["q"], start=1)}
     print_table(
         f"{found['robot']}, {found['base']} base",
         ("quantity", "value", "unit"),
@@ -41,9 +42,12 @@ def _print_tables(found: Mapping[str, Any]) -> None:
         ],
     )
     print_table(
-        "Joints",
-        ("joint", "kind", "on", "moves [kg]"),
-        [(j["name"], j["kind"], j["parent"], j["mass"]) for j in found["joints"]],
+        "Joints (q: entry of --q that is the joint's, for this contact frame)",
+        ("joint", "kind", "on", "moves [kg]", "q"),
+        [
+            (j["name"], j["kind"], j["parent"], j["mass"], entries.get(j["name"]))
+            for j in found["joints"]
+        ],
     )
     print_table(
         "Limits (rad, rad/s, N·m; or m, m/s, N)",

@@ -8,7 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from softimpact.symbolic import Coupling, JointKind, Robot, UnsupportedModel, load_robot
+from softimpact.symbolic import (
+    Coupling,
+    JointKind,
+    Robot,
+    SoftImpactError,
+    UnsupportedModel,
+    arm_of,
+    load_robot,
+    own_joints,
+)
 from softimpact.symbolic.robot.constraints import Ball, Constraint, Terms, Through
 from softimpact.symbolic.robot.loading import model_path
 from softimpact.symbolic.robot.plausibility import implausible
@@ -43,6 +52,7 @@ def inspected(model: str, tip: str | None = None) -> dict[str, Any]:
         "reach": None if robot.tip is None else _reach(robot, robot.tip),
         "moving_mass": sum(joint.inertia.mass for joint in robot.joints),
         "base_mass": robot.base_inertia.mass,
+        "q": _entries_of_q(robot),
         "joints": [_joint(robot, i) for i in range(robot.n)],
         "followers": robot.followers,
         "constraints": [_constraint(loop) for loop in robot.loops],
@@ -62,6 +72,16 @@ def _with_base(model: str, tip: str | None) -> tuple[Robot, str]:
         return load_robot(model, tip), "fixed"
     except UnsupportedModel:
         return load_robot(model, tip, hold_base=True), "floating"
+
+
+def _entries_of_q(robot: Robot) -> tuple[str, ...]:
+    """Return the joints that q has an entry for, in order, where the contact frame is hit."""
+    if robot.tip is None:
+        return ()
+    try:
+        return own_joints(arm_of(robot).robot)
+    except SoftImpactError:  # it does not move, or is off every way that can be an arm
+        return ()
 
 
 def _without_rotors(robot: Robot) -> list[str]:

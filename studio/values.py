@@ -60,7 +60,7 @@ def payload(text: str) -> Load:
     mass, at, place = text.partition("@")
     if not _is_number(mass):
         raise InvalidValue("payload", f"needs MASS or MASS@x,y,z (kg, m), not '{text}'")
-    return float(mass), vector("payload", f"[{place}]", 3) if at else [0.0, 0.0, 0.0], None
+    return float(mass), vector("payload", place, 3) if at else [0.0, 0.0, 0.0], None
 
 
 def tool(path: str) -> Load:
@@ -114,6 +114,9 @@ def _parsed(field: str, text: str) -> object:
     try:
         return json.loads(re.sub(r"\binf\b", "Infinity", listed))  # which JSON lacks, Python's has
     except (ValueError, RecursionError):
+        entries = listed.strip().removeprefix("[").removesuffix("]").split(",")
+        if listed.strip().endswith("]") and all(map(_is_number, entries)):
+            return [float(entry) for entry in entries]  # .5 and 1., which JSON lacks, too
         raise InvalidValue(
             field, f"needs a number or a JSON list such as [0, 0.5], not '{text}'"
         ) from None

@@ -36,6 +36,9 @@ SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".sdf")
 
 LOGGER = logging.getLogger(__name__)
 
+FOLDERS_ABOVE = 4
+"""Folders from a file up to its package's, ``urdf/robots/arm`` for example, and that one."""
+
 JOINTS_TRIED = 200
 """Joints of a robot among which one is looked for whose chain has sound masses."""
 
@@ -131,7 +134,8 @@ def describe(path: Path) -> Description:
 def _expanded(path: Path) -> str:
     """Return the URDF that a xacro file describes.
 
-    ``$(find PACKAGE)`` looks above the file, as xacrodoc does; files of visuals are left alone.
+    ``$(find PACKAGE)`` looks near the file first, then where ROS does; files of visuals are left
+    alone.
     """
     try:
         importlib.import_module("xacrodoc")
@@ -144,12 +148,24 @@ def _expanded(path: Path) -> str:
             "'xacro FILE > robot.urdf'",
         ) from None
     try:
+        packages.reset()  # it keeps what it found for the file before
         packages.walk_up_from(str(path))
+        packages.update_package_cache(_folders_near(path))
         return str(xacro.process_file(str(path.resolve())).toxml())
     except Exception as error:  # whatever xacro's macros run into
         words = " ".join(str(error).split()) or type(error).__name__
         said = re.sub(r"^(?:<class '[^']+'>: )?(.+) \1$", r"\1", words)  # xacro says it twice
-        raise ModelFileError(str(path), f"xacro does not expand: {said}") from None
+        hint = "; put the package's folder beside the file's" if "ackage not found" in said else ""
+        raise ModelFileError(str(path), f"xacro does not expand: {said}{hint}") from None
+
+
+def _folders_near(path: Path) -> dict[str, Path]:
+    """Folders above a file and beside these by their names, which are packages' by custom."""
+    near: dict[str, Path] = {}
+    for folder in reversed(path.resolve().parents[:FOLDERS_ABOVE]):
+        with contextlib.suppress(OSError):  # one that may not be listed
+            near |= {beside.name: beside for beside in folder.parent.iterdir() if beside.is_dir()}
+    return near
 
 
 def model_path(model: str | Path) -> Path:

@@ -14,12 +14,13 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from ..errors import ModelFileError, UnknownName, UnsupportedModel
+from ..errors import ModelFileError, UnknownName
 from .constraints import Ball
 from .description import Body, Description
 from .mjcf_drives import Motors, motors_of
 from .mjcf_equalities import constraints_of
 from .mjcf_inertia import Rules, body_inertias, placement, scaled, stated_inertia
+from .mjcf_joints import require_sound_joints, set_spring_dampers
 from .mjcf_paths import BALL, EACH_AXIS, names_of
 from .rigid import Array, Inertia, frame_along
 from .robot import BASE, Frame, Joint, JointKind
@@ -44,12 +45,14 @@ def read_mjcf(path: Path) -> Description:
     Raises:
         ModelFileError: it is not MJCF, or MuJoCo cannot resolve it.
         InvalidInertia: a mass is negative or not finite.
-        UnsupportedModel: springs that are not linear.
+        UnsupportedModel: springs that are not linear, or known by their time constant in a file
+            whose masses MuJoCo does not accept.
     """
     with _warnings() as heard:
         spec = _parsed(path)
         keys = [[float(x) for x in key.qpos] for key in spec.keys[:1]]
-        _require_sound_joints(spec, str(path))
+        require_sound_joints(spec, str(path))
+        set_spring_dampers(spec, lambda: _parsed(path), str(path))
         try:
             bodies, stated, measured, rules = body_inertias(spec, lambda: _parsed(path), str(path))
             unread = _cleared(spec)
@@ -103,42 +106,18 @@ def _cleared(spec: mujoco.MjSpec) -> list[str]:
     for geom in [geom for geom in spec.geoms if geom.meshname or geom.hfieldname]:
         spec.delete(geom)
     files = (spec.skins, spec.flexes, spec.meshes, spec.hfields, spec.materials, spec.textures)
-    for group in (spec.sensors, *files, spec.pairs, spec.excludes, spec.tuples, spec.keys):
+    for group in (
+        spec.sensors,
+        spec.lights,
+        *files,
+        spec.pairs,
+        spec.excludes,
+        spec.tuples,
+        spec.keys,
+    ):
         for item in list(group):
             spec.delete(item)
     return unread
-
-
-def _require_sound_joints(spec: mujoco.MjSpec, source: str) -> None:
-    """Refuse numbers that MuJoCo takes in silence, or that depend on the inertias it must not see.
-
-    Raises:
-        ModelFileError: a number has the wrong sign, or limits are reversed.
-        UnsupportedModel: a spring that is not linear, or known by its frequency only.
-    """
-    for joint in spec.joints:
-        name = f"joint '{joint.name}'"
-        stiffness, damping = np.ravel(joint.stiffness), np.ravel(joint.damping)
-        for field, value in (
-            ("armature", joint.armature),
-            ("stiffness", stiffness[0]),
-            ("damping", damping[0]),
-            ("frictionloss", joint.frictionloss),
-        ):
-            if value < 0:
-                raise ModelFileError(source, f"{name}: {field} is negative")
-        if joint.range[0] > joint.range[1]:
-            raise ModelFileError(
-                source,
-                f"{name}: its lower limit {joint.range[0]:g} is above its upper {joint.range[1]:g}",
-            )
-        if np.any(stiffness[1:]):
-            reason = f"{name} has springs whose stiffness depends on the deflection"
-            raise UnsupportedModel(source, reason)
-        if np.any(np.ravel(joint.springdamper) > 0):
-            raise UnsupportedModel(
-                source, f"{name}: springdamper; write its stiffness and damping as numbers"
-            )
 
 
 def _require_finite(model: mujoco.MjModel, path: Path) -> None:

@@ -195,11 +195,10 @@ def _leave_what_counts(
 
 def _leave_shapes(spec: mujoco.MjSpec) -> None:
     """Take out all but bodies, joints, shapes and meshes."""
-    for sensor in list(spec.sensors):
-        spec.delete(sensor)
-    groups = (spec.actuators, spec.equalities, spec.tendons, spec.pairs, spec.excludes, spec.keys)
+    users = (spec.sensors, spec.sites, spec.lights)  # of others, or of materials and textures
+    groups = (*users, spec.actuators, spec.equalities, spec.tendons, spec.pairs, spec.excludes)
     files = (spec.skins, spec.flexes, spec.hfields, spec.materials, spec.textures)
-    for group in (*groups, *files, spec.tuples):
+    for group in (*groups, spec.keys, *files, spec.tuples):
         for item in list(group):
             spec.delete(item)
     spec.compiler.settotalmass, spec.compiler.fusestatic = NO_TOTAL, False

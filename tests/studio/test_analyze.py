@@ -165,6 +165,11 @@ def test_lists_need_no_brackets() -> None:
         run_json("analyze", path, "--q", q, "--direction", n, *options) for q, n in (bare, lists)
     ]
     assert typed[0] == typed[1]
+    short = [
+        run_json("analyze", path, "--q", PANDA_Q, "--direction", n, "--payload", load, *options)
+        for n, load in (("-.5,1.,+0", "2@0,0,.1"), ([-0.5, 1, 0], "2@[0,0,0.1]"))
+    ]
+    assert short[0] == short[1]
 
 
 def test_rotors_of_rigid_joints_are_felt() -> None:

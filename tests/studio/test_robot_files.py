@@ -109,6 +109,7 @@ def test_inspect_shows_what_there_is(tmp_path: Path) -> None:
     assert (first["position_gain"], first["velocity_gain"]) == (50.0, 2.0)
     assert (first["motor"], second["motor"], second["mass"]) == (True, False, 1.0)
     assert found["followers"] == ["j2"]
+    assert found["q"] == ["j1"]
     assert found["reach"] == pytest.approx(0.7)
     opinions = found["second_opinions"]
     assert isinstance(opinions, dict)
@@ -124,6 +125,17 @@ def test_inspect_of_files_from_the_wild() -> None:
     assert found["tip"] is None
     table = run("inspect", example_urdf("romeo_small.urdf")).out
     assert "RShoulderYaw" in table
+    arm = result_of("inspect", example_urdf("baxter.urdf"), "--tip", "left_gripper")["q"]
+    assert isinstance(arm, list)
+    assert [name.removeprefix("left_") for name in arm] == [
+        "s0",
+        "s1",
+        "e0",
+        "e1",
+        "w0",
+        "w1",
+        "w2",
+    ]
 
 
 def test_inspect_of_a_file_that_is_none(tmp_path: Path) -> None:

@@ -93,8 +93,25 @@ def test_xacro_of_several_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         path.write_text(text.replace("</link>", f"{visual}</link>", 1))
         assert felt(load_robot(path)) == pytest.approx(0.473499, abs=1e-6)
     path.write_text(path.read_text().replace("two_description)", "nowhere)"))
-    with pytest.raises(ModelFileError, match=r"does not expand: Package not found: nowhere$"):
+    with pytest.raises(ModelFileError, match=r"not found: nowhere; put the package"):
         load_robot(path)
+
+
+def test_each_xacro_has_its_own_packages(tmp_path: Path) -> None:
+    """By the names of folders, which need no package.xml; the file before leaves nothing behind."""
+    pytest.importorskip("xacrodoc")
+    include = '<xacro:include filename="$(find two_masses)/urdf/mass.xacro"/>'
+    text = XACRO.replace('<xacro:property name="m" value="2"/>', include)
+    space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    found = []
+    for mass in ("2", "5"):
+        for package, file in (("two_masses", "mass"), ("two_description", "arm")):
+            (tmp_path / mass / package / "urdf").mkdir(parents=True)
+            body = f'<robot {space}><xacro:property name="m" value="{mass}"/></robot>'
+            path = tmp_path / mass / package / "urdf" / f"{file}.xacro"
+            path.write_text(text if file == "arm" else body)
+        found.append(sum(joint.inertia.mass for joint in load_robot(path).joints))
+    assert found[1] - found[0] == pytest.approx(3)
 
 
 def test_xacro_without_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
-from oracles import assert_near
+from oracles import Mujoco, assert_near
 from robot_files import URDF_LIMIT, Read, two_links, two_links_urdf, urdf_inertial
 
 from softimpact.symbolic import (
@@ -22,6 +23,7 @@ from softimpact.symbolic import (
     chain_to,
     impact_model,
     load_robot,
+    mass_matrix,
     own_joints,
     whole_configuration,
 )
@@ -249,6 +251,38 @@ def test_meshes_count_where_they_are_there(read: Read) -> None:
 
 CUBE = '<body name="cube" pos="1 0 0"><freejoint/><geom type="box" size=".1 .1 .1"/></body>'
 MOCAP = '<body name="target" mocap="true"><geom size=".1"/></body>'
+
+
+def test_materials_of_all_that_has_them(read: Read) -> None:
+    """What only rendering needs goes, and takes nothing along: sites and lights use it, too."""
+    looks = (
+        '<asset><texture name="t" type="2d" builtin="flat" width="8" height="8"/>'
+        '<material name="m" texture="t"/></asset>'
+    )
+    seen = '<site name="s" material="m"/><light type="image" texture="t"/>'
+    shapes = '<geom type="box" size="0.1 0.05 0.02" material="m"/>'
+    text = two_links(before=looks, beside=seen, on_upper=seen.replace('"s"', '"s2"'),
+                     inertial="", on_fore=shapes)  # fmt: skip
+    q = np.array([0.3, 1.2])
+    assert_near(
+        mass_matrix(chain_to(read(text), "tool"), q), Mujoco(text).at(q).mass_matrix(), 1e-12
+    )
+
+
+@pytest.mark.parametrize("kind", ["hinge", "slide"])
+def test_springs_by_their_time_constant(read: Read, kind: str) -> None:
+    """MuJoCo finds stiffness and damping from inertias; a file without its meshes has none."""
+    text = two_links(
+        j1='springdamper="0.1 0.7" armature="0.2"', j2=f'springdamper="0.05 1" type="{kind}"'
+    )
+    model = mujoco.MjModel.from_xml_string(text)
+    joints = read(text).joints
+    assert_near([joint.stiffness for joint in joints], model.jnt_stiffness, 1e-12)
+    assert_near([joint.damping for joint in joints], model.dof_damping, 1e-12)
+    mesh = '<asset><mesh name="far" file="nowhere.stl"/></asset>'
+    shape = '<geom type="mesh" mesh="far"/>'
+    with pytest.raises(UnsupportedModel, match=r"'j1': springdamper needs .*nowhere\.stl"):
+        read(text.replace("<worldbody>", f"{mesh}<worldbody>{shape}", 1))
 
 
 def test_what_stands_beside_the_robot(read: Read) -> None:
