@@ -7,7 +7,9 @@ far as it keeps ``ABOVE``; the forces of all points are then raised by what was 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -26,8 +28,9 @@ ABOVE = 2e-4
 FAINT = 1e-2
 """Force [N] below which a law's shape does not matter to anyone."""
 
-SPLIT = 8
-"""Places in an interval of a law's own points at which a parabola may end."""
+SPLIT, WIDER = 24, 1.05
+"""Places at least in an interval of a law's own points at which a parabola may end, and the largest
+factor from one's depth to the next."""
 
 SEEN = np.linspace(0.0, 1.0, 34)[1:]
 """Where along a parabola it is looked at."""
@@ -61,10 +64,16 @@ def law_points(law: Law) -> Array:
 
 def _grid(points: Points) -> Array:
     """Return depths at which parabolas may begin and end: the law's points, and some between."""
-    first = float(np.interp(FAINT, points.forces, points.depth))
+    low, high = 0.0, float(points.depth[-1])
+    for _ in range(100):
+        first = (low + high) / 2
+        above = points.evaluated(np.array([first]))[0][0] > FAINT
+        low, high = (low, first) if above else (first, high)
     own = np.unique([first, *points.depth[points.depth > first]])
-    pairs = zip(own[:-1], own[1:], strict=True)
-    between = [np.linspace(a, b, SPLIT, endpoint=False) for a, b in pairs]
+    between = []
+    for a, b in pairwise(own):
+        count = max(SPLIT, math.ceil(math.log(b / a) / math.log(WIDER)))
+        between.append(np.geomspace(a, b, count + 1)[:-1])
     return np.concatenate([[0.0], *between, own[-1:]])
 
 

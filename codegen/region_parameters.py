@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from softimpact.symbolic import Contact, InvalidValue
@@ -16,6 +17,7 @@ from .law_points import law_points
 def region_parameters(contact: Contact, shape: Shape | None = None) -> dict[str, Any]:
     """Return what a package's impacts need to know of a contact, by the fields of its region.
 
+    Limits are the least of force, energy and pressure, and 0 where there is none, which C refuses.
     ``law`` is None where skin and cover together follow Hertz's law, else their points, a row each
     (see ``law_points``): never softer than the law, and at most 2e-4 stiffer. A compiled package
     takes the whole as ``region=``.
@@ -40,8 +42,12 @@ def region_parameters(contact: Contact, shape: Shape | None = None) -> dict[str,
         "damping": region.damping,
         "effective_mass": region.effective_mass,
         "hertz_stiffness": law.stiffness if isinstance(law, PowerLaw) and is_hertz else 0.0,
-        "quasi_static_limit": pressing.force,
-        "force_limit": limits.transient.force,
+        "quasi_static_limit": _known(pressing.force),
+        "force_limit": _known(limits.transient.force),
         "law": None if is_hertz else law_points(law),
         "clamped": contact.clamped,
     }
+
+
+def _known(limit: float) -> float:
+    return limit if limit < inf else 0.0

@@ -150,7 +150,8 @@ class Robot:
         entry = getattr(library, f"{self.package.manifest.name}_{function}")
         status = entry(
             *(ctypes.c_void_p(v.ctypes.data) for v in (q, n)), c_real(number),
-            ctypes.c_void_p(region.ctypes.data), ctypes.c_char_p(p), ctypes.c_void_p(out.ctypes.data),
+            ctypes.c_void_p(region.ctypes.data), ctypes.c_char_p(p),
+            ctypes.c_void_p(out.ctypes.data),
         )  # fmt: skip
         return status, out.astype(float)
 

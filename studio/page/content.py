@@ -123,6 +123,7 @@ def _bodies(opened: Opened) -> list[Contact]:
 def _region(body: Contact) -> dict[str, Any]:
     region, known = body.region, region_parameters(replace(body, clamped=True))
     limits = limits_of(region, clamped=True)
+    assert limits.quasi_static is not None
     if limits.transient.force == np.inf:
         raise InvalidValue("region", f"'{region.name}' has no limits to be kept")
     law = known["law"]
@@ -137,7 +138,7 @@ def _region(body: Contact) -> dict[str, Any]:
         "law": None if law is None else law.tolist(),
         "transient": limits.transient.force,
         "quantity": limits.transient.quantity,
-        "quasi_static": known["quasi_static_limit"],
+        "quasi_static": limits.quasi_static.force,
     }
 
 
