@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +25,9 @@ from .bracket import bracket
 from .controller import Controller
 from .history import HORIZON, Fidelity, ImpactHistory
 from .impact import simulate_impact
-from .linear_error import linear_error
-from .safe_speed import ForceLimits, largest_safe_speed
+from .safe_speed import ForceLimits
 from .tolerances import Tolerances
+from .trust import CHECKED, by_full_order, largest_linear_error, not_trusted, safe_speeds
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,17 +139,20 @@ def assess_impact(
         refuse_held(motors, "a safe speed")
     lumped = fidelity in ("one_mass", "two_mass")
     ends, warnings = bracket(model, motors, reaction, lumped)
-    run = {"fidelity": fidelity, "horizon": horizon, "order": order, "tolerance": tolerance}
+    run: dict[str, Any] = {
+        "fidelity": fidelity,
+        "horizon": horizon,
+        "order": order,
+        "tolerance": tolerance,
+    }
     found = {
-        name: simulate_impact(model, approach, contact, motors=end, **run)  # type: ignore[arg-type]
+        name: simulate_impact(model, approach, contact, motors=end, **run)
         for name, end in ends.items()
     }
-    error = _largest_linear_error(model, approach, found)
-    check = False
-    if error is not None and error > TRUSTED:
-        check = True
+    error = largest_linear_error(model, approach, found)
+    if not_trusted(error):
         warnings.append(f"the linear model may be off by {100 * error:.0f} %: {CHECKED}")
-        by_full = _by_full(model, approach, contact, ends, horizon, tolerance)
+        by_full = by_full_order(model, approach, contact, ends, horizon, tolerance)
         found = {k: max(h, by_full[k], key=lambda each: each.peak) for k, h in found.items()}
     limits = limits_of(contact.region, contact.clamped, shape)
     worst = max(found, key=lambda name: (_verdict(limits, found[name]).share, found[name].peak))
@@ -156,15 +160,10 @@ def assess_impact(
     speeds = None
     if safe_speed:
         allowed = force_limits(limits)
-        speeds = {
-            name: largest_safe_speed(model, approach, contact, allowed, motors=end, **run)  # type: ignore[arg-type]
-            for name, end in ends.items()
-        }
-        if check:
-            run["fidelity"] = "full"
-            for name, end in ends.items():
-                slower = largest_safe_speed(model, approach, contact, allowed, motors=end, **run)  # type: ignore[arg-type]
-                speeds[name] = min(speeds[name], slower)
+        speeds, lines = safe_speeds(
+            model, approach, contact, allowed, ends, run, is_checked=not_trusted(error)
+        )
+        warnings += lines
     return Assessment(
         ends=found,
         worst=worst,
@@ -180,43 +179,6 @@ def assess_impact(
         linear_error=error,
         warnings=(*warnings, *unused_of_the_file(model, lumped)),
     )
-
-
-TRUSTED = 0.1
-"""Error that a linear model may have before the nonlinear one is asked, too: what is not known of
-robots and people makes for more (see ``Tolerances``)."""
-
-CHECKED = "the nonlinear robot was simulated, too, and the worse of both counts"
-
-
-def _largest_linear_error(
-    model: ImpactModel, approach: Approach, found: Mapping[str, ImpactHistory]
-) -> float | None:
-    """Return the share by which a linear model may be off; None where that is not known."""
-    errors = []
-    for history in found.values():
-        if history.fidelity not in ("chain", "linearised") or model.robot.loops:
-            return None
-        reaction = 0.0 if history.motors is None else history.motors.reaction_time
-        late = max(history.time_of_peak, reaction if reaction < inf else 0.0)
-        errors.append(linear_error(model, approach, late))
-    return max(errors)
-
-
-def _by_full(
-    model: ImpactModel,
-    approach: Approach,
-    contact: Contact,
-    ends: Mapping[str, Motors | Controller | None],
-    horizon: float,
-    tolerance: float,
-) -> dict[str, ImpactHistory]:
-    return {
-        name: simulate_impact(
-            model, approach, contact, "full", motors=end, horizon=horizon, tolerance=tolerance
-        )
-        for name, end in ends.items()
-    }
 
 
 def _band(

@@ -12,13 +12,16 @@ from impact_cases import ALONG_Y, CHEST, FREE_HEAD, POSE
 from mechanisms import FIVE_BAR, robot_of
 from oracles import Pinocchio, configurations
 
-from softimpact.simulate import Approach, simulate_impact
+from softimpact.simulate import Approach, assess_impact, simulate_impact
 from softimpact.simulate.linear_error import UNSEEN, linear_error
+from softimpact.simulate.trust import TRUSTED
 from softimpact.symbolic import (
+    Contact,
     InvalidValue,
     Motors,
     Robot,
     approach_velocity,
+    body_region,
     drives,
     impact_model,
     unit_direction,
@@ -84,6 +87,24 @@ def test_it_bounds_the_error_of_reachable_impacts(panda: Robot, count: int, seed
     if count > 10:
         assert np.median(estimates) < 0.1
         assert np.mean(abs(found) > 0.01) > 0.05  # else nothing was bounded
+
+
+def test_safe_speeds_are_asked_of_the_nonlinear_robot_too(panda: Robot) -> None:
+    """Where the linear model is trusted at the impact's speed, yet not at the safe one."""
+    given = drives(panda, 3e3, 0.3)
+    model, n = impact_model(panda, drives_=given), unit_direction([-1, 0.4, -2])
+    contact, motors = Contact(body_region("thigh"), clamped=False), Motors("free")
+    q = np.array([-0.15, 0.67, 0.06, -0.45, -0.05, 1.2, 0.19])
+    slow = assess_impact(model, Approach(q, n, 0.2), contact, motors=motors, safe_speed=True)
+    speed = slow.safe_speed
+    assert speed is not None
+    assert slow.linear_error is not None
+    assert slow.linear_error < TRUSTED
+    at = assess_impact(model, Approach(q, n, speed), contact, motors=motors)
+    assert at.linear_error is not None
+    assert at.linear_error > TRUSTED
+    assert at.verdict.share <= 1 + 1e-6
+    assert any(line.startswith("at the safe speed the linear model") for line in slow.warnings)
 
 
 @pytest.mark.parametrize("duration", [-1e-9, np.nan, np.inf])

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""When a linear model is not to be trusted alone, and what the nonlinear robot says then."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import inf
+from typing import Any, TypeGuard
+
+from softimpact.symbolic import Contact, ImpactModel, Motors
+
+from .arrival import Approach
+from .controller import Controller
+from .history import ImpactHistory
+from .impact import simulate_impact
+from .linear_error import linear_error
+from .safe_speed import ForceLimits, largest_safe_speed
+
+TRUSTED = 0.1
+"""Error that a linear model may have before the nonlinear one is asked, too: what is not known of
+robots and people makes for more (see ``Tolerances``)."""
+
+CHECKED = "the nonlinear robot was simulated, too, and the worse of both counts"
+
+
+def not_trusted(error: float | None) -> TypeGuard[float]:
+    """Whether a linear model may be off by so much that the nonlinear robot is asked, too."""
+    return error is not None and error > TRUSTED
+
+
+def largest_linear_error(
+    model: ImpactModel, approach: Approach, found: Mapping[str, ImpactHistory]
+) -> float | None:
+    """Return the share by which a linear model may be off; None where that is not known."""
+    errors = []
+    for history in found.values():
+        if history.fidelity not in ("chain", "linearised") or model.robot.loops:
+            return None
+        reaction = 0.0 if history.motors is None else history.motors.reaction_time
+        late = max(history.time_of_peak, reaction if reaction < inf else 0.0)
+        errors.append(linear_error(model, approach, late))
+    return max(errors)
+
+
+def by_full_order(
+    model: ImpactModel,
+    approach: Approach,
+    contact: Contact,
+    ends: Mapping[str, Motors | Controller | None],
+    horizon: float,
+    tolerance: float,
+) -> dict[str, ImpactHistory]:
+    """Simulate the nonlinear robot at each end of what the motors may do."""
+    return {
+        name: simulate_impact(
+            model, approach, contact, "full", motors=end, horizon=horizon, tolerance=tolerance
+        )
+        for name, end in ends.items()
+    }
+
+
+def safe_speeds(
+    model: ImpactModel,
+    approach: Approach,
+    contact: Contact,
+    allowed: ForceLimits,
+    ends: Mapping[str, Motors | Controller | None],
+    run: Mapping[str, Any],
+    *,
+    is_checked: bool,
+) -> tuple[dict[str, float], list[str]]:
+    """Return the safe speed at each end, and a line if the nonlinear robot was asked for it alone.
+
+    It is, where the linear model is not to be trusted at the impact's speed (``is_checked``), or
+    at the safe speed, which may be higher.
+    """
+    speeds: dict[str, float] = {}
+    lines: list[str] = []
+    for name, end in ends.items():
+        speed = largest_safe_speed(model, approach, contact, allowed, motors=end, **run)
+        at = replace(approach, speed=speed)
+        error = None
+        if not is_checked:
+            there = simulate_impact(model, at, contact, motors=end, **run)
+            error = largest_linear_error(model, at, {name: there})
+        if is_checked or not_trusted(error):
+            full = {**run, "fidelity": "full"}
+            slower = largest_safe_speed(model, at, contact, allowed, motors=end, **full)
+            speed = min(speed, slower)
+        if not_trusted(error) and not lines:
+            off = f"at the safe speed the linear model may be off by {100 * error:.0f} %"
+            lines.append(f"{off}: {CHECKED}")
+        speeds[name] = speed
+    return speeds, lines
