@@ -21,7 +21,7 @@ import numpy as np
 from .errors import UnknownDeclaration
 
 POINTER = 8
-"""Size of an address where the library runs [bytes], but for WebAssembly, whose is ``WASM_POINTER``."""
+"""Size of an address where a library for Python runs [bytes]; WebAssembly has ``WASM_POINTER``."""
 
 WASM_POINTER = 4
 
@@ -127,9 +127,7 @@ class Interface:
         """Return a struct as NumPy holds it."""
         offsets, size = self.offsets(struct, real)
         fields = self.structs[struct].fields
-        kinds = [
-            "u8" if f.pointer else NUMPY[real if f.type == "real" else f.type] for f in fields
-        ]
+        kinds = ["u8" if f.pointer else NUMPY[real if f.type == "real" else f.type] for f in fields]
         return np.dtype({
             "names": [f.name for f in fields],
             "formats": [(k, f.shape) if f.shape else k for k, f in zip(kinds, fields, strict=True)],
@@ -137,9 +135,7 @@ class Interface:
             "itemsize": size,
         })  # fmt: skip
 
-    def offsets(
-        self, struct: str, real: str, pointer: int = POINTER
-    ) -> tuple[dict[str, int], int]:
+    def offsets(self, struct: str, real: str, pointer: int = POINTER) -> tuple[dict[str, int], int]:
         """Return the offset of each field of a struct, and its size [bytes].
 
         Args:

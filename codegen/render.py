@@ -17,8 +17,8 @@ from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 
 from . import sine
 from .bindings import bindings
-from .contacts import BuiltIn
 from .configuration_source import ConfigurationSource
+from .contacts import BuiltIn
 from .costs import Costs, stored_costs
 from .defaults import Default
 from .functions import coordinates_of

@@ -212,7 +212,8 @@ class CompiledEngine:
                 continue
             slowed = factor[at, None] * met.velocity[at]
             options = self._options(body, kind, end, until)
-            could[left] = self.package.may_press(met.q[at], slowed, allowed, **options)
+            found = self.package.may_press(met.q[at], slowed, allowed, **options)
+            could[left] = (found["status"] != OK) | (found["may"] != 0)
         return could
 
 

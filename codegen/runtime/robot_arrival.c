@@ -89,6 +89,26 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
     return fast < ROBOT_FASTEST ? ROBOT_OK : ROBOT_SINGULAR;
 }
 
+robot_real robot_arrive_as_it_moves(int point, const robot_real rates[ROBOT_N], robot_arrival *arrival)
+{
+    robot_real v[3];
+    for (int k = 0; k < 3; ++k) {
+        v[k] = ROBOT_R(0.0);
+        for (int i = 0; i < ROBOT_N; ++i) {
+            v[k] += arrival->links.J[3*point + k][i]*rates[i];
+        }
+    }
+    const robot_real speed = ROBOT_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    for (int i = 0; i < ROBOT_N && speed > ROBOT_R(0.0); ++i) {
+        arrival->row[i] = ROBOT_R(0.0);
+        for (int k = 0; k < 3; ++k) {
+            arrival->row[i] += v[k]/speed*arrival->links.J[3*point + k][i];
+        }
+        arrival->rates[i] = rates[i]/speed;
+    }
+    return speed;
+}
+
 void robot_kinds_of_motors(const robot_params *p, int *first, int *last)
 {
     const bool both = p->motors == ROBOT_MOTORS_FREE_OR_DRIVEN;

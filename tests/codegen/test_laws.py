@@ -28,24 +28,21 @@ from compiled_impacts import (
 from compiled_packages import KINDS, Generated
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from impact_models import model_of
 from independent_impacts import arm_of, force_by_scipy
 from scipy.optimize import brentq
 
 from softimpact.codegen import region_parameters
 from softimpact.codegen.law_points import ABOVE, FAINT, MOST_POINTS, law_points
-from softimpact.codegen.samples import Sample
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import (
     Contact,
     Curve,
-    Drives,
-    ImpactModel,
     InvalidValue,
     Law,
     Motors,
     PowerLaw,
     body_region,
-    impact_model,
     in_series,
 )
 from softimpact.symbolic.body.devices import DEVICES
@@ -143,20 +140,6 @@ def region_of(compiled: Impacts, contact: Contact) -> tuple[Any, Array]:
     if points.size:
         region.law, region.law_points = points.ctypes.data, len(points)
     return region, points
-
-
-def model_of(compiled: Impacts, sample: Sample) -> ImpactModel:
-    """Return the robot with a sample's drives."""
-    named = dict(zip((p.name for p in compiled.package.parameters), sample.parameters, strict=True))
-    robot = compiled.package.robot
-    known = Drives(
-        ca.DM(named["rotor_inertia"]),
-        ca.DM(named["joint_stiffness"]),
-        (True,) * robot.n,
-        ca.DM(named["position_gain"]),
-        damping_gains=ca.DM(named["damping_gain"]),
-    )
-    return impact_model(robot, compiled.package.tip, drives_=known)
 
 
 BODIES: Mapping[str, Contact] = {

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits.
+ *
+ * The steps are those of robot_run.c, without its end as soon as no peak can come: here the rest counts.
+ */
+#define robot_impact_run robot_impact_run_on /* nobody calls it */
+#include "robot_run.c"
+#undef robot_impact_run
+
+/* When the quasi-static limit takes over from the transient one, and until when it is looked, s. */
+#define LATE ROBOT_R(0.5)
+#define PRESSED_UNTIL ROBOT_R(0.6)
+/* Share of a limit up to which it counts as kept, as for peaks. */
+#define PRESSED_KEPT ROBOT_R(0.995)
+/* Halvings of a speed that presses too hard. */
+#define HALVINGS 14
+#define LEAST_SPEED ROBOT_R(1e-6) /* of a contact point that does not rest, m/s */
+
+/* An impact that is followed until 0.6 s. */
+typedef struct {
+    robot_params p;
+    robot_impact impact;
+    robot_budget budget;
+    bool bounded; /* some force is a bound */
+} pressing;
+
+/* Largest force from LATE on in what is left of a phase; false if the steps do not do. */
+static bool walk(robot_state *s, robot_real matters, robot_budget *budget, robot_peak *late, bool *over)
+{
+    const robot_real bends = s->impact->smooth*BENDS;
+    const robot_real depth = robot_law_depth(s->impact->region, matters);
+    robot_peak early = {ROBOT_R(0.0), ROBOT_R(0.0), 1, 1, false};
+    robot_trial t;
+    while (s->ticks > 0 && !*over) {
+        if (budget->steps <= 0) {
+            return false;
+        }
+        --budget->steps;
+        robot_peak *const peak = s->time >= LATE ? late : &early;
+        const robot_real before = s->f;
+        robot_glide(s, &t);
+        const bool taken = s->touching ? step_pressed(s, &t, bends, SHORTEST, peak)
+            : step_apart(s, &t, SHORTEST, peak);
+        if (taken && s->phase->damped) {
+            robot_damp(s->phase, s->speed, ROBOT_R(0.5)*s->h, s->rate);
+        }
+        if (taken && s->past > 0 && s->time >= LATE) {
+            const robot_real since = s->time - LATE; /* the force at LATE itself, if that is in this step */
+            const robot_real share = ROBOT_FMIN(since/s->h, ROBOT_R(1.0));
+            late->force = ROBOT_FMAX(late->force, share*before + (ROBOT_R(1.0) - share)*s->f);
+            late->force = ROBOT_FMAX(late->force, s->f);
+        }
+        if (taken && s->f < matters && s->past % LOOKS == 0) {
+            robot_state asked = *s;
+            asked.depth = depth;
+            *over = robot_is_settled(&asked, matters, ROBOT_R(1.0));
+        }
+    }
+    return true;
+}
+
+/*
+ * Largest force from LATE on; less than `matters`, or nothing, if it is proven that none exceeds that. The
+ * largest of numbers where that is not known.
+ */
+static robot_real pressed_by(pressing *p, robot_real speed, robot_real matters)
+{
+    robot_impact *const impact = &p->impact;
+    robot_peak late = {ROBOT_R(0.0), ROBOT_R(0.0), 1, 1, false};
+    robot_state s;
+    bool over = false;
+    start(impact, speed, false, &s);
+    for (int k = impact->first; k <= impact->last && !over; ++k) {
+        if (k > impact->first) {
+            robot_impact_let_go(impact);
+            if (impact->status != ROBOT_OK) {
+                return ROBOT_REAL_MAX;
+            }
+            robot_release(&s);
+        }
+        if (impact->phase[k].blurred || !walk(&s, matters, &p->budget, &late, &over)) {
+            const robot_real bound = robot_bound(impact);
+            p->bounded = true;
+            return bound > ROBOT_R(0.0) ? bound*speed : ROBOT_REAL_MAX;
+        }
+    }
+    return late.force;
+}
+
+/* Whether what presses keeps a limit at a speed, by any motors; false where that is not known. */
+static bool keeps(pressing *k, const robot_region *region, robot_real speed, robot_real limit)
+{
+    int first;
+    int last;
+    robot_kinds_of_motors(&k->p, &first, &last);
+    bool kept = true;
+    for (int motors = first; motors <= last && kept; ++motors) {
+        kept = robot_impact_prepare(region, &k->p, motors, limit, &k->impact) == ROBOT_OK
+            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+    }
+    return kept;
+}
+
+static void prepare_pressing(const robot_params *p, pressing *k)
+{
+    k->p = *p;
+    k->p.horizon = ROBOT_FMAX(ROBOT_HORIZON(p), PRESSED_UNTIL);
+    k->budget.steps = p->steps;
+    k->budget.rough = false;
+    k->budget.stop_above = ROBOT_REAL_MAX;
+    k->bounded = false;
+}
+
+/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+static robot_real slow_down(pressing *k, const robot_region *region, robot_real speed, robot_real limit)
+{
+    if (keeps(k, region, speed, limit)) {
+        return speed;
+    }
+    robot_real low = ROBOT_R(0.0);
+    robot_real high = speed;
+    for (int i = 0; i < HALVINGS; ++i) {
+        const robot_real middle = ROBOT_R(0.5)*(low + high);
+        k->budget.steps = k->p.steps;
+        if (keeps(k, region, middle, limit)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+int robot_pressing_force_at(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
+    robot_real speed, const robot_region *region, const robot_params *p, robot_real *force)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || force == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    pressing k;
+    int status = robot_check_positive(&speed, 1);
+    if (status == ROBOT_OK) {
+        status = robot_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    prepare_pressing(p, &k);
+    robot_real found = ROBOT_R(0.0);
+    int first;
+    int last;
+    robot_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last && region->clamped != 0; ++motors) {
+        status = robot_impact_prepare(region, &k.p, motors, -speed, &k.impact);
+        if (status != ROBOT_OK) {
+            return status;
+        }
+        found = ROBOT_FMAX(found, pressed_by(&k, speed, ROBOT_R(0.0)));
+        if (k.impact.status != ROBOT_OK) {
+            return k.impact.status;
+        }
+    }
+    if (!(found < ROBOT_REAL_MAX)) {
+        return ROBOT_UNRESOLVED;
+    }
+    *force = found;
+    return k.bounded ? ROBOT_BOUNDED : ROBOT_OK;
+}
+
+/* Checks for limits of both kinds. */
+static int check_limits(const robot_region *region)
+{
+    const robot_real limits[2] = {region->force_limit, region->quasi_static_limit};
+    return robot_check_positive(limits, region->clamped != 0 ? 2 : 1);
+}
+
+/* Largest speed up to a cap, where that is positive, that keeps all limits of a region. */
+static int find_allowed(const robot_region *region, const robot_params *p, robot_real cap, pressing *k,
+    robot_allowed_speed_t *found)
+{
+    robot_safe_speed_t safe;
+    const int status = robot_find_speed(region, p, region->force_limit, cap, &k->impact, &safe);
+    if (status == ROBOT_OK || status == ROBOT_BOUNDED) {
+        found->speed = safe.speed;
+        found->force = safe.force;
+        if (region->clamped != 0) {
+            prepare_pressing(p, k);
+            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+        }
+        found->pressed = found->speed < safe.speed ? 1 : 0;
+    }
+    return status;
+}
+
+int robot_allowed_speed_at(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
+    const robot_region *region, const robot_params *p, robot_allowed_speed_t *out)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    pressing k;
+    robot_allowed_speed_t found;
+    int status = check_limits(region);
+    if (status == ROBOT_OK) {
+        status = robot_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status == ROBOT_OK) {
+        status = find_allowed(region, p, ROBOT_R(0.0), &k, &found);
+    }
+    if (status != ROBOT_OK && status != ROBOT_BOUNDED) {
+        return status;
+    }
+    if (!(found.speed > ROBOT_R(0.0))) {
+        return ROBOT_UNRESOLVED;
+    }
+    *out = found;
+    return status;
+}
+
+/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
+static int set_out(const robot_real *q, const robot_real *dq, const robot_region *region,
+    const robot_params *p, robot_real rates[ROBOT_N], pressing *k)
+{
+    int status = robot_check_finite(dq, ROBOT_JOINTS);
+    if (status == ROBOT_OK) {
+        status = robot_check_impact(region, p);
+    }
+    for (int i = 0; i < ROBOT_N; ++i) {
+        rates[i] = dq[ROBOT_INDEPENDENT(i)];
+    }
+    (void)q;
+    return status == ROBOT_OK ? robot_links(ROBOT_LINKS_OF(q, p), &k->impact.arrival.links) : status;
+}
+
+int robot_allowed_factor(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
+    const robot_region *region, const robot_params *p, robot_allowed_factor_t *out)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    pressing k;
+    robot_real rates[ROBOT_N];
+    robot_allowed_factor_t found = {ROBOT_R(1.0), -1, ROBOT_R(0.0), ROBOT_R(0.0), 0};
+    bool bounded = false;
+    int status = check_limits(region);
+    if (status == ROBOT_OK) {
+        status = set_out(q, dq, region, p, rates, &k);
+    }
+    for (int point = 0; point < ROBOT_POINTS && status == ROBOT_OK; ++point) {
+        const robot_real speed = robot_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        robot_allowed_speed_t allowed = {speed, ROBOT_R(0.0), 0};
+        robot_impact_forget(&k.impact);
+        if (speed > LEAST_SPEED) {
+            status = find_allowed(region, p, found.factor*speed, &k, &allowed);
+            bounded = bounded || status == ROBOT_BOUNDED;
+            status = status == ROBOT_BOUNDED ? ROBOT_OK : status;
+        }
+        if (speed > LEAST_SPEED && status == ROBOT_OK
+            && (allowed.speed < found.factor*speed || found.point < 0)) {
+            found.factor = ROBOT_FMIN(found.factor, allowed.speed/speed);
+            found.point = point;
+            found.speed = allowed.speed;
+            found.force = allowed.force;
+            found.pressed = allowed.pressed;
+            status = allowed.speed > ROBOT_R(0.0) ? ROBOT_OK : ROBOT_UNRESOLVED;
+        }
+    }
+    const robot_real numbers[3] = {found.factor, found.speed, found.force};
+    if (status == ROBOT_OK && !robot_all_finite(numbers, 3)) {
+        status = ROBOT_SINGULAR;
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    *out = found;
+    return bounded ? ROBOT_BOUNDED : ROBOT_OK;
+}
+
+int robot_may_press(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
+    robot_real limit, const robot_region *region, const robot_params *p, int *may)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || may == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    pressing k;
+    robot_real rates[ROBOT_N];
+    int status = robot_check_positive(&limit, 1);
+    if (status == ROBOT_OK) {
+        status = set_out(q, dq, region, p, rates, &k);
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    bool kept = true;
+    for (int point = 0; point < ROBOT_POINTS && region->clamped != 0 && kept; ++point) {
+        const robot_real speed = robot_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        robot_impact_forget(&k.impact);
+        prepare_pressing(p, &k);
+        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+    }
+    *may = kept ? 0 : 1;
+    return ROBOT_OK;
+}
