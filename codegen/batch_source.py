@@ -15,7 +15,7 @@ import numpy as np
 
 from . import wide_sine
 from .inputs import SCALARS
-from .interface import SIZES, Entry, Variable, interface_of
+from .interface import SIZES, CVariable, Entry, interface_of
 from .render import Package, Templates
 from .source import CSource
 
@@ -63,7 +63,7 @@ def _call(prefix: str, entry: Entry) -> dict[str, object]:
     return {"entry": entry, "arguments": arguments, "target": target, "written": f"{kind}{sizes}"}
 
 
-def _type(prefix: str, a: Variable) -> str:
+def _type(prefix: str, a: CVariable) -> str:
     plain = a.type in ("int", "unsigned int", "unsigned char")
     return a.type if plain else f"{prefix}_{a.type}"
 

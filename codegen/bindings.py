@@ -8,7 +8,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from .interface import Entry, Interface, Variable
+from .interface import CVariable, Entry, Interface
 
 CPP_KEYWORDS = frozenset((
     "alignas", "alignof", "and", "asm", "auto", "bitand", "bitor", "bool", "break", "case",
@@ -93,14 +93,14 @@ def _cpp_function(name: str, entry: Entry) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _cpp_argument(name: str, a: Variable) -> str:
+def _cpp_argument(name: str, a: CVariable) -> str:
     if a.shape:
         return f"const vector<{a.shape[0]}> &{a.name}"
     kind = "real" if a.type == "real" else a.type if not a.pointer else f"{name}_{a.type}"
     return f"const {kind} &{a.name}" if a.pointer else f"{kind} {a.name}"
 
 
-def _rust(name: str, v: Variable) -> str:
+def _rust(name: str, v: CVariable) -> str:
     """Return a variable's type."""
     kind = RUST.get(v.type, f"{name}_{v.type}")
     for size in reversed(v.shape):
@@ -108,7 +108,7 @@ def _rust(name: str, v: Variable) -> str:
     return f"*const {kind}" if v.pointer else kind
 
 
-def _rust_argument(name: str, a: Variable) -> str:
+def _rust_argument(name: str, a: CVariable) -> str:
     """Return an argument's type: a pointer to the first of several, as C has it."""
     kind = RUST.get(a.type, f"{name}_{a.type}")
     for size in reversed(a.shape[1:]):

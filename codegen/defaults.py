@@ -40,7 +40,7 @@ class Default:
 def defaults_of(
     robot: Robot,
     parameters: Sequence[Parameter],
-    drives_: Drives | None,
+    drives: Drives | None,
     payload: Payload | None,
 ) -> tuple[Default, ...]:
     """Return the numbers known of each parameter; None where the caller must set them.
@@ -48,7 +48,7 @@ def defaults_of(
     Args:
         robot: any robot.
         parameters: of its package.
-        drives_: numbers, where they are not the robot's own.
+        drives: numbers, where they are not the robot's own.
         payload: what it carries, if anything.
 
     Raises:
@@ -60,14 +60,14 @@ def defaults_of(
         "position_gain": [0.0] * robot.n,
         "damping_gain": [0.0] * robot.n,
     }
-    if drives_ is not None:
+    if drives is not None:
         known = {
-            "joint_stiffness": np.array(drives_.springs).ravel().tolist(),
-            "rotor_inertia": np.array(drives_.rotors).ravel().tolist(),
-            "position_gain": np.array(drives_.gains).ravel().tolist(),
+            "joint_stiffness": np.array(drives.springs).ravel().tolist(),
+            "rotor_inertia": np.array(drives.rotors).ravel().tolist(),
+            "position_gain": np.array(drives.gains).ravel().tolist(),
             "damping_gain": [0.0] * robot.n
-            if drives_.damping_gains is None
-            else np.array(drives_.damping_gains).ravel().tolist(),
+            if drives.damping_gains is None
+            else np.array(drives.damping_gains).ravel().tolist(),
         }
     if payload is not None:
         _check(robot, payload)

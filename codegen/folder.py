@@ -11,7 +11,7 @@ from pathlib import Path
 
 from softimpact.symbolic import SoftImpactError
 
-Check = Callable[[Path], None]
+FolderCheck = Callable[[Path], None]
 """Raises ForeignFolder if a folder holds anything but what was written by us."""
 
 
@@ -44,7 +44,7 @@ def refusals(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def replaced(folder: Path, check: Check) -> Iterator[Path]:
+def replaced(folder: Path, check: FolderCheck) -> Iterator[Path]:
     """Give a fresh folder to fill; on success it takes the place of an older one.
 
     It lies beside the folder, which is then exchanged for it. Whatever interrupts this, the older
@@ -67,7 +67,7 @@ def replaced(folder: Path, check: Check) -> Iterator[Path]:
         shutil.rmtree(fresh, ignore_errors=True)
 
 
-def require_replaceable(folder: Path, check: Check) -> None:
+def require_replaceable(folder: Path, check: FolderCheck) -> None:
     """Raise ForeignFolder or FolderNotWritable if a folder could not be replaced.
 
     Called before long work, so that it is not lost for want of a place.
@@ -86,7 +86,7 @@ def _previous(folder: Path) -> Path:
     return folder.with_name(f".{folder.name}.previous")
 
 
-def _restore_interrupted(folder: Path, check: Check) -> None:
+def _restore_interrupted(folder: Path, check: FolderCheck) -> None:
     previous = _previous(folder)
     if not previous.exists():
         return

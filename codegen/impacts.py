@@ -21,7 +21,13 @@ from .description import CFunction
 from .evaluate import evaluate_rounded
 from .functions import Symbols
 from .inputs import Parameter, is_elastic
-from .reference import Arrival, Body, Motors, bracket, peak_force
+from .reference import (
+    ReferenceArrival,
+    ReferenceBody,
+    ReferenceMotors,
+    reference_bracket,
+    reference_peak,
+)
 from .samples import Sample, as_columns, draw_samples
 
 BODIES = ("head", "chest", "hand")
@@ -30,9 +36,9 @@ BODIES = ("head", "chest", "hand")
 SLOWEST, FASTEST = 0.05, 2.0
 """Range of their speeds [m/s]."""
 
-Kind = Literal["free_or_driven", "free", "driven", "servo"]
+CMotorKind = Literal["free_or_driven", "free", "driven", "servo"]
 
-KINDS: tuple[Kind, ...] = ("free_or_driven", "free", "driven", "servo")
+KINDS: tuple[CMotorKind, ...] = ("free_or_driven", "free", "driven", "servo")
 """What motors do in them, by turns; the numbers of C's enumeration."""
 
 REACTION_TIMES = (1 / 64, 1 / 32, 1.0)
@@ -59,7 +65,7 @@ class Impact:
     sample: Sample
     contact: Contact
     speed: float
-    motors: Kind = "free"
+    motors: CMotorKind = "free"
     reaction_time: float = REACTION_TIMES[0]
     horizon: float = LOOKED_AT
     built_in: int | None = None
@@ -75,13 +81,13 @@ class Impact:
         return self.contact.clamped
 
     @property
-    def body(self) -> Body:
+    def body(self) -> ReferenceBody:
         """The contact as the integrator sees it."""
         mass = None if self.clamped else self.region.effective_mass
         law = self.contact.law
         is_hertz = isinstance(law, PowerLaw) and law.exponent == HERTZ_EXPONENT
         skin = law.stiffness if isinstance(law, PowerLaw) and is_hertz else points_of(law)
-        return Body(self.region.stiffness, self.region.damping, mass, skin)
+        return ReferenceBody(self.region.stiffness, self.region.damping, mass, skin)
 
     @property
     def kind(self) -> int:
@@ -119,9 +125,9 @@ def _within(n: Sequence[float], directions: Array) -> tuple[float, ...]:
     return tuple(map(float, chosen.astype(np.float32)))
 
 
-def arrival_of(
+def reference_arrival(
     symbols: Symbols, links: CFunction, impact: Impact, directions: Array
-) -> Arrival | None:
+) -> ReferenceArrival | None:
     """Return the robot of an impact in numbers; None where it cannot move along n alone."""
     robot, elastic = symbols.robot, is_elastic(symbols.robot)
     columns = as_columns([impact.sample])
@@ -142,7 +148,7 @@ def arrival_of(
         return np.array(impact.sample.parameters[names.index(name)])[independent]
 
     held = motors.astype(float)
-    return Arrival(
+    return ReferenceArrival(
         mass=M,
         potential=found.get("K", np.zeros_like(M)),
         row=n[:, 0] @ J,
@@ -172,15 +178,15 @@ def reference_force(
     heaviest: float,
 ) -> float | None:
     """Return the right peak force [N]; None at poses that C calls singular, or nearly so."""
-    arrival = arrival_of(symbols, links, impact, directions)
+    arrival = reference_arrival(symbols, links, impact, directions)
     if arrival is None or arrival.rates @ arrival.rates > 0.25 * fastest:
         return None
     if arrival.row @ np.linalg.solve(arrival.mass, arrival.row) * heaviest < 4:
         return None
     kind = impact.motors
-    motors = Motors(
+    motors = ReferenceMotors(
         "free" if kind == "free_or_driven" else kind, impact.reaction_time, impact.horizon
     )
     if kind == "free_or_driven":
-        return bracket(arrival, impact.speed, impact.body, motors)
-    return peak_force(arrival, impact.speed, impact.body, motors)
+        return reference_bracket(arrival, impact.speed, impact.body, motors)
+    return reference_peak(arrival, impact.speed, impact.body, motors)

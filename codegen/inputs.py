@@ -11,7 +11,7 @@ from softimpact.symbolic import Robot
 
 
 @dataclass(frozen=True)
-class Range:
+class InputRange:
     """Which finite numbers an input may be.
 
     Attributes:
@@ -25,10 +25,10 @@ class Range:
     outside: tuple[float, ...]
 
 
-POSITIVE = Range("check_positive", "> 0", (-1.0, 0.0))
-NOT_NEGATIVE = Range("check_not_negative", ">= 0", (-1.0,))
-SHARE = Range("check_share", "from 0 to 1", (-1.0, 2.0))
-ANY = Range("check_finite", "", ())
+POSITIVE = InputRange("check_positive", "> 0", (-1.0, 0.0))
+NOT_NEGATIVE = InputRange("check_not_negative", ">= 0", (-1.0,))
+SHARE = InputRange("check_share", "from 0 to 1", (-1.0, 2.0))
+ANY = InputRange("check_finite", "", ())
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Parameter:
     name: str
     unit: str
     meaning: str
-    range: Range
+    range: InputRange
     shape: tuple[int, ...] = ()
     frozen: tuple[float, ...] | None = None
 

@@ -33,7 +33,7 @@ NUMPY = {"int": "i4", "unsigned int": "u4", "unsigned char": "u1", "double": "f8
 
 
 @dataclass(frozen=True)
-class Variable:
+class CVariable:
     """A member of a struct, an argument, or a table.
 
     Attributes:
@@ -58,7 +58,7 @@ class Struct:
     """A struct; its name is without the prefix."""
 
     name: str
-    fields: tuple[Variable, ...]
+    fields: tuple[CVariable, ...]
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Entry:
 
     name: str
     returns: str
-    arguments: tuple[Variable, ...]
+    arguments: tuple[CVariable, ...]
     comment: str
 
 
@@ -100,7 +100,7 @@ class Interface:
     enums: Mapping[str, Mapping[str, int]]
     numbers: Mapping[str, int]
     texts: Mapping[str, str]
-    tables: Mapping[str, Variable]
+    tables: Mapping[str, CVariable]
     layout: int | None
 
     def layout_in(self, real: str) -> int:
@@ -207,7 +207,7 @@ class _Header:
         structs = [self._struct(m[2], m[1], numbers) for m in STRUCT.finditer(self.text)]
         entries = [self._entry(m, numbers) for m in FUNCTION.finditer(self.text)]
         tables = [
-            Variable(self._short(m[2]), self._type(m[1]), self._shape(m[3], numbers))
+            CVariable(self._short(m[2]), self._type(m[1]), self._shape(m[3], numbers))
             for m in TABLE.finditer(self.text)
         ]
         layout = LAYOUT.search(self.text)
@@ -243,7 +243,7 @@ class _Header:
 
     def _struct(self, name: str, body: str, numbers: Mapping[str, int]) -> Struct:
         fields = [
-            Variable(
+            CVariable(
                 m[3],
                 self._type(m[1] or m[2]),
                 self._shape(m[4], numbers),
@@ -266,7 +266,7 @@ class _Header:
                 raise UnknownDeclaration(self.prefix, text)
             pointer = bool(m[3] or m[5])
             arguments.append(
-                Variable(m[4], self._type(m[2]), self._shape(m[5], numbers), pointer,
+                CVariable(m[4], self._type(m[2]), self._shape(m[5], numbers), pointer,
                          pointer and not m[1])
             )  # fmt: skip
         comment = re.sub(r"^ \* ?", "", found["comment"] or "", flags=re.MULTILINE).strip()

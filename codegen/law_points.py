@@ -15,7 +15,7 @@ import numpy as np
 
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.body.laws import Law
-from softimpact.symbolic.body.laws.points import Points
+from softimpact.symbolic.body.laws.points import CubicPoints
 from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
@@ -62,7 +62,7 @@ def law_points(law: Law) -> Array:
     return found
 
 
-def _grid(points: Points) -> Array:
+def _grid(points: CubicPoints) -> Array:
     """Return depths at which parabolas may begin and end: the law's points, and some between."""
     low, high = 0.0, float(points.depth[-1])
     for _ in range(100):
@@ -86,7 +86,7 @@ class _Piece:
     fits: bool
 
 
-def _longest(points: Points, grid: Array, first: int) -> _Piece:
+def _longest(points: CubicPoints, grid: Array, first: int) -> _Piece:
     """Return the longest parabola from a place of the grid on; the next place always does."""
     best, step = _piece(points, grid, first, first + 1), 1
     while step:
@@ -99,7 +99,7 @@ def _longest(points: Points, grid: Array, first: int) -> _Piece:
     return best
 
 
-def _piece(points: Points, grid: Array, first: int, end: int) -> _Piece:
+def _piece(points: CubicPoints, grid: Array, first: int, end: int) -> _Piece:
     """Return the parabola between two places, or a straight line where tangents do not meet."""
     a, b = float(grid[first]), float(grid[end])
     (f_a, f_b), _ = points.evaluated(np.array([a, b]))
@@ -123,7 +123,7 @@ def _piece(points: Points, grid: Array, first: int, end: int) -> _Piece:
     return _Piece((a, f_a), (knee, over), end, max(0.0, float(-off.min(initial=0.0))), fits)
 
 
-def _slope_after(points: Points, depth: float) -> float:
+def _slope_after(points: CubicPoints, depth: float) -> float:
     """Return the law's slope from a depth on [N/m]."""
     i = int(np.searchsorted(points.depth, depth, side="right")) - 1
     if i < len(points.depth) and points.depth[i] == depth:
@@ -131,7 +131,7 @@ def _slope_after(points: Points, depth: float) -> float:
     return float(points.evaluated(np.array([depth]))[1][0])
 
 
-def _slope_before(points: Points, depth: float) -> float:
+def _slope_before(points: CubicPoints, depth: float) -> float:
     """Return the law's slope up to a depth [N/m]."""
     i = int(np.searchsorted(points.depth, depth, side="left"))
     if i < len(points.depth) and points.depth[i] == depth:

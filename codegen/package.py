@@ -10,6 +10,7 @@ import numpy as np
 
 import softimpact
 from softimpact.symbolic import STANDARD_GRAVITY, Contact, Drives, InvalidValue, Robot
+from softimpact.symbolic.former_names import renamed
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 
 from .accuracy import Inputs, accuracy, golden_results, is_regular
@@ -51,6 +52,7 @@ def unseen(what: str, done: int, of: int) -> None:
     """Let steps pass without a word."""
 
 
+@renamed(drives_="drives")
 def generate_package(
     robot: Robot,
     out: str | Path,
@@ -58,7 +60,7 @@ def generate_package(
     tip: str | None = None,
     real: Real = "double",
     name: str | None = None,
-    drives_: Drives | None = None,
+    drives: Drives | None = None,
     gravity: tuple[float, float, float] | None = None,
     chain_order: int | None = None,
     payload: Payload | None = None,
@@ -78,7 +80,7 @@ def generate_package(
         tip: frame whose origin is the contact point; default the robot's own.
         real: number type that the package uses unless its build says otherwise.
         name: prefix of all C names; default the robot's name.
-        drives_: numbers for the default parameters; without them the rotor inertias are the
+        drives: numbers for the default parameters; without them the rotor inertias are the
             file's armatures, gains are 0, and joint stiffnesses are left for the caller to set.
         gravity: whose curvature enters K0 [m/s²]; zero leaves it out. Default none, but of closed
             chains, whose passive joints rest where springs and gravity balance, the standard one.
@@ -120,7 +122,7 @@ def generate_package(
         tip=tip,
         real=real,
         name=name,
-        drives_=drives_,
+        drives=drives,
         gravity=gravity,
         chain_order=chain_order,
         payload=payload,
@@ -151,7 +153,7 @@ def package_of(
     tip: str | None = None,
     real: Real = "double",
     name: str | None = None,
-    drives_: Drives | None = None,
+    drives: Drives | None = None,
     gravity: tuple[float, float, float] | None = None,
     chain_order: int | None = None,
     payload: Payload | None = None,
@@ -178,7 +180,7 @@ def package_of(
     watched = {TIP: frame, **checked_points(robot, points or {})}
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot, payload=payload is not None)
-    defaults = defaults_of(robot, parameters, drives_, payload)
+    defaults = defaults_of(robot, parameters, drives, payload)
     parameters = frozen_parameters(defaults, freeze)
     golden = draw_samples(robot, parameters, 4 * GOLDEN_CASES, seed=1)
     measured = draw_samples(

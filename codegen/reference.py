@@ -15,10 +15,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from softimpact.symbolic.body.laws.points import Points
+from softimpact.symbolic.body.laws.points import CubicPoints
 from softimpact.symbolic.robot.rigid import Array
 
-MotorKind = Literal["free", "driven", "servo"]
+ReferenceKind = Literal["free", "driven", "servo"]
 
 STEP = 0.01
 """Radians of the contact's vibration in a step."""
@@ -31,17 +31,17 @@ TERMS = 16
 
 
 @dataclass(frozen=True)
-class Body:
+class ReferenceBody:
     """What is hit: k_h [N/m], c_h [N·s/m], m_h [kg] (None if clamped), k_f [N/m^1.5] or a law."""
 
     stiffness: float
     damping: float
     mass: float | None
-    skin: float | Points
+    skin: float | CubicPoints
 
 
 @dataclass(frozen=True, eq=False)
-class Arrival:
+class ReferenceArrival:
     """A robot about to touch.
 
     Attributes:
@@ -66,17 +66,19 @@ class Arrival:
 
 
 @dataclass(frozen=True)
-class Motors:
+class ReferenceMotors:
     """What motors do, and for how long the impact is looked at [s]."""
 
-    kind: MotorKind
+    kind: ReferenceKind
     reaction_time: float
     horizon: float
 
 
-def peak_force(arrival: Arrival, speed: float, body: Body, motors: Motors) -> float:
+def reference_peak(
+    arrival: ReferenceArrival, speed: float, body: ReferenceBody, motors: ReferenceMotors
+) -> float:
     """Return the largest force [N] over all contacts up to the horizon."""
-    kind: MotorKind = motors.kind if motors.reaction_time > 0 else "free"
+    kind: ReferenceKind = motors.kind if motors.reaction_time > 0 else "free"
     run = _Run(arrival, speed, body, kind)
     if kind == "free" or motors.reaction_time >= motors.horizon:
         run.until(motors.horizon)
@@ -98,7 +100,7 @@ class _System:
     pull: Array
 
 
-def _system(arrival: Arrival, kind: MotorKind) -> _System:
+def _system(arrival: ReferenceArrival, kind: ReferenceKind) -> _System:
     """Return the system over links and motors, or over what motors leave free."""
     n, P = len(arrival.row), arrival.potential
     K_p, K_d = arrival.gains if kind == "servo" else (np.zeros(n), np.zeros(n))
@@ -126,7 +128,9 @@ def _system(arrival: Arrival, kind: MotorKind) -> _System:
 class _Run:
     """Integrates one impact; positions are deviations z from the motion before."""
 
-    def __init__(self, arrival: Arrival, speed: float, body: Body, kind: MotorKind) -> None:
+    def __init__(
+        self, arrival: ReferenceArrival, speed: float, body: ReferenceBody, kind: ReferenceKind
+    ) -> None:
         self.arrival, self.speed, self.body, self.kind = arrival, speed, body, kind
         self.system = _system(arrival, kind)
         size = len(self.system.row)
@@ -200,7 +204,7 @@ class _Run:
         slack = 1 + k * soft[0] + c * soft[1]
         right = k * x + c * (v - memory)
         depth = 0.0
-        if right > 0 and isinstance(skin, Points):
+        if right > 0 and isinstance(skin, CubicPoints):
             depth, self.force = _pressed(skin, slack, k + c * lag, right)
         elif right > 0:
             depth = _depth(skin * slack, k + c * lag, right)
@@ -227,7 +231,7 @@ def _depth(cubic: float, square: float, right: float) -> float:
     return u * u
 
 
-def _pressed(law: Points, slack: float, square: float, right: float) -> tuple[float, float]:
+def _pressed(law: CubicPoints, slack: float, square: float, right: float) -> tuple[float, float]:
     """Return δ and f(δ) with slack f(δ) + square δ = right, by Newton's method within bounds."""
     low, high, depth = 0.0, right / square, right / square
     for _ in range(200):
@@ -254,7 +258,9 @@ def _exponential(A: Array) -> Array:
     return np.asarray(total)
 
 
-def bracket(arrival: Arrival, speed: float, body: Body, motors: Motors) -> float:
+def reference_bracket(
+    arrival: ReferenceArrival, speed: float, body: ReferenceBody, motors: ReferenceMotors
+) -> float:
     """Return the worse of free motors and motors that drive on."""
-    kinds: tuple[MotorKind, ...] = ("free", "driven")
-    return max(peak_force(arrival, speed, body, replace(motors, kind=kind)) for kind in kinds)
+    kinds: tuple[ReferenceKind, ...] = ("free", "driven")
+    return max(reference_peak(arrival, speed, body, replace(motors, kind=kind)) for kind in kinds)

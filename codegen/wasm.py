@@ -21,7 +21,7 @@ from typing import Any
 from softimpact.symbolic import SoftImpactError
 
 from .errors import NoCrossCompiler
-from .interface import SIZES, WASM_POINTER, Interface, Variable, read_interface
+from .interface import SIZES, WASM_POINTER, CVariable, Interface, read_interface
 from .manifest import Real
 
 GLUE = Path(__file__).parent / "web" / "package.mjs"
@@ -100,7 +100,7 @@ def described(interface: Interface, real: Real) -> dict[str, Any]:
     }
 
 
-def _typed(variable: Variable) -> dict[str, Any]:
+def _typed(variable: CVariable) -> dict[str, Any]:
     return {"name": variable.name, "type": variable.type, "shape": list(variable.shape)}
 
 

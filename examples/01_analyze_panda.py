@@ -9,7 +9,7 @@ q, direction = [0.2, 0.3, -0.4, -1.8, 0.1, 2.0, 0.5], [0.0, 1.0, 0.0]
 chest = Contact(body_region("chest"))
 
 for joint_stiffness in (3e4, 1e4, 3e3):
-    model = impact_model(panda, drives_=drives(panda, joint_stiffness))
+    model = impact_model(panda, drives=drives(panda, joint_stiffness))
     found = analyse(model, q, direction)
     impact = assess_impact(model, Approach(q, direction, 1.0), chest, safe_speed=True)
     speed = impact.safe_speed

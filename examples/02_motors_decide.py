@@ -27,7 +27,7 @@ SPRINGS = (("rigid joints", None), ("springs of 10,000 N·m/rad in all joints", 
 def impact(stiffness: float | None, motors: Motors) -> ImpactHistory:
     """Simulate one impact of the Panda's hand on a chest that is held."""
     panda = load_robot("panda")
-    model = impact_model(panda, drives_=drives(panda, stiffness))
+    model = impact_model(panda, drives=drives(panda, stiffness))
     return simulate_impact(model, Approach(Q, ALONG_Y, SPEED), CHEST, motors=motors)
 
 

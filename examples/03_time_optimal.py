@@ -24,7 +24,7 @@ from softimpact.simulate.trajectory import Trajectory, trajectory
 from softimpact.symbolic.robot.rigid import Array
 
 PANDA = load_robot("panda")
-MODEL = impact_model(PANDA, drives_=drives(PANDA, joint_stiffness=1e4))
+MODEL = impact_model(PANDA, drives=drives(PANDA, joint_stiffness=1e4))
 ENDS = {"free": Motors("free"), "driven": Motors("driven")}
 POINTS = ["hand_tcp", "link5"]
 CHEST = Contact(body_region("chest"), clamped=False)

@@ -12,10 +12,11 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array
 
 from .bounds import STEEPNESS, Bound
-from .ipopt import Bounds, Found, Instance
+from .ipopt import Found, Instance, VariableBounds
 from .nlp import Program
 from .study import Study
 from .tip_pose import POSE
+from .units import figure_in_words
 
 INDIFFERENT = 0.005
 """Share of the force that counts as no loss."""
@@ -50,7 +51,7 @@ class Price:
 
 
 def indifferent_ranges(
-    bounds: Bounds,
+    bounds: VariableBounds,
     v: Array,
     cost: Callable[[Array], float],
     keeps: Callable[[Array], bool],
@@ -137,10 +138,8 @@ def prices_of(
 
 def _room(bound: Bound) -> str:
     """Return a tenth of a limit in words."""
-    room, unit = ROOM * bound.limit, bound.unit
-    if unit == "m":
-        room, unit = 1e3 * room, "mm"
-    return f"{room:g} {unit} {'more' if bound.sense == 'most' else 'less'}"
+    more = "more" if bound.sense == "most" else "less"
+    return f"{figure_in_words(ROOM * bound.limit, bound.unit, 3)} {more}"
 
 
 def worth_of(study: Study, force: float) -> tuple[float, str]:

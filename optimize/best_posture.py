@@ -14,7 +14,7 @@ from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
 from .impact_program import impact_program
-from .ipopt import Bounds, Instance, one_posture
+from .ipopt import Instance, VariableBounds, one_posture
 from .nlp import task_numbers
 from .problem import study_impacts, study_program
 from .solve import Start, solve
@@ -83,5 +83,7 @@ def posture_of_least_force(study: Study, start: Array) -> BestPosture:
     shape = one_posture(len(impacts))
     instance = Instance(shape, task[None, :], impacts, np.full(len(impacts), 100.0))
     program = study_program(free, (impact,))
-    found = solve(program, Start("start", "free", ((start, springs),)), Bounds.of(free), instance)
+    found = solve(
+        program, Start("start", "free", ((start, springs),)), VariableBounds.of(free), instance
+    )
     return BestPosture(found.q, found.force, found.status, found.solved)

@@ -3,22 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
 from .evaluation import Kept, kept
-from .ipopt import Bounds, felt
+from .ipopt import VariableBounds, felt
 from .nlp import Program
-from .scenarios import Indices, Scenarios
+from .scenarios import Scenarios
 from .screening import PIECE, Screened, forces_at, screen
 from .study import Study
 from .timing import Timing
-from .workers import as_completed
+from .workers import Progress, as_completed
 
 SECANTS = 8
 """Most screenings for the greatest safe speed of given hardware."""
@@ -28,9 +27,6 @@ AS_LIMIT = 1e-4
 
 ONE = np.zeros(1, dtype=np.int64)
 """Number of a single scenario."""
-
-Progress = Callable[[str, int, int], None]
-"""Called with what is being done, how much of it is done, and how much there is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +84,7 @@ class Setting:
     scenarios: Scenarios
     program: Program
     timing: Timing
-    limits: Bounds
+    limits: VariableBounds
     pool: Executor
     say: Progress
 

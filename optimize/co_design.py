@@ -13,11 +13,12 @@ from softimpact.symbolic import InvalidValue, Motors
 from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
-from .answers import Price, indifferent_ranges, prices_of, worth_of
+from .answers import Price
 from .branches import branches
-from .evaluation import largest_deflection, largest_share
+from .evaluation import largest_deflection
 from .failure import SolverFailure
 from .ipopt import IN_TURN, minimise
+from .meaning import meaning
 from .optima import Optimum, distinct
 from .poses import Candidate, candidates, leaves_a_choice
 from .problem import Problem, felt_numbers, peak_force, prepare, study_impacts
@@ -74,7 +75,7 @@ class Gains:
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class DesignReference:
     """The design to compare with: the task's pose, springs in the nominal proportions.
 
     They are the nominal ones where these keep the bound on the deflection, else just stiff enough.
@@ -107,7 +108,7 @@ class Answers:
     indifferent: Array
     prices: tuple[Price, ...]
     worst_motors: Motors
-    reference: Reference
+    reference: DesignReference
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +186,7 @@ def design(
         SolverFailure: no search was solved.
     """
     modes = applicable(study, modes)
-    require_reachable(study, modes)
+    require_a_reachable_pose(study, modes)
     outcomes: dict[tuple[str, Mode], Outcome] = {}
     with workers(min(len(study.poses), cores()), executor) as pool:
         awake(pool, len(study.poses))
@@ -237,13 +238,7 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
         again = minimise(
             program, instance, limits, winner.q[None, :], winner.springs, winner.others, free=free
         )
-
-    def force(v: Array) -> float:
-        return peak_force(study, program.impacts[0], problem.timing, winner.q, *limits.parted(v))
-
-    def keeps(v: Array) -> bool:
-        return largest_share(study, winner.q, *limits.parted(v)) <= KEEPS
-
+    meant = meaning(problem, winner, instance, again)
     task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
     accurate = study.nominal
     if task.deflection_before > study.max_deflection * KEEPS:
@@ -251,14 +246,10 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
     at = task.candidate.q
     return Answers(
         deflection=largest_deflection(study, winner.q, winner.springs, winner.others),
-        indifferent=indifferent_ranges(
-            limits, limits.vector(winner.springs, winner.others), force, keeps
-        ),
-        prices=prices_of(
-            study, instance, again, worth_of(study, float(instance.units[0])), program
-        ),
+        indifferent=meant.indifferent,
+        prices=meant.prices,
         worst_motors=_worst_motors(problem, winner),
-        reference=Reference(
+        reference=DesignReference(
             accurate,
             peak_force(study, program.impacts[0], problem.timing, at, accurate),
             largest_deflection(study, at, accurate),
@@ -276,7 +267,7 @@ def _worst_motors(problem: Problem, winner: Outcome) -> Motors:
     return problem.study.motors[int(np.argmax(forces))]
 
 
-def require_reachable(study: Study, modes: Sequence[Mode]) -> None:
+def require_a_reachable_pose(study: Study, modes: Sequence[Mode]) -> None:
     """Raise Infeasible if no hardware keeps the bounds in any pose, moved if that is sought."""
     poses, free = candidates(study), "free" in modes
     if any(reachable(study, pose.q, free=free) for pose in poses):

@@ -11,11 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
-from .ipopt import Bounds, Found, Instance, impact_forces, minimise
+from .ipopt import Found, Instance, VariableBounds, impact_forces, minimise
 from .nlp import Program
-from .objectives.objective import Indices
 
 NEAR = 0.98
 """Share of the worst force from which on an impact is carried from the start."""
@@ -27,7 +26,7 @@ EXCEEDS = 1e-4
 def minimise_deciding(
     program: Program,
     instance: Instance,
-    bounds: Bounds,
+    bounds: VariableBounds,
     postures: Array,
     springs: Array,
     others: Array | None = None,

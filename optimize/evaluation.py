@@ -13,8 +13,8 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
-from .bounds import Bound, Deflection
-from .hardware import Hardware, Machine, Motion
+from .bounds import Bound
+from .hardware import Hardware, Machine, TaskMotion
 from .study import Study
 from .variables import Variable
 
@@ -72,8 +72,7 @@ def figures(
         springs: joint stiffness, length n [N·m/rad].
         others: values of the study's other variables; default the machine as it is.
     """
-    if isinstance(bound, Deflection):
-        bound = replace(bound, most=1.0)  # figures do not depend on limits
+    bound = bound.at(1.0)  # figures do not depend on limits
     motions = study.motions if bound.needs_speed else ()
     key = bound, study.model, study.other_variables, motions, study.margin
     function: ca.Function = _figures(*key)  # type: ignore[arg-type]
@@ -89,7 +88,7 @@ def _figures(
     bound: Bound,
     model: ImpactModel,
     variables: tuple[Variable, ...],
-    motions: tuple[Motion, ...],
+    motions: tuple[TaskMotion, ...],
     margin: float,
 ) -> ca.Function:
     size = sum(variable.range(model).lower.size for variable in variables)

@@ -20,7 +20,7 @@ from .sweep import Level, rescaled
 FIRST = 3
 """Held postures, the best at a level, from which the free one is first sought there."""
 
-Task = tuple[int, Start]
+LevelStart = tuple[int, Start]
 """A level, by its place, and where to start there."""
 
 
@@ -53,7 +53,7 @@ def first_forces(
     """
     name, end = accurate
     limits, mode = searches.problem.bounds, searches.problem.freest
-    tasks: list[Task] = []
+    tasks: list[LevelStart] = []
     for i, level in enumerate(levels):
         stiffer = rescaled(end.springs, end.deflection, level.bound, limits)
         softer = rescaled(soft.springs, levels[-1].bound, level.bound, limits)
@@ -96,7 +96,7 @@ def free_outcomes(
     return [best.get(i) for i in range(len(levels))]
 
 
-def _from_held(held: Sequence[Sequence[Outcome | None]], mode: Mode) -> list[Task]:
+def _from_held(held: Sequence[Sequence[Outcome | None]], mode: Mode) -> list[LevelStart]:
     tasks = []
     for i, column in enumerate(zip(*held, strict=True)):
         solved = sorted((o for o in column if o is not None and o.solved), key=preference)
@@ -105,7 +105,7 @@ def _from_held(held: Sequence[Sequence[Outcome | None]], mode: Mode) -> list[Tas
     return tasks
 
 
-def _from_branches(searches: Searches, levels: Sequence[Level]) -> list[Task]:
+def _from_branches(searches: Searches, levels: Sequence[Level]) -> list[LevelStart]:
     """Start on every piece of the self-motion, where forces are least before any search."""
     name = searches.problem.study.task_pose.name
     return [
@@ -117,7 +117,7 @@ def _from_branches(searches: Searches, levels: Sequence[Level]) -> list[Task]:
 
 def _from_neighbours(
     searches: Searches, levels: Sequence[Level], best: dict[int, Outcome], changed: set[int]
-) -> list[Task]:
+) -> list[LevelStart]:
     """Start each level from its neighbours that changed, as stiff as it needs."""
     tasks, mode = [], searches.problem.freest
     for j in sorted(changed):
@@ -135,7 +135,7 @@ def _improve(
     searches: Searches,
     what: str,
     levels: Sequence[Level],
-    tasks: Sequence[Task],
+    tasks: Sequence[LevelStart],
     best: dict[int, Outcome],
 ) -> set[int]:
     """Put what is found into ``best``; return the levels that gained by more than rounding."""

@@ -52,7 +52,7 @@ class Hardware:
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class TaskMotion:
     """A motion that a machine must be able to do.
 
     Attributes:
@@ -77,14 +77,14 @@ class Machine:
 
     model: ImpactModel
     hardware: Hardware
-    motions: tuple[Motion, ...] = ()
+    motions: tuple[TaskMotion, ...] = ()
     margin: float = 0.0
 
     @staticmethod
     def of(
         model: ImpactModel,
         hardware: Hardware,
-        motions: tuple[Motion, ...] = (),
+        motions: tuple[TaskMotion, ...] = (),
         margin: float = 0.0,
     ) -> Machine:
         """Return a robot with other hardware than its own."""

@@ -52,17 +52,20 @@ class ContactParameters(NamedTuple):
 class ImpactDynamics:
     """The linearised elastic robot in link angles x and motor angles θ, both since first touch.
 
-    M ẍ = −k_s(x − θ) − J_cᵀ f_c, and B θ̈ = k_s(x − θ) + τ or a motion that is given; a servo has
-    τ = −K_p(θ − q̇0 t) − K_d(θ̇ − q̇0).
+    M ẍ = −k_s(x − θ) − D(ẋ − q̇0) − K_V x − J_cᵀ f_c, and B θ̈ = k_s(x − θ) + τ or a motion that is
+    given; a servo has τ = −K_p(θ − q̇0 t) − K_d(θ̇ − q̇0).
 
     Attributes:
-        mobility: M⁻¹, n×n.
+        mobility: (M + h D/2)⁻¹ for time steps h, n×n; so a step with damping stays stable and
+            exact to second order.
         jacobian: J_c, 1×n.
         springs: k_s, length n.
         rotors: B, length n.
         gains: K_p, n×n; sparse where it is structurally zero.
         damping: K_d, length n.
         velocity: q̇0 of links and motors at first touch, length n [rad/s].
+        joint_damping: D, length n; None where no joint damps.
+        potential: K_V, curvature of the links' potential energy, n×n; None where there is none.
     """
 
     mobility: Matrix
@@ -72,6 +75,8 @@ class ImpactDynamics:
     gains: Matrix
     damping: Matrix
     velocity: Matrix
+    joint_damping: Matrix | None = None
+    potential: Matrix | None = None
 
 
 def contact_forces(
@@ -94,6 +99,7 @@ def contact_forces(
         nodes: number of forces returned.
         substeps: time steps from node to node.
     """
+    D, K_V = dynamics.joint_damping, dynamics.potential
     parameters = ca.vertcat(
         ca.vec(dynamics.mobility),
         dynamics.jacobian.T,
@@ -104,15 +110,21 @@ def contact_forces(
         *contact,
         step,
         _nonzeros(dynamics.gains),
+        *([] if D is None else [D]),
+        *([] if K_V is None else [ca.vec(K_V)]),
     )
     n = dynamics.springs.shape[0]
-    node = _leapfrog(n, substeps, dynamics.gains.sparsity())
+    gains = dynamics.gains.sparsity()
+    node = _leapfrog(n, substeps, gains, D is not None, K_V is not None)
     start = ca.vertcat(
-        ca.MX.zeros(2 * n), dynamics.velocity, dynamics.velocity, ca.MX.zeros(len(Body._fields))
+        ca.MX.zeros(2 * n),
+        dynamics.velocity,
+        dynamics.velocity,
+        ca.MX.zeros(len(BodyState._fields)),
     )
     given = ca.vertcat(ca.repmat(parameters, 1, nodes), laws.at_nodes(step, substeps, nodes))
     states = node.mapaccum("impact", nodes, 1, FEW_DIRECTIONS)(start, given)
-    return states[4 * n + Body._fields.index("force"), :].T
+    return states[4 * n + BodyState._fields.index("force"), :].T
 
 
 def _nonzeros(matrix: Matrix) -> Matrix:
@@ -121,7 +133,7 @@ def _nonzeros(matrix: Matrix) -> Matrix:
     return ca.vertcat(*picked) if picked else ca.DM(0, 1)
 
 
-class Body(NamedTuple):
+class BodyState(NamedTuple):
     """State of the body region during the impact, and the time.
 
     Attributes:
@@ -139,37 +151,56 @@ class Body(NamedTuple):
     time: Matrix
 
 
-def _leapfrog(n: int, steps: int, gains: ca.Sparsity) -> ca.Function:
+def _leapfrog(
+    n: int, steps: int, gains: ca.Sparsity, is_damped: bool, has_potential: bool
+) -> ca.Function:
     """Return (state, parameters) -> state after some steps.
 
     The state is link angles, motor angles, their velocities half a step ahead, and the body's. The
     parameters end with what the motors do meanwhile.
     """
-    state = ca.SX.sym("state", 4 * n + len(Body._fields))
+    state = ca.SX.sym("state", 4 * n + len(BodyState._fields))
     M_inv, j, k_s = ca.SX.sym("M_inv", n, n), ca.SX.sym("j", n), ca.SX.sym("k_s", n)
     B_inv, K_d, velocity = ca.SX.sym("B_inv", n), ca.SX.sym("K_d", n), ca.SX.sym("dq0", n)
     K_p, law = ca.SX.sym("K_p", gains), ca.SX.sym("law", LAW)
+    D, K_V = ca.SX.sym("D", n * is_damped), ca.SX.sym("K_V", *(2 * [n * has_potential]))
     contact = ContactParameters(*ca.vertsplit(ca.SX.sym("contact", 4)))
     h = ca.SX.sym("h")
     x, theta, dx, dtheta, rest = ca.vertsplit(state, [0, n, 2 * n, 3 * n, 4 * n, state.numel()])
-    body = Body(*ca.vertsplit(rest))
+    body = BodyState(*ca.vertsplit(rest))
     moves, share, servo = ca.vertsplit(law)
     for _ in range(steps):
         x, theta = x + h * dx, theta + h * dtheta
         body = _press(body, ca.dot(j, x), contact, h)
         pull = k_s * (x - theta)
-        dx = dx - h * ca.mtimes(M_inv, pull + j * body.force)
+        pushed = pull + j * body.force
+        if is_damped:
+            pushed = pushed + D * (dx - velocity)
+        if has_potential:
+            pushed = pushed + ca.mtimes(K_V, x)
+        dx = dx - h * ca.mtimes(M_inv, pushed)
         torque = ca.mtimes(K_p, theta - velocity * body.time) + K_d * (dtheta - velocity)
         moved = dtheta + h * B_inv * (pull - servo * torque)
         dtheta = moves * moved + (1 - moves) * share * velocity
     parameters = ca.vertcat(
-        ca.vec(M_inv), j, k_s, B_inv, K_d, velocity, *contact, h, _nonzeros(K_p), law
+        ca.vec(M_inv),
+        j,
+        k_s,
+        B_inv,
+        K_d,
+        velocity,
+        *contact,
+        h,
+        _nonzeros(K_p),
+        D,
+        ca.vec(K_V),
+        law,
     )
     after = ca.vertcat(x, theta, dx, dtheta, *body)
     return ca.Function("leapfrog", [state, parameters], [after], FEW_DIRECTIONS)
 
 
-def _press(body: Body, tip: Matrix, contact: ContactParameters, h: Matrix) -> Body:
+def _press(body: BodyState, tip: Matrix, contact: ContactParameters, h: Matrix) -> BodyState:
     """Move the body by one step to where the robot's contact point is now."""
     position = body.position + h * body.velocity
     depth = tip - position
@@ -185,4 +216,4 @@ def _press(body: Body, tip: Matrix, contact: ContactParameters, h: Matrix) -> Bo
         y = y - residual / (drag + k_h + 1.5 * k_f * root)
     skin = ca.fmax(depth - y, 0)
     force = k_f * skin * ca.sqrt(skin + ROUNDING)
-    return Body(position, body.velocity + h * mobility * force, y, force, body.time + h)
+    return BodyState(position, body.velocity + h * mobility * force, y, force, body.time + h)

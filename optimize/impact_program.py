@@ -21,6 +21,7 @@ from softimpact.symbolic import (
     ImpactModel,
     Matrix,
     Motors,
+    Robot,
     contact_point_jacobian,
     direction_jacobian,
     least_velocity,
@@ -33,7 +34,7 @@ from .compiled import compiled_functions
 from .hardware import Hardware, Machine
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .motor_laws import MotorLaws
-from .peaks import peaks_in_windows
+from .peaks import WINDOWS, peaks_in_windows
 
 SIZES = {"direction": 3, "speed": 1, "contact": 4, "motors": 5, "payload": 1, "step": 1}
 """Numbers of an impact, in order."""
@@ -47,6 +48,9 @@ Parts = tuple[str, ...]
 """Those of ``PARTS`` that are sought; springs always are."""
 
 SPRINGS: Parts = ("springs",)
+
+QUARTERS = 4
+"""Lengths of time among which a derivative has the shortest that will do."""
 
 
 def part_sizes(parts: Parts, n: int) -> list[int]:
@@ -64,7 +68,7 @@ class ImpactProgram:
         functions: names and serialised functions, none where there is a library that all workers
             share, since every job carries them: ``forces`` (x, p) -> all nodes [N]; ``peaks``
             (x, p, boundary) -> one for each window [N]; ``slopes``, the same and its derivative
-            by x.
+            by x; ``slope`` (x, p, weights) -> that of a weighted sum of all nodes.
         library: their compiled form, None to run in CasADi's virtual machine.
         n: number of joints.
         nodes: times at which the force is taken.
@@ -157,35 +161,87 @@ def impact_program(
     return ImpactProgram(carried, library, model.robot.n, nodes, parts, compiles=elsewhere)
 
 
+def forces_alone(
+    model: ImpactModel, nodes: int, substeps: int, point: str | None = None
+) -> ca.Function:
+    """Return a program's ``forces`` without derivatives, compiled if there is a compiler.
+
+    Args:
+        model: robot, its end and its drives; the springs are variables.
+        nodes: times at which the force is taken.
+        substeps: time steps from node to node.
+        point: frame that hits; default the model's tip.
+    """
+    posture = _posture(model, point or model.tip, SPRINGS)
+    x, p = posture.mx_in()
+    forces = _forces(model, posture(x, p), p, nodes, substeps, SPRINGS)
+    function = ca.Function("forces", [x, p], [forces])
+    library = compiled_functions([function], c_compiler())
+    return function if library is None else ca.external("forces", str(library))
+
+
 def impact_functions(
     model: ImpactModel, nodes: int, substeps: int, point: str, parts: Parts = SPRINGS
 ) -> tuple[ca.Function, ...]:
     """Return the functions of ``ImpactProgram``.
 
-    The derivative goes backwards through the impact, once for each window, to what the posture
-    gives (masses, Jacobian, springs), and from there forwards to posture and hardware: three to
-    four times the price of the forces, whatever the number of joints.
+    A derivative goes backwards through the impact, from the last force that counts to first touch,
+    to what the posture gives (masses, Jacobian, springs), and from there forwards to posture and
+    hardware. It costs as much as the forces where these peak early, three times as much at most,
+    whatever the number of joints.
     """
     n = model.robot.n
     x, p = ca.MX.sym("x", n + sum(part_sizes(parts, n))), ca.MX.sym("p", NUMBERS)
-    boundary = ca.MX.sym("boundary")
-    posture, slope = _posture(model, point, parts)
+    boundary, weights = ca.MX.sym("boundary"), ca.MX.sym("weights", nodes)
+    posture = _posture(model, point, parts)
+    slope = _with_slope(posture)
     given = ca.MX.sym("given", posture.numel_out(0))
     forces = _forces(model, given, p, nodes, substeps, parts)
-    peaks = peaks_in_windows(forces, boundary)
-    arguments = [given, p, boundary]
-    backwards = ca.Function(
-        "backwards", arguments, [peaks, ca.jacobian(peaks, given)], FEW_DIRECTIONS
-    )
     forwards = ca.Function("forwards", [given, p], [forces], FEW_DIRECTIONS)
+    pull = _pull(model, given, nodes, substeps, parts)
     at, along = slope(x, p)
-    found, by_given = backwards(at, p, boundary)
+    peaks, by_forces = _peaks(nodes)(forwards(at, p), boundary)
+    rows = [pull(at, p, by_forces[w, :].T) for w in range(WINDOWS)]
     pressed = forwards(posture(x, p), p)
     return (
         ca.Function("forces", [x, p], [pressed]),
         ca.Function("peaks", [x, p, boundary], [peaks_in_windows(pressed, boundary)]),
-        ca.Function("slopes", [x, p, boundary], [found, ca.mtimes(by_given, along)]),
+        ca.Function("slopes", [x, p, boundary], [peaks, ca.mtimes(ca.vertcat(*rows), along)]),
+        ca.Function("slope", [x, p, weights], [ca.mtimes(pull(at, p, weights), along)]),
     )
+
+
+def _peaks(nodes: int) -> ca.Function:
+    """Return (forces, boundary) -> the peak in each window and its derivative by the forces."""
+    forces, boundary = ca.MX.sym("forces", nodes), ca.MX.sym("boundary")
+    peaks = peaks_in_windows(forces, boundary)
+    unit = ca.DM.eye(WINDOWS)
+    rows = [ca.jtimes(peaks, forces, unit[:, w], True).T for w in range(WINDOWS)]
+    return ca.Function("windows", [forces, boundary], [peaks, ca.vertcat(*rows)])
+
+
+def _pull(
+    model: ImpactModel, given: Matrix, nodes: int, substeps: int, parts: Parts
+) -> ca.Function:
+    """Return (given, p, weights) -> derivative by given of a weighted sum of the forces.
+
+    Nothing is computed behind the last force whose weight is not zero, in quarters of the time.
+    """
+    p, weights = ca.MX.sym("p", NUMBERS), ca.MX.sym("weights", nodes)
+    ends = [-(-nodes * k // QUARTERS) for k in range(QUARTERS + 1)]
+    cases = []
+    for end in ends:
+        row = ca.MX(1, given.numel())
+        if end:
+            some = _forces(model, given, p, end, substeps, parts)
+            row = ca.jtimes(some, given, weights[:end], True).T
+        cases.append(
+            ca.Function(f"to_{end}", [given, p, weights], [ca.densify(row)], FEW_DIRECTIONS)
+        )
+    chosen = ca.Function.conditional("pull_some", cases[:-1], cases[-1])
+    last = ca.mmax((weights != 0) * ca.DM(range(1, nodes + 1)))
+    case = sum(last > end for end in ends[:-1])
+    return ca.Function("pull", [given, p, weights], [chosen(case, given, p, weights)])
 
 
 def hardware_of(model: ImpactModel, parts: Parts, logarithms: Sequence[Matrix]) -> Hardware:
@@ -195,8 +251,8 @@ def hardware_of(model: ImpactModel, parts: Parts, logarithms: Sequence[Matrix]) 
     return replace(own, **values)
 
 
-def _posture(model: ImpactModel, point: str, parts: Parts) -> tuple[ca.Function, ca.Function]:
-    """Return what an impact needs of a posture, in one column, and its derivative by x."""
+def _posture(model: ImpactModel, point: str, parts: Parts) -> ca.Function:
+    """Return (x, p) -> what an impact needs of a posture, in one column."""
     n = model.robot.n
     sizes = part_sizes(parts, n)
     x, p = ca.SX.sym("x", n + sum(sizes)), ca.SX.sym("p", NUMBERS)
@@ -206,6 +262,9 @@ def _posture(model: ImpactModel, point: str, parts: Parts) -> tuple[ca.Function,
     end = machine.jacobian(q)
     loaded = machine.mass_matrix(q) + numbers["payload"] * ca.mtimes(end.T, end)
     J = contact_point_jacobian(model.robot, point, q)
+    damping = joint_damping(model.robot)
+    if damping is not None:
+        loaded = loaded + numbers["step"] / 2 * ca.diag(damping)
     speed = numbers["speed"]
     if "speed" in parts:
         speed = speed * 10 ** logarithms[parts.index("speed")]
@@ -220,10 +279,17 @@ def _posture(model: ImpactModel, point: str, parts: Parts) -> tuple[ca.Function,
         given.append(machine.hardware.rotors)
     if "cover" in parts:
         given.append(machine.hardware.cover)
-    column = ca.vertcat(*given)
-    value = ca.Function("posture", [x, p], ca.cse([column]))
-    both = ca.Function("slope", [x, p], ca.cse([column, ca.densify(ca.jacobian(column, x))]))
-    return value, both
+    if _has_potential(model):
+        given.append(ca.vec(machine.model.potential_stiffness(q)))
+    return ca.Function("posture", [x, p], ca.cse([ca.vertcat(*given)]))
+
+
+def _with_slope(posture: ca.Function) -> ca.Function:
+    """Return the same with its derivative by x."""
+    x, p = posture.sx_in()
+    column = posture(x, p)
+    slope = ca.densify(ca.jacobian(column, x))
+    return ca.Function("posture_slope", [x, p], ca.cse([column, slope]))
 
 
 def _split(p: Matrix) -> dict[str, Matrix]:
@@ -235,9 +301,12 @@ def _forces(
     model: ImpactModel, given: Matrix, p: Matrix, nodes: int, substeps: int, parts: Parts
 ) -> Matrix:
     n = model.robot.n
-    sizes = [n * n, n, n, n, n * n, n * ("rotors" in parts), int("cover" in parts)]
+    m = n * _has_potential(model)
+    sizes = [n * n, n, n, n, n * n, n * ("rotors" in parts), int("cover" in parts), m * m]
     offsets = np.cumsum([0, *sizes]).tolist()
-    mobility, jacobian, velocity, springs, gains, rotors, cover = ca.vertsplit(given, offsets)
+    mobility, jacobian, velocity, springs, gains, rotors, cover, potential = ca.vertsplit(
+        given, offsets
+    )
     pattern = ca.DM(model.position_gains(ca.SX.sym("q", n)).sparsity(), 1)
     damping = model.drives.damping_gains
     dynamics = ImpactDynamics(
@@ -248,16 +317,28 @@ def _forces(
         gains=ca.project(ca.reshape(gains, n, n), pattern.sparsity()),
         damping=ca.DM.zeros(n) if damping is None else damping,
         velocity=velocity,
+        joint_damping=joint_damping(model.robot),
+        potential=ca.reshape(potential, m, m) if m else None,
     )
     numbers = _split(p)
     contact = ContactParameters(*ca.vertsplit(numbers["contact"]))
     if "cover" in parts:
-        contact = contact._replace(hertz_stiffness=in_series(contact.hertz_stiffness, cover))
+        contact = contact._replace(hertz_stiffness=hertz_in_series(contact.hertz_stiffness, cover))
     laws = MotorLaws(*ca.vertsplit(numbers["motors"]))
     return contact_forces(dynamics, contact, laws, numbers["step"], nodes, substeps)
 
 
-def in_series(first: Matrix, second: Matrix) -> Matrix:
+def joint_damping(robot: Robot) -> ca.DM | None:
+    """Return the joints' own damping, length n [N·m·s/rad]; None where there is none."""
+    return ca.DM(robot.damping) if robot.damping.any() else None
+
+
+def _has_potential(model: ImpactModel) -> bool:
+    """Whether the links' potential energy bends: by springs of the file, or gravity."""
+    return model.robot.has_springs or any(model.gravity)
+
+
+def hertz_in_series(first: Matrix, second: Matrix) -> Matrix:
     """Return the stiffness of two Hertz laws in series: k^(-2/3) adds up."""
     return (first ** (-2 / 3) + second ** (-2 / 3)) ** (-1.5)
 

@@ -13,16 +13,23 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .nlp import SPEED, Program, Shape, nlp_solver, peak_rows
+from .nlp import SPEED, NlpShape, Program, nlp_solver, peak_rows
 from .objectives import Objective, WorstForce
 from .peaks import WINDOWS, hides_a_peak, valley
 from .solver_options import quiet
 from .study import Study
 from .tip_pose import POSE
 
+CURVATURE = 0.05
+"""Of a share of the force over decades of stiffness and radians, where nothing is known yet: a
+scale taken from the last step, as is usual, needs half as many steps more and ends in worse
+optima, since single springs matter little and others much."""
+
 IPOPT: dict[str, Any] = {
     "hessian_approximation": "limited-memory",
-    "limited_memory_max_history": 20,
+    "limited_memory_max_history": 8,
+    "limited_memory_initialization": "constant",
+    "limited_memory_init_val": CURVATURE,
     "max_iter": 300,
     "tol": 1e-5,
     "acceptable_tol": 1e-4,
@@ -48,14 +55,14 @@ class Instance:
         units: force that counts as one in each impact, C [N].
     """
 
-    shape: Shape
+    shape: NlpShape
     tasks: Array
     impacts: Array
     units: Array
 
 
 @dataclass(frozen=True, eq=False)
-class Bounds:
+class VariableBounds:
     """Limits of the variables.
 
     Attributes:
@@ -76,11 +83,13 @@ class Bounds:
     start: Array
 
     @staticmethod
-    def of(study: Study) -> Bounds:
+    def of(study: Study) -> VariableBounds:
         """Return the limits of a study."""
         ends = study.range
         logarithms = (np.log10(each) for each in (ends.lower, ends.upper, ends.start))
-        return Bounds(*study.robot.limits, study.lower, study.upper, study.groups, *logarithms)
+        return VariableBounds(
+            *study.robot.limits, study.lower, study.upper, study.groups, *logarithms
+        )
 
     @property
     def springs(self) -> int:
@@ -153,14 +162,14 @@ IN_TURN = threading.Lock()
 
 
 @lru_cache(maxsize=16)
-def _solver(program: Program, shape: Shape) -> ca.Function:
+def _solver(program: Program, shape: NlpShape) -> ca.Function:
     return nlp_solver(program, shape, quiet(IPOPT))
 
 
 def minimise(
     program: Program,
     instance: Instance,
-    bounds: Bounds,
+    bounds: VariableBounds,
     postures: Array,
     springs: Array,
     others: Array | None = None,
@@ -243,7 +252,7 @@ def _hardware(serialised: str) -> ca.Function:
 def _round(
     program: Program,
     instance: Instance,
-    bounds: Bounds,
+    bounds: VariableBounds,
     postures: Array,
     v: Array,
     free: bool,
@@ -311,7 +320,7 @@ def _round(
     return found, boundaries
 
 
-def constraint_bounds(program: Program, shape: Shape, *, free: bool) -> tuple[Array, Array]:
+def constraint_bounds(program: Program, shape: NlpShape, *, free: bool) -> tuple[Array, Array]:
     """Bounds on g: the tip's pose is held where the posture is free, all else is at most zero."""
     lower = np.full(peak_rows(program, shape).stop, -np.inf)
     upper = np.zeros(lower.size)
@@ -321,6 +330,6 @@ def constraint_bounds(program: Program, shape: Shape, *, free: bool) -> tuple[Ar
     return lower, upper
 
 
-def one_posture(ends: int, objective: Objective | None = None) -> Shape:
+def one_posture(ends: int, objective: Objective | None = None) -> NlpShape:
     """Return the shape of an NLP with one posture, hit under each of some ends of the motors."""
-    return Shape(1, ((0, 0),) * ends, (0,) * ends, objective or WorstForce())
+    return NlpShape(1, ((0, 0),) * ends, (0,) * ends, objective or WorstForce())

@@ -18,14 +18,13 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import Matrix
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
 from .bounds import row
 from .evaluation import equipped
 from .hardware import Hardware, Machine
 from .impact_program import NUMBERS, SIZES, ImpactProgram, Parts
 from .objectives import Objective, WorstForce
-from .objectives.objective import Indices
 from .peaks import WINDOWS
 from .study import Study
 from .tip_pose import tip_pose_error
@@ -63,7 +62,7 @@ class Program:
 
 
 @dataclass(frozen=True)
-class Shape:
+class NlpShape:
     """Which postures and impacts an NLP has, and what it makes small.
 
     Attributes:
@@ -133,7 +132,7 @@ def task_numbers(study: Study, position: Array, rotation: Array) -> Array:
     return np.concatenate([position, rotation.ravel(order="F"), limits])
 
 
-def problem_functions(program: Program, shape: Shape) -> dict[str, ca.Function]:
+def problem_functions(program: Program, shape: NlpShape) -> dict[str, ca.Function]:
     """Return the NLP's functions by the names of CasADi's ``nlpsol``, with their derivatives.
 
     Parameters are each posture's numbers b, then each impact's: its own, the force that counts as
@@ -198,7 +197,7 @@ SPEED = list(SIZES).index("speed") + SIZES["direction"] - 1
 """Place of the speed among an impact's numbers."""
 
 
-def nlp_solver(program: Program, shape: Shape, options: dict[str, Any]) -> ca.Function:
+def nlp_solver(program: Program, shape: NlpShape, options: dict[str, Any]) -> ca.Function:
     """Return Ipopt on the problem."""
     functions = problem_functions(program, shape)
     x, p = (ca.MX.sym(name, functions["g"].numel_in(name)) for name in ("x", "p"))
@@ -213,7 +212,7 @@ def nlp_solver(program: Program, shape: Shape, options: dict[str, Any]) -> ca.Fu
     return ca.nlpsol("design", "ipopt", problem, {**options, **given, **unasked})
 
 
-def peak_rows(program: Program, shape: Shape) -> slice:
+def peak_rows(program: Program, shape: NlpShape) -> slice:
     """Entries of g that are peaks less F: ``WINDOWS`` for each impact."""
     begin = shape.postures * program.rows
     return slice(begin, begin + WINDOWS * len(shape.impacts))

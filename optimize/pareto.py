@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,14 +23,16 @@ from .failure import SolverFailure
 from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
 from .levels import ROOM, even_bounds, level_range
+from .meaning import meaning
 from .problem import Problem, prepare
-from .searches import Progress, Searches
+from .robust import search
+from .searches import Searches
 from .solve import Outcome, Start, better, preference, solve
 from .stiffest import Stiffest, stiffest
 from .study import Study
 from .sweep import Level, sweep
 from .timing import Timing
-from .workers import cores, workers, works_elsewhere
+from .workers import Progress, cores, workers, works_elsewhere
 
 RIGID = 1e-12
 """Deflection [m] that counts as none."""
@@ -40,7 +42,7 @@ Outcomes = list[Outcome | None]
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class FrontReference:
     """The design to improve on: the task's pose with the nominal stiffness.
 
     Attributes:
@@ -78,7 +80,7 @@ class Pareto(Record):
     free: Front
     given: Front
     held: dict[str, Front]
-    reference: Reference
+    reference: FrontReference
     timing: Timing
     compiled: bool
 
@@ -136,9 +138,9 @@ def pareto_fronts(
         held = _held(searches, ends, levels)
         free = free_outcomes(searches, levels, list(held.values()), accurate)
         _seed_held(searches, ends, levels, held, free)
-    if not any(outcome.solved for outcome in free if outcome is not None):
-        raise SolverFailure([outcome for outcome in free if outcome is not None])
-    return _fronts(problem, [level.bound for level in levels], held, free)
+        if not any(outcome.solved for outcome in free if outcome is not None):
+            raise SolverFailure([outcome for outcome in free if outcome is not None])
+        return _explained(searches, _fronts(problem, [level.bound for level in levels], held, free))
 
 
 def _require_deflection(study: Study) -> None:
@@ -236,16 +238,39 @@ def _fronts(
     )
 
 
+def _explained(searches: Searches, found: Pareto) -> Pareto:
+    """Say what the points of the fronts that are told mean: what binds there, and what matters."""
+    problem, task = searches.problem, found.study.task_pose.name
+    told = {"free": found.free, "given": found.given, "task": found.task}
+    points = {id(p.outcome): p for front in told.values() for p in front.points}
+    jobs = {}
+    for key, point in points.items():
+        o, instance = point.outcome, problem.numbers(point.bound)
+        start = o.q[None, :], o.springs, o.others
+        jobs[key] = (problem.program, instance, problem.bounds, *start, o.mode == "free")
+    meant = {}
+    for key, again in searches.run("prices", search, jobs):
+        point, instance = points[key], jobs[key][1]
+        meant[key] = meaning(problem, point.outcome, instance, again, point.bound)
+
+    def explained(front: Front) -> Front:
+        with_ = [replace(p, meaning=meant[id(p.outcome)]) for p in front.points]
+        return replace(front, points=tuple(with_))
+
+    held = {**found.held, task: explained(found.task)}
+    return replace(found, free=explained(found.free), given=explained(found.given), held=held)
+
+
 def _least(outcomes: Sequence[Outcome | None]) -> Outcome | None:
     """Return the best outcome of a level."""
     found = [outcome for outcome in outcomes if outcome is not None]
     return min(found, key=preference, default=None)
 
 
-def _reference(problem: Problem) -> Reference:
+def _reference(problem: Problem) -> FrontReference:
     study = problem.study
     names = [pose.pose.name for pose in problem.poses]
     i = names.index(study.task_pose.name)
     q = problem.poses[i].q
     deflection = largest_deflection(study, q, study.nominal)
-    return Reference(q, study.nominal, deflection, problem.before[i])
+    return FrontReference(q, study.nominal, deflection, problem.before[i])

@@ -13,7 +13,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .evaluation import equipped
 from .impact_program import PARTS, ImpactProgram, Parts, impact_numbers, impact_program
-from .ipopt import Bounds, Instance, one_posture
+from .ipopt import Instance, VariableBounds, one_posture
 from .nlp import Program, hardware_function, task_function, task_numbers
 from .objectives import WorstForce
 from .poses import Candidate, candidates, leaves_a_choice
@@ -41,7 +41,7 @@ class Problem:
     before: tuple[float, ...]
     timing: Timing
     program: Program
-    bounds: Bounds
+    bounds: VariableBounds
 
     @property
     def freest(self) -> Mode:
@@ -84,7 +84,7 @@ def prepare(study: Study, *, elsewhere: bool = False) -> Problem:
     )
     program = study_program(study, (impact,))
     before = tuple(peak_force(study, impact, timing, pose.q, study.nominal) for pose in poses)
-    return Problem(study, poses, before, timing, program, Bounds.of(study))
+    return Problem(study, poses, before, timing, program, VariableBounds.of(study))
 
 
 def _require_forces_alone(study: Study) -> None:

@@ -18,7 +18,7 @@ from softimpact.symbolic.robot.rigid import Array
 from .bounds import Bound
 from .evaluation import figures, largest_deflection, largest_share
 from .failure import Infeasible
-from .ipopt import Bounds
+from .ipopt import VariableBounds
 from .nlp import task_function, task_numbers
 from .poses import Candidate
 from .solver_options import quiet
@@ -68,7 +68,7 @@ def reach(
     asked = replace(study, other_bounds=tuple(b for b in bounds if b != study.deflection))
     with_deflection = any(b == study.deflection for b in bounds)
     task, rows = task_function(asked)
-    limits = Bounds.of(study)
+    limits = VariableBounds.of(study)
     n, V, K = study.robot.n, limits.lower.size, len(postures)
     chosen = [with_deflection, *(True for _ in asked.other_bounds)]
     soft = [sought is None or bound in sought for bound in asked.bounds]
@@ -145,12 +145,12 @@ def infeasible(study: Study, poses: Sequence[Candidate], *, free: bool) -> Infea
     ends = []
     for bound in bounds:
         found = reach(study, postures, bounds, [bound], free=free)
-        springs, others = Bounds.of(study).parted(found.v)
+        springs, others = VariableBounds.of(study).parted(found.v)
         each = [figures(bound, study, q, springs, others) for q in found.postures]
         figure = max(e.max() for e in each) if bound.sense == "most" else min(e.min() for e in each)
         ends.append((bound, float(figure), found))
     at = _at_their_ends(study, ends[0][2].v)
-    springs, _ = Bounds.of(study).parted(ends[0][2].v)
+    springs, _ = VariableBounds.of(study).parted(ends[0][2].v)
     q = ends[0][2].postures[0]
     least = Stiffest(q, springs, largest_deflection(study, q, springs))
     names = [pose.pose.name for pose in some]

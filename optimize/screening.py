@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
 from .impact_program import NUMBERS
 from .nlp import Program
-from .scenarios import Indices, Scenario, Scenarios
-from .study import transient_limit
+from .scenarios import Scenario, Scenarios
 
 CHUNK = 128
 """Most impacts simulated in one call."""
@@ -63,8 +62,7 @@ def screen(
     """
     places = scenarios.at(begin, end)
     force = forces_at(program, scenarios, postures, y, speeds, step, begin, end)
-    limits = np.array([transient_limit(contact) for contact in scenarios.contacts])
-    share = force / limits[places[:, 3]]
+    share = force / scenarios.limits[places[:, 3]]
     kept: dict[tuple[int, ...], Screened] = {}
     for i in np.argsort(-share):
         kind = tuple(places[i, :3])
@@ -91,7 +89,7 @@ def forces_at(
     if speeds is not None:
         which = np.arange(begin, end) // len(scenarios.motors) if speeds.size > 1 else 0
         x = np.column_stack([x, np.broadcast_to(np.log10(speeds[which]), len(places))])
-    numbers = numbers_of(scenarios, places, step)
+    numbers = impact_numbers(scenarios, places, step)
     force = np.empty(len(places))
     for point in np.unique(places[:, 1]):
         at = np.flatnonzero(places[:, 1] == point)
@@ -99,7 +97,7 @@ def forces_at(
     return force
 
 
-def numbers_of(scenarios: Scenarios, places: Indices, step: float) -> Array:
+def impact_numbers(scenarios: Scenarios, places: Indices, step: float) -> Array:
     """Return the impacts' numbers, a row each; those that differ in nothing but the pose once."""
     found: dict[tuple[int, ...], Array] = {}
     rows = np.empty((len(places), NUMBERS))

@@ -9,13 +9,10 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from .problem import Problem
-from .workers import as_completed
+from .workers import Progress, as_completed
 
 Key = TypeVar("Key")
 Result = TypeVar("Result")
-
-Progress = Callable[[str, int, int], None]
-"""Called with what is being done, how many jobs of it are done, and how many there are."""
 
 
 @dataclass(frozen=True, eq=False)

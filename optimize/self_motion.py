@@ -71,7 +71,7 @@ def self_motion(model: ImpactModel, q: Array, step: float = 0.02) -> SelfMotion:
         apart = np.where(hinges, np.remainder(x - q + np.pi, 2 * np.pi) - np.pi, x - q)
         return bool(np.linalg.norm(apart) < CLOSE * step)
 
-    within = Bounds(allowed, returned)
+    within = CurveEnds(allowed, returned)
 
     tangent = _tangent(hold(q)[1])
     forward, closed = _trace(hold, within, q, tangent, step)
@@ -82,11 +82,11 @@ def self_motion(model: ImpactModel, q: Array, step: float = 0.02) -> SelfMotion:
     return SelfMotion(points, arc - arc[len(backward)], closed)
 
 
-Hold = Callable[[Array], tuple[Array, Array]]
+HeldPose = Callable[[Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
-class Bounds:
+class CurveEnds:
     """Where a curve ends.
 
     Attributes:
@@ -98,7 +98,7 @@ class Bounds:
     returned: Callable[[Array], bool]
 
 
-def _holder(model: ImpactModel, q: Array) -> Hold:
+def _holder(model: ImpactModel, q: Array) -> HeldPose:
     """Return the pose error and its Jacobian, of the tip against where q has it."""
     position, rotation = tip_pose(model, q)
     x = ca.SX.sym("q", model.robot.n)
@@ -122,7 +122,7 @@ def _tangent(jacobian: Array) -> Array:
 
 
 def _trace(
-    hold: Hold, bounds: Bounds, start: Array, tangent: Array, step: float
+    hold: HeldPose, bounds: CurveEnds, start: Array, tangent: Array, step: float
 ) -> tuple[list[Array], bool]:
     """Postures after ``start`` along a tangent, and whether they lead back to it."""
     points: list[Array] = []
@@ -141,7 +141,7 @@ def _trace(
     return points, False
 
 
-def _corrected(hold: Hold, q: Array) -> Array | None:
+def _corrected(hold: HeldPose, q: Array) -> Array | None:
     """Return the posture beside q that holds the task."""
     for _ in range(CORRECTIONS):
         error, jacobian = hold(q)

@@ -10,7 +10,7 @@ from typing import Literal
 from softimpact.symbolic.robot.rigid import Array
 
 from .deciding import minimise_deciding
-from .ipopt import FEASIBLE, IN_TURN, NONE, Bounds, Instance
+from .ipopt import FEASIBLE, IN_TURN, NONE, Instance, VariableBounds
 from .nlp import Program
 
 Mode = Literal["table", "free"]
@@ -67,7 +67,7 @@ class Outcome:
     others: Array = field(default_factory=lambda: NONE)
 
 
-def solve(program: Program, start: Start, bounds: Bounds, instance: Instance) -> Outcome:
+def solve(program: Program, start: Start, bounds: VariableBounds, instance: Instance) -> Outcome:
     """Search from all points of a start, and from its fallbacks as long as Ipopt fails.
 
     Returns:
@@ -78,7 +78,7 @@ def solve(program: Program, start: Start, bounds: Bounds, instance: Instance) ->
         return _search(program, start, bounds, instance)
 
 
-def _search(program: Program, start: Start, bounds: Bounds, instance: Instance) -> Outcome:
+def _search(program: Program, start: Start, bounds: VariableBounds, instance: Instance) -> Outcome:
     begin = time.perf_counter()
     found = [_attempt(program, start, *point, bounds, instance) for point in start.points]
     for point in start.fallbacks:
@@ -111,7 +111,12 @@ def better(first: Outcome, second: Outcome) -> Outcome:
 
 
 def _attempt(
-    program: Program, start: Start, q: Array, springs: Array, bounds: Bounds, instance: Instance
+    program: Program,
+    start: Start,
+    q: Array,
+    springs: Array,
+    bounds: VariableBounds,
+    instance: Instance,
 ) -> Outcome:
     free = start.mode == "free"
     found = minimise_deciding(program, instance, bounds, q[None, :], springs, free=free)

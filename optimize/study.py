@@ -31,12 +31,12 @@ from softimpact.symbolic import (
     lock_joints,
     unit_direction,
 )
+from softimpact.symbolic.impact.approach import singular_postures
 from softimpact.symbolic.impact.drives import PerJoint, require_rotors
 from softimpact.symbolic.robot.rigid import Array
 
-from .approach import singular_postures
 from .bounds import Bound, Deflection
-from .hardware import Motion
+from .hardware import TaskMotion
 from .objectives import Objective, WorstForce
 from .study_file import (
     ParetoSection,
@@ -47,7 +47,7 @@ from .study_file import (
     StudyFile,
     read_study_file,
 )
-from .study_motors import motors_of
+from .study_motors import study_motors
 from .study_numbers import catalogue_of, moments_of, stiffness_of
 from .study_parts import asked_bounds, asked_objective, asked_variables, require_fit
 from .variables import JointStiffness, Range, Variable, joint_groups
@@ -168,19 +168,25 @@ class Study:
         return Range(tuple(names), lower, upper, start)
 
     @property
+    def units(self) -> tuple[str, ...]:
+        """Unit of each of ``range``'s values."""
+        each = [(variable.unit, variable.range(self.model)) for variable in self.variables]
+        return tuple(unit for unit, found in each for _ in found.names)
+
+    @property
     def limit(self) -> float:
         """Largest force that what is hit may bear: its limits of force and energy [N]."""
         return transient_limit(self.contact)
 
     @property
-    def motions(self) -> tuple[Motion, ...]:
+    def motions(self) -> tuple[TaskMotion, ...]:
         """The motions that the study's impacts ask of the robot, each at its greatest speed."""
         fastest: dict[tuple[str, tuple[float, ...]], float] = {}
         for point, direction, speed in self._impacts():
             key = point, tuple(unit_direction(direction).tolist())
             fastest[key] = max(speed, fastest.get(key, 0.0))
         return tuple(
-            Motion(self.robot.frame(point).name, (speed * x, speed * y, speed * z))
+            TaskMotion(self.robot.frame(point).name, (speed * x, speed * y, speed * z))
             for (point, (x, y, z)), speed in fastest.items()
         )
 
@@ -244,7 +250,7 @@ def build_study(file: StudyFile, source: Path) -> Study:
         if file.motors.kind != "driven":
             require_rotors(model.drives, robot.joint_names)
     with _naming(source, "motors", "kind"):
-        motors = motors_of(file.motors, model)
+        motors = study_motors(file.motors, model)
     with _naming(source, "hardware", "joint_stiffness"):
         groups = joint_groups(robot, file.hardware.joint_stiffness)
     with _naming(source, "impact", "direction"):
@@ -365,7 +371,7 @@ def _model(robot: Robot, file: StudyFile, nominal: Array) -> ImpactModel:
         section.computed_torque_gain,
         damping_gain=motors.damping_gain,
     )
-    return impact_model(robot, drives_=built)
+    return impact_model(robot, drives=built)
 
 
 def _pose(robot: Robot, section: PoseSection) -> Pose:

@@ -40,7 +40,7 @@ TABLE = re.compile(r"^\s*\[\[?\s*([^\]]+?)\s*\]\]?\s*(#.*)?$")
 
 
 @dataclass(frozen=True)
-class Problem:
+class StudyFault:
     """What is wrong in a study file.
 
     Attributes:
@@ -54,7 +54,7 @@ class Problem:
     reason: str
 
 
-def study_problems(path: str | Path) -> list[Problem]:
+def study_problems(path: str | Path) -> list[StudyFault]:
     """Return what is wrong in a study file; nothing where it can run.
 
     A field that is wrong is replaced, and the rest looked at again. What depends on a robot that
@@ -68,14 +68,14 @@ def study_problems(path: str | Path) -> list[Problem]:
         line = int(at[1]) if at else None
         if "at end of document" in error.reason:
             line = len(source.read_text(encoding="utf-8-sig").splitlines()) or None
-        return [Problem(line, "", error.reason)]
+        return [StudyFault(line, "", error.reason)]
     text = source.read_text(encoding="utf-8-sig")
-    found: list[Problem] = []
+    found: list[StudyFault] = []
     poses = content.get("poses")
     order = list(range(len(poses))) if isinstance(poses, list) else []  # those left, in the file
     for _ in range(ROUNDS):
         faults = sorted(_faults(content, source), key=lambda fault: str(fault[0]), reverse=True)
-        new = [Problem(*_shown(fault, order, text)) for fault in faults]
+        new = [StudyFault(*_shown(fault, order, text)) for fault in faults]
         if not new or set(new) <= set(found):
             break
         found += new
@@ -83,9 +83,9 @@ def study_problems(path: str | Path) -> list[Problem]:
         if not all(mended):
             break
     if not any(problem.field.startswith("robot") for problem in found):
-        found += [Problem(*_shown(fault, order, text)) for fault in _of_robot(content, source)]
+        found += [StudyFault(*_shown(fault, order, text)) for fault in _of_robot(content, source)]
     if not found:
-        found = [Problem(*_shown(fault, order, text)) for fault in _of_search(content, source)]
+        found = [StudyFault(*_shown(fault, order, text)) for fault in _of_search(content, source)]
     return sorted(dict.fromkeys(found), key=lambda problem: problem.line or 0)
 
 

@@ -16,19 +16,11 @@ from softimpact.robots import built_in_studies
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.errors import did_you_mean
-from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, Reaction
-
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Vector3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
+from softimpact.symbolic.file_section import Finite, NotNegative, Positive, Section, Vector3
+from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, MotorKind, Reaction
 
 
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
-
-class RobotSection(_Section):
+class RobotSection(Section):
     """Which robot, and its drives."""
 
     model: str
@@ -40,7 +32,7 @@ class RobotSection(_Section):
     computed_torque_gain: Finite | None = None
 
 
-class ImpactSection(_Section):
+class ImpactSection(Section):
     """What is hit, how fast and from where."""
 
     region: str
@@ -49,10 +41,10 @@ class ImpactSection(_Section):
     speed: Positive
 
 
-class MotorsSection(_Section):
+class MotorsSection(Section):
     """What the motors do during an impact; without a kind the worse end of {free, driven}."""
 
-    kind: Literal["free", "servo", "driven", "held"] | None = None
+    kind: MotorKind | None = None
     position_gain: Finite | list[Finite] | None = None
     damping_gain: Finite | list[Finite] | None = None
     reaction_time: Annotated[float, Field(ge=0)] = REACTION_TIME
@@ -61,7 +53,7 @@ class MotorsSection(_Section):
     horizon: Positive = QUASI_STATIC_FROM
 
 
-class HardwareSection(_Section):
+class HardwareSection(Section):
     """Which variables of the hardware are sought: joint stiffness, each, equal or in groups.
 
     Other fields are tables of the variables in ``optimize/variables``.
@@ -73,7 +65,7 @@ class HardwareSection(_Section):
     catalogue: Annotated[list[Positive], Field(min_length=1)] | None = None
 
 
-class ScenariosSection(_Section):
+class ScenariosSection(Section):
     """The product of what may happen; what is left out is the study's own."""
 
     poses: Literal["all"] | Annotated[list[str], Field(min_length=1)] = "all"
@@ -85,7 +77,7 @@ class ScenariosSection(_Section):
     speeds: Annotated[list[Positive], Field(min_length=1)] | None = None
 
 
-class ScenarioSection(_Section):
+class ScenarioSection(Section):
     """One of a list of scenarios; what is left out is the study's own."""
 
     pose: str | None = None
@@ -96,7 +88,7 @@ class ScenarioSection(_Section):
     speed: Positive | None = None
 
 
-class StiffnessSection(_Section):
+class StiffnessSection(Section):
     """Bounds on the joint stiffness and the design to improve on [N·m/rad]."""
 
     lower: Positive | list[Positive]
@@ -104,7 +96,7 @@ class StiffnessSection(_Section):
     nominal: Positive | list[Positive]
 
 
-class AccuracySection(_Section):
+class AccuracySection(Section):
     """Loads on the tip [N, N·m, kg] and how far [m] the springs may give way under each."""
 
     forces: Annotated[list[Vector3], Field(min_length=1)]
@@ -115,12 +107,19 @@ class AccuracySection(_Section):
     margin: Annotated[float, Field(ge=0, lt=1)] = 0.0
 
 
-class ParetoSection(_Section):
-    """Between which bounds on the deflection [m], and at how many, a Pareto front is sought."""
+class ParetoSection(Section):
+    """What a Pareto front trades, at how many levels of each, and between which ends.
+
+    ``lower`` and ``upper`` are those of the deflection [m].
+    """
 
     points: Annotated[int, Field(ge=2, le=100)] = 11
     lower: Positive | None = None
     upper: Positive | None = None
+    objectives: list[str] | None = None
+    ends: dict[str, Annotated[list[Positive], Field(min_length=2, max_length=2)]] = Field(
+        default_factory=dict
+    )
 
     @model_validator(mode="after")
     def _lower_is_below(self) -> ParetoSection:
@@ -129,14 +128,14 @@ class ParetoSection(_Section):
         return self
 
 
-class TaskSection(_Section):
+class TaskSection(Section):
     """Where the tip is held: where one of the poses has it."""
 
     pose_of: str
     exact: bool = True
 
 
-class PoseSection(_Section):
+class PoseSection(Section):
     """A candidate configuration."""
 
     name: str
@@ -144,7 +143,7 @@ class PoseSection(_Section):
     recovered: bool = False
 
 
-class StudyFile(_Section):
+class StudyFile(Section):
     """A study file, as written."""
 
     title: str = ""
@@ -157,8 +156,8 @@ class StudyFile(_Section):
     )
     stiffness: StiffnessSection
     accuracy: AccuracySection
-    bounds: dict[str, Any] = {}
-    objective: dict[str, Any] = {}
+    bounds: dict[str, Any] = Field(default_factory=dict)
+    objective: dict[str, Any] = Field(default_factory=dict)
     pareto: ParetoSection = ParetoSection()
     task: TaskSection
     poses: Annotated[list[PoseSection], Field(min_length=1)]

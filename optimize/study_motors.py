@@ -13,7 +13,7 @@ from softimpact.symbolic.impact.motors import MotorKind, check_motors, refuse_he
 from .study_file import MotorsSection
 
 
-def motors_of(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ...]:
+def study_motors(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ...]:
     """Return what the motors may do; the worst of several counts.
 
     Without a kind, motors with gains are a servo. Without gains either, what they do is unknown:

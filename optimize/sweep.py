@@ -10,7 +10,7 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .ipopt import Bounds, Instance
+from .ipopt import Instance, VariableBounds
 from .nlp import Program
 from .solve import Outcome, Start, better, preference, solve
 from .stiffest import Stiffest
@@ -25,7 +25,7 @@ class Level:
 
 
 def sweep(
-    program: Program, name: str, end: Stiffest, bounds: Bounds, levels: Sequence[Level]
+    program: Program, name: str, end: Stiffest, bounds: VariableBounds, levels: Sequence[Level]
 ) -> list[Outcome]:
     """Search the springs of a held posture at each accuracy, from its neighbour's.
 
@@ -59,6 +59,6 @@ def sweep(
     return best[::-1]
 
 
-def rescaled(springs: Array, bound: float, wanted: float, bounds: Bounds) -> Array:
+def rescaled(springs: Array, bound: float, wanted: float, bounds: VariableBounds) -> Array:
     """Return springs that give way by ``wanted`` where these give way by ``bound`` [m]."""
     return np.clip(springs * (bound / wanted), bounds.springs_lower, bounds.springs_upper)

@@ -6,12 +6,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
-from .impact_program import ImpactProgram, impact_numbers, impact_program, known_rotors
+from .impact_program import forces_alone, impact_numbers, known_rotors
 from .scenarios import Scenarios
 from .study import Study
 
@@ -75,8 +76,8 @@ def impact_timing(study: Study, postures: Sequence[Array]) -> Timing:
         InvalidValue: the stiffest springs are so stiff that an impact needs too many steps.
     """
     frequency, whole = _whole(study, postures)
-    program = impact_program(study.model, whole.nodes, whole.substeps, compiled=False)
-    latest = max(_latest_peak(study, program, q, whole) for q in postures)
+    forces = forces_alone(study.model, whole.nodes, whole.substeps)
+    latest = max(_latest_peak(study, forces, q, whole) for q in postures)
     return _timing(study, min(max(SHORTEST, MARGIN * latest), study.horizon), frequency)
 
 
@@ -100,17 +101,16 @@ def scenario_timing(study: Study, scenarios: Scenarios) -> Timing:
     n = scenarios.directions[0]
     frequency = _of_study(study, [pose.q for pose in scenarios.poses], n)
     whole = _timing(study, study.horizon, frequency)
-    programs = [
-        impact_program(study.model, whole.nodes, whole.substeps, point, compiled=False)
-        for point in scenarios.points
+    of_point = [
+        forces_alone(study.model, whole.nodes, whole.substeps, point) for point in scenarios.points
     ]
     latest = 0.0
     for i in np.unique(np.linspace(0, len(scenarios) - 1, TRIALS).astype(int)):
         one = scenarios[int(i)]
-        row, program = scenarios.numbers(one, whole.step), programs[one.point]
+        row, forces = scenarios.numbers(one, whole.step), of_point[one.point]
         for springs in (study.lower, study.nominal, study.upper):
             x = np.concatenate([scenarios.poses[one.pose].q, np.log10(springs)])
-            latest = max(latest, _end_of_peak(np.array(program["forces"](x, row)), whole))
+            latest = max(latest, _end_of_peak(np.array(forces(x, row)), whole))
     return _timing(study, min(max(SHORTEST, MARGIN * latest), study.horizon), frequency)
 
 
@@ -153,14 +153,14 @@ def _largest_frequency(model: ImpactModel, springs: Array, q: Array, direction: 
     return float(np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(mass, stiffness))).max()))
 
 
-def _latest_peak(study: Study, program: ImpactProgram, q: Array, timing: Timing) -> float:
+def _latest_peak(study: Study, forces: ca.Function, q: Array, timing: Timing) -> float:
     """Return when the contact that holds the largest force ends, the latest of all trials [s]."""
     latest = 0.0
     for motors in study.motors:
         row = impact_numbers(study.direction, study.speed, study.contact, motors, timing.step)
         for springs in (study.lower, study.nominal, study.upper):
             x = np.concatenate([q, np.log10(springs)])
-            latest = max(latest, _end_of_peak(np.array(program["forces"](x, row)), timing))
+            latest = max(latest, _end_of_peak(np.array(forces(x, row)), timing))
     return latest
 
 

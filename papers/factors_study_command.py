@@ -13,26 +13,32 @@ from softimpact.studio import options as o
 if TYPE_CHECKING:
     from .factor_study import FactorStudy
 
-Tips = Annotated[
+TipsOption = Annotated[
     list[str] | None,
     typer.Option("--tip", metavar="FRAME", help="Contact frame, repeatable; default the study's."),
 ]
 
 
-def factors_study(study: o.StudyFile, out: o.Out, tip: Tips = None, json: o.Json = False) -> None:
+def factors_study(
+    study: o.StudyFileArgument, out: o.OutOption, tip: TipsOption = None, json: o.JsonOption = False
+) -> None:
     """Show impact factors over the poses and the self-motion, and how well they foretell force."""
     from softimpact.optimize import load_study
     from softimpact.studio.output import print_json, write_json
-    from softimpact.studio.results_folder import RESULTS, replaced_folder, require_replaceable
+    from softimpact.studio.results_folder import (
+        RESULTS,
+        replaced_folder,
+        require_replaceable_results,
+    )
 
     from .factor_figures import draw_factor_figures
     from .factor_study import factor_study
-    from .factor_study.record import GENERATOR, as_record
+    from .factor_study.record import GENERATOR, factor_study_record
 
     problem = load_study(study)
-    require_replaceable(out, GENERATOR)
+    require_replaceable_results(out, GENERATOR)
     found = factor_study(problem, tip or (), lambda stage: typer.echo(stage, err=True))
-    record = as_record(found)
+    record = factor_study_record(found)
     with replaced_folder(out, GENERATOR) as fresh:
         write_json(fresh / RESULTS, record)
         draw_factor_figures(found, fresh)

@@ -28,27 +28,34 @@ class Paper(StrEnum):
     GIAF = "giaf"
 
 
-Papers = Annotated[
+PapersOption = Annotated[
     list[Paper] | None,
     typer.Option("--paper", help="Reduced models or impact factors, repeatable; default both."),
 ]
-Scenarios = Annotated[
+ScenariosOption = Annotated[
     str | None,
     typer.Option(metavar="NAMES", help="Scenarios of MSM, e.g. abc; default all six."),
 ]
 
 
 def reproduce(
-    out: o.Out, paper: Papers = None, scenarios: Scenarios = None, json: o.Json = False
+    out: o.OutOption,
+    paper: PapersOption = None,
+    scenarios: ScenariosOption = None,
+    json: o.JsonOption = False,
 ) -> None:
     """Recompute both papers (MSM, GIAF) and hold what they print and say against our numbers."""
     from softimpact.studio.design_report import versions
     from softimpact.studio.output import print_json, write_json
-    from softimpact.studio.results_folder import RESULTS, replaced_folder, require_replaceable
+    from softimpact.studio.results_folder import (
+        RESULTS,
+        replaced_folder,
+        require_replaceable_results,
+    )
 
     names = _names(scenarios)
     papers = tuple(paper or Paper)
-    require_replaceable(out, GENERATOR)
+    require_replaceable_results(out, GENERATOR)
     with replaced_folder(out, GENERATOR) as fresh:
         record: dict[str, Any] = {"generator": GENERATOR, "versions": versions()}
         if Paper.MSM in papers:
@@ -78,12 +85,12 @@ def _reduced_models(names: tuple[str, ...], folder: Path) -> dict[str, Any]:
     """Recompute MSM, write its page and figures, and return what was found."""
     from .msm.compare import compared
     from .msm.figures import draw
-    from .msm.page import page
+    from .msm.page import msm_page
 
     results = _computed(names)
     comparisons = compared(results)
     captions = draw(results, folder)
-    (folder / "report.md").write_text(page(results, comparisons, captions), encoding="utf-8")
+    (folder / "report.md").write_text(msm_page(results, comparisons, captions), encoding="utf-8")
     return _record(results, comparisons)
 
 
@@ -96,7 +103,7 @@ def _impact_factors(folder: Path) -> dict[str, Any]:
 
     from .factor_figures import draw_factor_figures
     from .factor_study import factor_study
-    from .giaf.page import page
+    from .giaf.page import giaf_page
     from .giaf.statements import STUDY, TIPS, statements
 
     study = load_study(FOLDER / STUDY)
@@ -104,7 +111,7 @@ def _impact_factors(folder: Path) -> dict[str, Any]:
     lines = statements(found)
     folder.mkdir()
     figures = [path.name for path in draw_factor_figures(found, folder)]
-    (folder / "report.md").write_text(page(found, lines, figures), encoding="utf-8")
+    (folder / "report.md").write_text(giaf_page(found, lines, figures), encoding="utf-8")
     return {"verdicts": Counter(line.verdict for line in lines), "statements": lines}
 
 

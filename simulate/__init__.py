@@ -5,7 +5,7 @@ from .arrival import Approach
 from .assessment import Assessment, assess_impact
 from .assessments import Assessments, assess_impacts
 from .bracket import bracket
-from .controller import Controller, Reference
+from .controller import Controller, ControllerReference
 from .decoupling import Decoupling, decoupling_stiffness, is_isolated, scaled_springs
 from .history import HORIZON, Fidelity, ImpactHistory, PeakDefinition
 from .impact import simulate_impact
@@ -20,13 +20,13 @@ __all__ = [
     "Assessment",
     "Assessments",
     "Controller",
+    "ControllerReference",
     "Decoupling",
     "Fidelity",
     "ForceLimits",
     "ImpactHistory",
     "ManyPeaks",
     "PeakDefinition",
-    "Reference",
     "SimulationFailed",
     "assess_impact",
     "assess_impacts",

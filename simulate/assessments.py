@@ -20,7 +20,7 @@ from .assessment import Assessment, assess_impact
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class AssessedImpact:
     """One of many impacts.
 
     Attributes:
@@ -54,10 +54,10 @@ class Assessments(Record):
         cases: all of them.
     """
 
-    cases: tuple[Case, ...]
+    cases: tuple[AssessedImpact, ...]
 
     @property
-    def worst(self) -> Case:
+    def worst(self) -> AssessedImpact:
         """The case that takes the largest share of a limit."""
         return max(self.cases, key=lambda case: case.found.verdict.share)
 
@@ -108,6 +108,6 @@ def assess_impacts(
     for point, n, contact in asked:
         at, approach = replace(model, tip=point), Approach(q, n, speed)
         found = assess_impact(at, approach, contact, **options)
-        cases.append(Case(point, n, contact.region.name, contact.clamped, found))
+        cases.append(AssessedImpact(point, n, contact.region.name, contact.clamped, found))
         on_case(len(cases), len(asked))
     return Assessments(tuple(cases))

@@ -24,8 +24,8 @@ from softimpact.symbolic.robot.rigid import Array, Inertia
 from .arrival import Approach, Arrival, arrival_of
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import LinearSystem, given_motion, linear_system, modes
-from .stepping import Bodies, LargestForces, ManyPeaks, Stage, at_first_touch, faster, slower
-from .tolerances import Factors, Tolerances, factors
+from .stepping import Bodies, LargestForces, ManyPeaks, SteppedStage, at_first_touch, faster, slower
+from .tolerances import ErrorFactors, Tolerances, error_factors
 
 SAMPLES = 1000
 """Impacts from which a band is taken."""
@@ -149,7 +149,7 @@ def varied_peaks(
         raise InvalidValue("samples", f"must be at least 40 for a band of 95 %, not {samples}")
     arrival = arrival_of(model, approach)
     before = generalised_velocity(model, arrival.link_velocity)
-    varied = factors(tolerances or Tolerances(), model.robot.n, samples)
+    varied = error_factors(tolerances or Tolerances(), model.robot.n, samples)
     bodies = _bodies(contact, varied)
     until = max(horizon, PRESSED_UNTIL) if contact.clamped else horizon
     largest = LargestForces(samples, horizon, contact.clamped)
@@ -164,7 +164,7 @@ def varied_peaks(
             continue
         system = _varied(model, linear_system(model, arrival, law), law, links, varied, arrival)
         found = modes(system)
-        stage = Stage.of(system, found, bodies, np.minimum(begin, until), end)
+        stage = SteppedStage.of(system, found, bodies, np.minimum(begin, until), end)
         given = given_motion(
             system, found, law, slower(state.motion, v), before, begin, motors.stopping_time
         )
@@ -172,7 +172,7 @@ def varied_peaks(
     return largest.found
 
 
-def _bodies(contact: Contact, varied: Factors) -> Bodies:
+def _bodies(contact: Contact, varied: ErrorFactors) -> Bodies:
     region = contact.region
     regions = [
         replace(region, stiffness=region.stiffness * k, damping=region.damping * c)
@@ -205,7 +205,7 @@ def _varied(
     system: LinearSystem,
     law: MotorLaw,
     links: Array,
-    varied: Factors,
+    varied: ErrorFactors,
     arrival: Arrival,
 ) -> LinearSystem:
     """Return a system in many versions: M0, K0 and D are linear in what varies."""

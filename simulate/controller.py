@@ -11,7 +11,7 @@ import numpy as np
 from softimpact.symbolic import InvalidValue, UnknownName
 from softimpact.symbolic.impact.motors import REACTION_TIME
 
-Reference = Literal["moving", "held"]
+ControllerReference = Literal["moving", "held"]
 """Motors' wanted motion after first touch: on with the speed of arrival, or none."""
 
 
@@ -35,7 +35,7 @@ class Controller:
     proportional: float
     derivative: float
     integral: float
-    reference: Reference = "moving"
+    reference: ControllerReference = "moving"
     reaction_time: float = REACTION_TIME
 
 
@@ -45,8 +45,10 @@ def check_controller(controller: Controller) -> None:
         value = getattr(controller, gain)
         if not 0 <= value < np.inf:
             raise InvalidValue(f"controller.{gain}", f"must be finite and ≥ 0, not {value}")
-    if controller.reference not in get_args(Reference):
-        raise UnknownName("reference of the motors", controller.reference, get_args(Reference))
+    if controller.reference not in get_args(ControllerReference):
+        raise UnknownName(
+            "reference of the motors", controller.reference, get_args(ControllerReference)
+        )
     if not controller.reaction_time > 0:
         raise InvalidValue(
             "controller.reaction_time", f"must be greater than 0 s, not {controller.reaction_time}"

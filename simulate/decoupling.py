@@ -18,7 +18,7 @@ from .controller import Controller
 from .history import Fidelity, ImpactHistory
 from .impact import simulate_impact
 
-Case = tuple[ImpactModel, Approach]
+ModelAndApproach = tuple[ImpactModel, Approach]
 
 STEP = 10**0.125
 """Ratio of the stiffnesses at which the search looks."""
@@ -57,7 +57,7 @@ def is_isolated(history: ImpactHistory) -> bool:
 
 
 def decoupling_stiffness(
-    case: Callable[[float], Case],
+    case: Callable[[float], ModelAndApproach],
     contact: Contact,
     between: tuple[float, float],
     fidelity: Fidelity = "full",

@@ -27,7 +27,15 @@ from .arrival import Arrival
 from .controller import Controller
 from .full_mechanism import full_simulator
 from .mechanism import BodyKind
-from .motors import UNLIMITED, LawBuilder, computed_torque, free, held, prescribed, servo
+from .motor_actions import (
+    UNLIMITED,
+    MotorActionBuilder,
+    computed_torque,
+    free,
+    held,
+    prescribed,
+    servo,
+)
 from .scene import Leg, Motion, Scene, Stage, unchanged
 
 AT_REST = 1e-6
@@ -69,7 +77,7 @@ def full_scene(
     common = np.concatenate([q, n, [start], _balance(model, q), rotors, springs, *damping])
 
     def stage(
-        begin: float, law: LawBuilder, numbers: Callable[[Motion], tuple[Array, Array]]
+        begin: float, law: MotorActionBuilder, numbers: Callable[[Motion], tuple[Array, Array]]
     ) -> Stage:
         if law is not prescribed:
             require_rotors(model.drives, robot.joint_names)
@@ -93,7 +101,7 @@ def full_scene(
     return Scene(stages, Motion(np.zeros_like(velocity), velocity), arrival.speed, contact)
 
 
-LAWS: dict[MotorLaw, LawBuilder] = {
+LAWS: dict[MotorLaw, MotorActionBuilder] = {
     "free": free,
     "servo": servo,
     "held": held,
@@ -150,7 +158,7 @@ def _controlled(
     model: ImpactModel,
     arrival: Arrival,
     controller: Controller,
-    stage: Callable[[float, LawBuilder, Callable[[Motion], tuple[Array, Array]]], Stage],
+    stage: Callable[[float, MotorActionBuilder, Callable[[Motion], tuple[Array, Array]]], Stage],
 ) -> tuple[Stage, ...]:
     """Return the stages of the papers' controller."""
     A = list(model.actuated)

@@ -20,14 +20,13 @@ from softimpact.symbolic import (
     loop_tangent,
     mass_matrix,
 )
+from softimpact.symbolic.dynamics.equations_of_motion import FixedGravity
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 from softimpact.symbolic.matrices import Factorisation, Matrix
 
 from .mechanism import BodyKind, Mechanism
-from .motors import LawBuilder, MotorSide
+from .motor_actions import MotorActionBuilder, MotorSide
 from .simulator import Simulator, build_simulator
-
-Gravity = tuple[float, float, float]
 
 
 @lru_cache(maxsize=16)
@@ -35,8 +34,8 @@ def full_simulator(
     robot: Robot,
     tip: str,
     elastic: tuple[bool, ...],
-    gravity: Gravity,
-    law: LawBuilder,
+    gravity: FixedGravity,
+    law: MotorActionBuilder,
     kind: BodyKind,
     tolerance: float,
 ) -> Simulator:
@@ -45,7 +44,11 @@ def full_simulator(
 
 
 def _mechanism(
-    robot: Robot, tip: str, elastic: tuple[bool, ...], gravity: Gravity, law: LawBuilder
+    robot: Robot,
+    tip: str,
+    elastic: tuple[bool, ...],
+    gravity: FixedGravity,
+    law: MotorActionBuilder,
 ) -> Mechanism:
     """Equations over the links' and the elastic joints' motors' motion since first touch.
 

@@ -11,7 +11,7 @@ from softimpact.symbolic import Contact, ImpactModel, Motors, generalised_veloci
 from .arrival import Approach, arrival_of
 from .history import HORIZON, PRESSED_UNTIL
 from .linear import given_motion, linear_system, modes
-from .stepping import Bodies, LargestForces, ManyPeaks, Stage, at_first_touch, faster, slower
+from .stepping import Bodies, LargestForces, ManyPeaks, SteppedStage, at_first_touch, faster, slower
 
 
 def many_peaks(
@@ -47,7 +47,7 @@ def many_peaks(
             continue
         system = linear_system(model, arrival, law)
         found = modes(system)
-        stage = Stage.of(system, found, bodies, np.array(begin), np.array(min(end, until)))
+        stage = SteppedStage.of(system, found, bodies, np.array(begin), np.array(min(end, until)))
         given = given_motion(
             system, found, law, slower(state.motion, v), before, begin, what.stopping_time
         )

@@ -26,7 +26,7 @@ from .stepping import (
     Bodies,
     LargestForces,
     ManyPeaks,
-    Stage,
+    SteppedStage,
     at_first_touch,
     faster,
     slower,
@@ -158,13 +158,15 @@ class _Group:
         pulls = with_gains if motors.kind == "held" else without
         drift = np.einsum("sij,sj->si", pulls[1], self.rate)
         ends = [begin for begin, _ in motors.laws[1:]] + [until]
-        self.stages: list[tuple[MotorLaw, Stage]] = []
+        self.stages: list[tuple[MotorLaw, SteppedStage]] = []
         for (begin, law), end in zip(motors.laws, ends, strict=True):
             if min(end, until) > begin:
                 whole = with_gains if law in ("servo", "held") else without
                 system = _system(model.moving(law), whole, drift)
                 span = np.array(begin), np.array(min(end, until))
-                self.stages.append((law, Stage.of(system, modes(system), bodies, *span, phase)))
+                self.stages.append(
+                    (law, SteppedStage.of(system, modes(system), bodies, *span, phase))
+                )
 
     def run(self, speeds: Array, found: LargestForces) -> None:
         """Step through all stages."""

@@ -195,7 +195,7 @@ def at_first_touch(count: int, size: int, bodies: Bodies) -> State:
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
+class SteppedStage:
     """Many impacts while their motors follow one law, ready to be stepped.
 
     Attributes:
@@ -225,7 +225,7 @@ class Stage:
         begin: Array,
         end: Array,
         phase: float = PHASE,
-    ) -> Stage:
+    ) -> SteppedStage:
         """Prepare the steps of a stage.
 
         Args:
@@ -244,7 +244,7 @@ class Stage:
         body = dense_step(*bodies.system, h)
         softness = bodies.standing + body.after[..., 0] @ bodies.out + robot.softness
         solver = law_solver(bodies.law, softness, bodies.scale)
-        return Stage(system, found, bodies, np.asarray(begin), h, steps, robot, body, solver)
+        return SteppedStage(system, found, bodies, np.asarray(begin), h, steps, robot, body, solver)
 
     def run(self, given: Given, deviation: Array, state: State, largest: LargestForces) -> State:
         """Step through the stage; return where the impacts are then.

@@ -58,7 +58,7 @@ EXACT = Tolerances(*[0.0] * len(fields(Tolerances)))
 
 
 @dataclass(frozen=True, eq=False)
-class Factors:
+class ErrorFactors:
     """Factors on the numbers of many impacts; ``links``, ``rotors``, ``springs`` are S×n."""
 
     links: Array
@@ -72,7 +72,7 @@ class Factors:
     damping: Array
 
 
-def factors(tolerances: Tolerances, joints: int, samples: int) -> Factors:
+def error_factors(tolerances: Tolerances, joints: int, samples: int) -> ErrorFactors:
     """Return factors for many impacts, always the same ones.
 
     Errors are those of a sequence of low discrepancy (Richtmyer's, with the square roots of the
@@ -84,7 +84,7 @@ def factors(tolerances: Tolerances, joints: int, samples: int) -> Factors:
     share = np.repeat(per_joint + single, [joints] * 3 + [1] * len(single))
     found = np.exp(np.log1p(share) * normal_sequence(samples, len(share)))
     links, rotors, springs = np.split(found[:, : 3 * joints], 3, axis=1)
-    return Factors(links, rotors, springs, *found[:, 3 * joints :].T)
+    return ErrorFactors(links, rotors, springs, *found[:, 3 * joints :].T)
 
 
 def normal_sequence(samples: int, dimensions: int) -> Array:

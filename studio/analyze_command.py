@@ -15,25 +15,25 @@ if TYPE_CHECKING:
 
 
 def analyze(
-    model: o.Model,
-    q: o.Configuration,
-    direction: o.Directions,
-    tip: o.Tips = None,
-    end: o.End = None,
-    lock: o.Lock = None,
-    hold_base: o.HoldBase = False,
-    payload: o.Payload = None,
-    tool: o.Tool = None,
-    motors: o.Motors = None,
-    joint_stiffness: o.JointStiffness = None,
-    rotor_inertia: o.RotorInertia = None,
-    position_gain: o.PositionGain = None,
-    computed_torque_gain: o.ComputedTorqueGain = None,
-    gear_ratio: o.GearRatio = None,
-    gravity: o.Gravity = None,
-    motor_angles: o.MotorAngles = False,
-    order: o.Order = 3,
-    json: o.Json = False,
+    model: o.ModelArgument,
+    q: o.ConfigurationOption,
+    direction: o.DirectionsOption,
+    tip: o.TipsOption = None,
+    end: o.EndOption = None,
+    lock: o.LockOption = None,
+    hold_base: o.HoldBaseOption = False,
+    payload: o.PayloadOption = None,
+    tool: o.ToolOption = None,
+    motors: o.MotorsOption = None,
+    joint_stiffness: o.JointStiffnessOption = None,
+    rotor_inertia: o.RotorInertiaOption = None,
+    position_gain: o.PositionGainOption = None,
+    computed_torque_gain: o.ComputedTorqueGainOption = None,
+    gear_ratio: o.GearRatioOption = None,
+    gravity: o.GravityOption = None,
+    motor_angles: o.MotorAnglesOption = False,
+    order: o.OrderOption = 3,
+    json: o.JsonOption = False,
 ) -> None:
     """Print what an impact meets: m_c, k_r, m_a, the chain and the impact factors.
 
@@ -42,13 +42,13 @@ def analyze(
     from softimpact.symbolic import analyse
 
     from .output import print_json, print_warnings
-    from .situation import Typed, TypedArm, TypedDrives, situation, unknown_rotors
-    from .typed_motors import TypedMotors, motors_of
+    from .situation import Typed, TypedArm, TypedDrives, situation, unknown_rotors_line
+    from .typed_motors import TypedMotors, motors_meant
 
     given = TypedDrives(
         joint_stiffness, rotor_inertia, position_gain, computed_torque_gain, gear_ratio
     )
-    known, _ = motors_of(TypedMotors(motors), given)
+    known, _ = motors_meant(TypedMotors(motors), given)
     law = None if known is None else known.kind
     points: list[str | None] = [*tip] if tip else [None]
     found, warnings = [], []
@@ -56,7 +56,7 @@ def analyze(
         arm = TypedArm(model, point, end, lock, payload, tool, hold_base)
         scene = situation(Typed(arm, q, along, given, gravity, motor_angles))
         found.append((scene, analyse(scene.model, scene.q, scene.direction, order, law)))
-        warnings += [*scene.warnings, *unknown_rotors(scene.model)]
+        warnings += [*scene.warnings, *unknown_rotors_line(scene.model)]
     warnings = list(dict.fromkeys(warnings))
     print_warnings(warnings)
     records = [_record(scene, result) for scene, result in found]

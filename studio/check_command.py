@@ -8,7 +8,7 @@ import typer
 from . import options as o
 
 
-def check(study: o.StudyFile, json: o.Json = False) -> None:
+def check(study: o.StudyFileArgument, json: o.JsonOption = False) -> None:
     """Say everything that is wrong in a study file, with line numbers, without running it."""
     from softimpact.optimize.study import load_study
     from softimpact.optimize.study_check import study_problems

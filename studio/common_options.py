@@ -16,8 +16,10 @@ import typer
 
 LOGGER = logging.getLogger("softimpact")
 
-Csv = Annotated[bool, typer.Option("--csv", help="Print tables as CSV, numbers in full.")]
-Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say on stderr what is being done.")]
+CsvOption = Annotated[bool, typer.Option("--csv", help="Print tables as CSV, numbers in full.")]
+VerboseOption = Annotated[
+    bool, typer.Option("--verbose", "-v", help="Say on stderr what is being done.")
+]
 
 
 def common(command: Callable[..., None], waiting: str | None = None) -> Callable[..., None]:
@@ -44,7 +46,7 @@ def common(command: Callable[..., None], waiting: str | None = None) -> Callable
 
     ours = [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=kind)
-        for name, kind in (("csv", Csv), ("verbose", Verbose))
+        for name, kind in (("csv", CsvOption), ("verbose", VerboseOption))
     ]
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in own.parameters.values()]
     with_common.__signature__ = own.replace(parameters=[*parameters, *ours])  # type: ignore[attr-defined]

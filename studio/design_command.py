@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
     from .design_report import DesignReport
 
-Out = Annotated[
+OutOption = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder of results; default results/STUDY."),
 ]
-ModeName = Annotated[
+ModeNameOption = Annotated[
     str,
     typer.Option(
         "--mode", help="table (springs for each pose), free (springs and posture) or both."
@@ -32,27 +32,31 @@ ModeName = Annotated[
 
 
 def design(
-    study: o.StudyFile,
-    out: Out = None,
-    mode: ModeName = "both",
-    region: o.Region = None,
-    speed: o.Speed = None,
-    motors: o.StudyMotors = None,
-    reaction_time: o.ReactionTime = None,
-    page: o.Report = None,
-    workers: o.Workers = None,
-    dask: o.Dask = None,
-    resume: o.Resume = False,
-    json: o.Json = False,
+    study: o.StudyFileArgument,
+    out: OutOption = None,
+    mode: ModeNameOption = "both",
+    region: o.RegionOption = None,
+    speed: o.SpeedOption = None,
+    motors: o.StudyMotorsOption = None,
+    reaction_time: o.ReactionTimeOption = None,
+    page: o.ReportOption = None,
+    workers: o.WorkersOption = None,
+    dask: o.DaskOption = None,
+    resume: o.ResumeOption = False,
+    json: o.JsonOption = False,
 ) -> None:
     """Find the joint stiffness and the posture of least peak force with Ipopt."""
     from softimpact.optimize import load_study
     from softimpact.optimize.execution import Execution
 
-    from .design_report import GENERATOR, as_record, design_report
-    from .execution import running
-    from .output import failures_as_json, print_json
-    from .results_folder import replaced_folder, require_folder_of, require_replaceable
+    from .design_report import GENERATOR, design_record, design_report
+    from .output import failures_as_json, print_json, print_warnings
+    from .results_folder import (
+        replaced_folder,
+        require_folder_of,
+        require_replaceable_results,
+        running,
+    )
     from .values import given
 
     changed = {
@@ -61,7 +65,7 @@ def design(
     }
     problem = load_study(study, {name: part for name, part in changed.items() if part})
     folder = out or Path("results") / problem.source.stem
-    require_replaceable(folder, GENERATOR)
+    require_replaceable_results(folder, GENERATOR)
     require_folder_of(page)
     how = Execution(workers, dask, resume)
     if problem.scenarios is not None:
@@ -71,13 +75,14 @@ def design(
     with failures_as_json(json), running(how, folder) as pool:
         found = _search(problem, modes, pool)
         report = design_report(found)
-        record = as_record(report)
+        record = design_record(report)
         with replaced_folder(folder, GENERATOR) as fresh:
             _write(report, record, fresh)
     if page is not None:
         from .report.design_pages import write_design_report
 
         write_design_report(report, page)
+    print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})
     else:
@@ -92,10 +97,9 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
     from softimpact.optimize.study_scenarios import scenarios_of
 
     from .design_report import GENERATOR
-    from .execution import running
-    from .output import failures_as_json, print_json, say, write_json
+    from .output import failures_as_json, print_json, print_warnings, say, write_json
     from .progress import optimiser_bar
-    from .results_folder import RESULTS, replaced_folder
+    from .results_folder import RESULTS, replaced_folder, running
     from .robust_report import designed_model, robust_in_words, robust_record
 
     asked, scenarios = study.scenarios, scenarios_of(study)
@@ -111,11 +115,12 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
         with replaced_folder(folder, GENERATOR) as fresh:
             write_json(fresh / RESULTS, record)
             model = designed_model(found)
-            generate_package(model.robot, fresh / "c", drives_=model.drives)
+            generate_package(model.robot, fresh / "c", drives=model.drives)
     if page is not None:
         from .report.design_pages import write_robust_report
 
         write_robust_report(found, page)
+    print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})
         return
@@ -164,7 +169,7 @@ def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:
     write_json(folder / RESULTS, record)
     draw_figures(report, folder)
     model = report.study.model.with_springs(report.design.winner.springs)
-    generate_package(model.robot, folder / "c", drives_=model.drives)
+    generate_package(model.robot, folder / "c", drives=model.drives)
 
 
 def _print(report: DesignReport, folder: Path) -> None:

@@ -21,6 +21,7 @@ from softimpact.simulate.bracket import unknown_rotors
 from softimpact.symbolic import Analysis, analyse
 from softimpact.symbolic.robot.rigid import Array
 
+from .cautions import study_warnings
 from .checks import Check, peak_band, peaks_by_reaction, safe_speed, simulated
 
 Limited = Literal["transient", "quasi_static"]
@@ -125,7 +126,7 @@ def _reactions(study: Study, q: Array, springs: Array) -> dict[float, float]:
     return {} if unknown_rotors(study.model) else peaks_by_reaction(study, q, springs)
 
 
-def as_record(report: DesignReport) -> dict[str, Any]:
+def design_record(report: DesignReport) -> dict[str, Any]:
     """Return a report as plain data, for ``results.json``."""
     study, design = report.study, report.design
     region = study.contact.region
@@ -170,6 +171,7 @@ def as_record(report: DesignReport) -> dict[str, Any]:
         "band": report.band,
         "reactions": {"before": report.reactions_before, "after": report.reactions_after},
         "peak_definition": "peak",
+        "warnings": study_warnings(study),
         "poses": [_pose(pose, study.max_deflection) for pose in report.poses],
     }
 

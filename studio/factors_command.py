@@ -14,15 +14,15 @@ IMPULSES = "Impulses at the joints"
 
 
 def factors(
-    model: o.Model,
-    q: o.Configuration,
-    direction: o.Direction,
-    tip: o.Tip = None,
-    end: o.End = None,
-    lock: o.Lock = None,
-    hold_base: o.HoldBase = False,
-    payload: o.Payload = None,
-    tool: o.Tool = None,
+    model: o.ModelArgument,
+    q: o.ConfigurationOption,
+    direction: o.DirectionOption,
+    tip: o.TipOption = None,
+    end: o.EndOption = None,
+    lock: o.LockOption = None,
+    hold_base: o.HoldBaseOption = False,
+    payload: o.PayloadOption = None,
+    tool: o.ToolOption = None,
     floating: Annotated[
         bool,
         typer.Option(
@@ -30,8 +30,8 @@ def factors(
             help="Set the base free; --q holds all joints of the file, not just those to the tip.",
         ),
     ] = False,
-    rotor_inertia: o.RotorInertia = None,
-    gear_ratio: o.GearRatio = None,
+    rotor_inertia: o.RotorInertiaOption = None,
+    gear_ratio: o.GearRatioOption = None,
     speed: Annotated[
         float, typer.Option(metavar="X", help="Of approach (m/s).", rich_help_panel=IMPULSES)
     ] = 1.0,
@@ -47,7 +47,7 @@ def factors(
             metavar="X", help="Of what is hit (kg); default held.", rich_help_panel=IMPULSES
         ),
     ] = float("inf"),
-    json: o.Json = False,
+    json: o.JsonOption = False,
 ) -> None:
     """Print impact factors: GIAF and its kin, IMF, dynamic impact measure, joint impulses."""
     from softimpact.symbolic import InvalidValue, impact_factors
@@ -59,7 +59,7 @@ def factors(
         TypedDrives,
         free_situation,
         situation,
-        unknown_rotors,
+        unknown_rotors_line,
     )
 
     given = TypedDrives(rotor_inertia=rotor_inertia, gear_ratio=gear_ratio)
@@ -88,7 +88,7 @@ def factors(
         "restitution": restitution,
         "other_mass": other_mass,
         **flat(found),
-        "warnings": [*scene.warnings, *unknown_rotors(scene.model)],
+        "warnings": [*scene.warnings, *unknown_rotors_line(scene.model)],
     }
     print_warnings(result["warnings"])
     if json:

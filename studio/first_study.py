@@ -130,7 +130,7 @@ def _upper(robot: Robot, q: Array, direction: tuple[float, ...]) -> float:
     sets = [np.array(values) for values in robot.rotor_inertia_sets.values()]
     lightest = np.min(sets, axis=0) if sets else np.full(robot.n, ROTOR)
     rotors = np.where(robot.armature > 0, robot.armature, lightest)
-    model = impact_model(robot, drives_=drives(robot, NOMINAL, rotors))
+    model = impact_model(robot, drives=drives(robot, NOMINAL, rotors))
     most = MARGIN * stiffest_in_time(model, q, np.array(direction), HORIZON)
     return float(f"{min(10 * NOMINAL, most):.1e}")
 

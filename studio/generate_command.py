@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from softimpact.codegen import Manifest, Payload
     from softimpact.symbolic import Contact, Robot
 
-Real = Annotated[str, typer.Option(metavar="TYPE", help="Number type: float or double.")]
-Name = Annotated[
+RealOption = Annotated[str, typer.Option(metavar="TYPE", help="Number type: float or double.")]
+NameOption = Annotated[
     str | None, typer.Option(metavar="NAME", help="Prefix of all C names; default the robot's.")
 ]
 PAYLOAD = "What the robot carries"
@@ -27,19 +27,19 @@ MANY_JOINTS = 14
 
 
 def generate(
-    model: o.Model,
-    out: o.Out,
-    tip: o.Tip = None,
-    end: o.End = None,
-    lock: o.Lock = None,
-    hold_base: o.HoldBase = False,
-    real: Real = "double",
-    name: Name = None,
-    joint_stiffness: o.JointStiffness = None,
-    rotor_inertia: o.RotorInertia = None,
-    position_gain: o.PositionGain = None,
-    gear_ratio: o.GearRatio = None,
-    gravity: o.Gravity = None,
+    model: o.ModelArgument,
+    out: o.OutOption,
+    tip: o.TipOption = None,
+    end: o.EndOption = None,
+    lock: o.LockOption = None,
+    hold_base: o.HoldBaseOption = False,
+    real: RealOption = "double",
+    name: NameOption = None,
+    joint_stiffness: o.JointStiffnessOption = None,
+    rotor_inertia: o.RotorInertiaOption = None,
+    position_gain: o.PositionGainOption = None,
+    gear_ratio: o.GearRatioOption = None,
+    gravity: o.GravityOption = None,
     order: Annotated[
         int | None,
         typer.Option(
@@ -104,7 +104,7 @@ def generate(
             "file, behind a pad or cover file; may be repeated.",
         ),
     ] = None,
-    json: o.Json = False,
+    json: o.JsonOption = False,
 ) -> None:
     """Write a C99 package; the drives given are the defaults of its parameters."""
     from softimpact.codegen import generate_package
@@ -138,7 +138,7 @@ def generate(
         out,
         real=number,
         name=name,
-        drives_=known,
+        drives=known,
         gravity=None if gravity is None else gravity_of(gravity),
         chain_order=order,
         floating=floating,

@@ -18,7 +18,7 @@ from softimpact.simulate import (
     PeakDefinition,
     assess_impact,
 )
-from softimpact.simulate.controller import Reference
+from softimpact.simulate.controller import ControllerReference
 from softimpact.simulate.tolerances import Tolerances
 from softimpact.symbolic import Contact, InvalidValue, body_region
 from softimpact.symbolic.body.body_file import load_body, load_cover
@@ -27,7 +27,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from . import values
 from .situation import Situation, Typed, situation
-from .typed_motors import NOTHING_SAID, TypedMotors, motors_of
+from .typed_motors import NOTHING_SAID, TypedMotors, motors_meant
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def impact(where: Typed, how: TypedImpact) -> Answer:
     fidelity: Fidelity = values.one_of("impact model", how.fidelity, Fidelity)
     definition: PeakDefinition = values.one_of("peak definition", how.peak, PeakDefinition)
     contact = contact_of(how.body)
-    motors, reaction = motors_of(how.motors, where.drives)
+    motors, reaction = motors_meant(how.motors, where.drives)
     scene = situation(where)
     speed, velocity = _speed(scene, how)
     horizon = HORIZON if how.horizon is None else how.horizon
@@ -150,8 +150,8 @@ def controller_of(how: TypedImpact) -> Controller | None:
         return None
     if how.motors != NOTHING_SAID:
         raise InvalidValue("pid", "excludes --motors and its reaction")
-    reference: Reference = values.one_of(
-        "reference of the motors", how.reference or "moving", Reference
+    reference: ControllerReference = values.one_of(
+        "reference of the motors", how.reference or "moving", ControllerReference
     )
     proportional, derivative, integral = values.vector("pid", how.pid, 3)
     return Controller(proportional, derivative, integral, reference)

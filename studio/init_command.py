@@ -8,7 +8,7 @@ import typer
 from . import options as o
 
 
-def init(model: o.Model, tip: o.Tip = None) -> None:
+def init(model: o.ModelArgument, tip: o.TipOption = None) -> None:
     """Print a study file for a robot, with what its file has and what is missing."""
     from .first_study import first_study
     from .output import print_warnings

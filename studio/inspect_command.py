@@ -10,9 +10,9 @@ from . import options as o
 
 
 def inspect(
-    model: o.Model,
-    tip: o.Tip = None,
-    json: o.Json = False,
+    model: o.ModelArgument,
+    tip: o.TipOption = None,
+    json: o.JsonOption = False,
 ) -> None:
     """Print what a robot is: joints, masses, drives, frames, loops, and what is doubtful."""
     from .inspection import inspected

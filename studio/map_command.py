@@ -8,11 +8,11 @@ from typing import Annotated
 import typer
 
 from . import options as o
-from .simulate_command import BODY, Clamped, Cover, Horizon
+from .simulate_command import BODY, ClampedOption, CoverOption, HorizonOption
 
 WHERE = "Where"
 
-Posture = Annotated[
+PostureOption = Annotated[
     str | None,
     typer.Option(
         "--q",
@@ -22,7 +22,7 @@ Posture = Annotated[
         rich_help_panel=WHERE,
     ),
 ]
-Over = Annotated[
+OverOption = Annotated[
     str,
     typer.Option(
         metavar="GROUND",
@@ -30,7 +30,7 @@ Over = Annotated[
         rich_help_panel=WHERE,
     ),
 ]
-PlaneName = Annotated[
+PlaneNameOption = Annotated[
     str,
     typer.Option(
         "--plane",
@@ -39,7 +39,7 @@ PlaneName = Annotated[
         rich_help_panel=WHERE,
     ),
 ]
-Step = Annotated[
+StepOption = Annotated[
     float,
     typer.Option(
         metavar="X",
@@ -47,7 +47,7 @@ Step = Annotated[
         rich_help_panel=WHERE,
     ),
 ]
-Hold = Annotated[
+HoldOption = Annotated[
     str | None,
     typer.Option(
         "--hold",
@@ -56,63 +56,63 @@ Hold = Annotated[
         rich_help_panel=WHERE,
     ),
 ]
-Direction = Annotated[
+DirectionOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST",
         help="Direction of the impacts in the base's axes; default the worst at each posture.",
     ),
 ]
-Region = Annotated[
+RegionOption = Annotated[
     str,
     typer.Option(
         metavar="NAME", help="Region or area of the body: chest, hand, ...", rich_help_panel=BODY
     ),
 ]
-Speed = Annotated[float, typer.Option(metavar="V", help="Speed of the peaks (m/s).")]
+SpeedOption = Annotated[float, typer.Option(metavar="V", help="Speed of the peaks (m/s).")]
 
 
 def safety_map(
-    model: o.Model,
-    out: o.Out,
-    q: Posture = None,
-    over: Over = "plane",
-    plane: PlaneName = "xz",
-    step: Step = 0.05,
-    hold: Hold = None,
-    direction: Direction = None,
-    region: Region = "chest",
-    cover: Cover = None,
-    clamped: Clamped = True,
-    speed: Speed = 0.5,
-    tip: o.Tip = None,
-    end: o.End = None,
-    lock: o.Lock = None,
-    payload: o.Payload = None,
-    tool: o.Tool = None,
-    motors: o.Motors = None,
-    reaction_time: o.ReactionTime = None,
-    stopping_time: o.StoppingTime = None,
-    horizon: Horizon = None,
-    joint_stiffness: o.JointStiffness = None,
-    rotor_inertia: o.RotorInertia = None,
-    position_gain: o.PositionGain = None,
-    damping_gain: o.DampingGain = None,
-    gear_ratio: o.GearRatio = None,
-    gravity: o.Gravity = None,
-    json: o.Json = False,
+    model: o.ModelArgument,
+    out: o.OutOption,
+    q: PostureOption = None,
+    over: OverOption = "plane",
+    plane: PlaneNameOption = "xz",
+    step: StepOption = 0.05,
+    hold: HoldOption = None,
+    direction: DirectionOption = None,
+    region: RegionOption = "chest",
+    cover: CoverOption = None,
+    clamped: ClampedOption = True,
+    speed: SpeedOption = 0.5,
+    tip: o.TipOption = None,
+    end: o.EndOption = None,
+    lock: o.LockOption = None,
+    payload: o.PayloadOption = None,
+    tool: o.ToolOption = None,
+    motors: o.MotorsOption = None,
+    reaction_time: o.ReactionTimeOption = None,
+    stopping_time: o.StoppingTimeOption = None,
+    horizon: HorizonOption = None,
+    joint_stiffness: o.JointStiffnessOption = None,
+    rotor_inertia: o.RotorInertiaOption = None,
+    position_gain: o.PositionGainOption = None,
+    damping_gain: o.DampingGainOption = None,
+    gear_ratio: o.GearRatioOption = None,
+    gravity: o.GravityOption = None,
+    json: o.JsonOption = False,
 ) -> None:
     """Map safe speed, peak force and worst direction over a plane or the self-motion."""
     from .map_files import GENERATOR, map_record, print_map, write_map
     from .output import print_json, print_warnings
     from .progress import progress_bar
-    from .results_folder import replaced_folder, require_replaceable
+    from .results_folder import replaced_folder, require_replaceable_results
     from .safety_map import TypedMap
     from .safety_map import safety_map as mapped
     from .situation import TypedArm, TypedDrives
     from .typed_motors import TypedMotors
 
-    require_replaceable(out, GENERATOR)
+    require_replaceable_results(out, GENERATOR)
     how = TypedMap(
         arm=TypedArm(model, tip, end, lock, payload, tool),
         drives=TypedDrives(

@@ -11,7 +11,7 @@ import typer
 DRIVES = "Drives (a number for all joints, or a JSON list)"
 MOTORS = "What the motors do"
 
-Model = Annotated[
+ModelArgument = Annotated[
     str,
     typer.Argument(
         metavar="MODEL",
@@ -19,7 +19,7 @@ Model = Annotated[
         show_default=False,
     ),
 ]
-Tip = Annotated[
+TipOption = Annotated[
     str | None,
     typer.Option(
         "--tip",
@@ -27,7 +27,7 @@ Tip = Annotated[
         help="Contact frame, or BODY@x,y,z for any point of a body (m); default the model's own.",
     ),
 ]
-Configuration = Annotated[
+ConfigurationOption = Annotated[
     str,
     typer.Option(
         "--q",
@@ -35,17 +35,17 @@ Configuration = Annotated[
         help="Link angles of the arm up to its end, in the file's joint order (rad, m).",
     ),
 ]
-MotorAngles = Annotated[
+MotorAnglesOption = Annotated[
     bool,
     typer.Option(
         "--motor-angles", help="--q holds motor angles; gravity bends the springs from there."
     ),
 ]
-Direction = Annotated[
+DirectionOption = Annotated[
     str,
     typer.Option("--direction", metavar="LIST", help="Direction of the impact in the base's axes."),
 ]
-Tips = Annotated[
+TipsOption = Annotated[
     list[str] | None,
     typer.Option(
         "--tip",
@@ -54,7 +54,7 @@ Tips = Annotated[
         "May be repeated.",
     ),
 ]
-Directions = Annotated[
+DirectionsOption = Annotated[
     list[str],
     typer.Option(
         "--direction",
@@ -62,7 +62,7 @@ Directions = Annotated[
         help="Direction of the impact in the base's axes; may be repeated.",
     ),
 ]
-JointStiffness = Annotated[
+JointStiffnessOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST|X",
@@ -70,7 +70,7 @@ JointStiffness = Annotated[
         rich_help_panel=DRIVES,
     ),
 ]
-RotorInertia = Annotated[
+RotorInertiaOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST|X|NAME",
@@ -78,7 +78,7 @@ RotorInertia = Annotated[
         rich_help_panel=DRIVES,
     ),
 ]
-PositionGain = Annotated[
+PositionGainOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST|X",
@@ -86,7 +86,7 @@ PositionGain = Annotated[
         rich_help_panel=DRIVES,
     ),
 ]
-ComputedTorqueGain = Annotated[
+ComputedTorqueGainOption = Annotated[
     float | None,
     typer.Option(
         metavar="X",
@@ -94,7 +94,7 @@ ComputedTorqueGain = Annotated[
         rich_help_panel=DRIVES,
     ),
 ]
-GearRatio = Annotated[
+GearRatioOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST|X",
@@ -102,7 +102,7 @@ GearRatio = Annotated[
         rich_help_panel=DRIVES,
     ),
 ]
-DampingGain = Annotated[
+DampingGainOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST|X",
@@ -110,7 +110,7 @@ DampingGain = Annotated[
         rich_help_panel=DRIVES,
     ),
 ]
-TorqueLimit = Annotated[
+TorqueLimitOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST|X",
@@ -118,7 +118,7 @@ TorqueLimit = Annotated[
         rich_help_panel=DRIVES,
     ),
 ]
-Motors = Annotated[
+MotorsOption = Annotated[
     str | None,
     typer.Option(
         "--motors",
@@ -128,7 +128,7 @@ Motors = Annotated[
         rich_help_panel=MOTORS,
     ),
 ]
-ReactionTime = Annotated[
+ReactionTimeOption = Annotated[
     float | None,
     typer.Option(
         metavar="S",
@@ -136,7 +136,7 @@ ReactionTime = Annotated[
         rich_help_panel=MOTORS,
     ),
 ]
-StoppingTime = Annotated[
+StoppingTimeOption = Annotated[
     float | None,
     typer.Option(
         metavar="S",
@@ -144,7 +144,7 @@ StoppingTime = Annotated[
         rich_help_panel=MOTORS,
     ),
 ]
-End = Annotated[
+EndOption = Annotated[
     str | None,
     typer.Option(
         "--end",
@@ -152,70 +152,70 @@ End = Annotated[
         help="End of the arm: all joints on the way to it stay, also beyond the contact point.",
     ),
 ]
-Lock = Annotated[
+LockOption = Annotated[
     str | None,
     typer.Option(metavar="JOINT=X,...", help="Joints to weld, and where; others off the way at 0."),
 ]
-HoldBase = Annotated[
+HoldBaseOption = Annotated[
     bool,
     typer.Option(
         "--hold-base", help="Hold the base of a robot that floats or stands, where its file has it."
     ),
 ]
-Payload = Annotated[
+PayloadOption = Annotated[
     str | None,
     typer.Option(
         metavar="MASS[@x,y,z]",
         help="What the end holds (kg), and its centre in the end's axes (m).",
     ),
 ]
-Tool = Annotated[
+ToolOption = Annotated[
     str | None,
     typer.Option(metavar="FILE", help="Tool at the end: TOML with mass, com and inertia."),
 ]
-Gravity = Annotated[
+GravityOption = Annotated[
     str | None,
     typer.Option(metavar="LIST", help="Gravity that enters K0 (m/s²); default none."),
 ]
-Fidelity = Annotated[
+FidelityOption = Annotated[
     str, typer.Option("--model", help="one_mass, two_mass, chain, linearised or full.")
 ]
-Order = Annotated[int, typer.Option(min=1, help="Number of masses of the chain.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
-Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")]
-StudyFile = Annotated[
+OrderOption = Annotated[int, typer.Option(min=1, help="Number of masses of the chain.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+OutOption = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")]
+StudyFileArgument = Annotated[
     str, typer.Argument(metavar="STUDY", help="Study file (.toml).", show_default=False)
 ]
-Region = Annotated[
+RegionOption = Annotated[
     str | None, typer.Option(metavar="NAME", help="Body region instead of the study's.")
 ]
-Speed = Annotated[
+SpeedOption = Annotated[
     float | None, typer.Option(metavar="V", help="Speed (m/s) instead of the study's.")
 ]
-StudyMotors = Annotated[
+StudyMotorsOption = Annotated[
     str | None,
     typer.Option(
         "--motors", metavar="KIND", help="free, servo or driven instead of the study's motors."
     ),
 ]
-Report = Annotated[
+ReportOption = Annotated[
     Path | None,
     typer.Option(
         "--report", metavar="FILE", help="Write a report: one HTML page that opens offline."
     ),
 ]
 
-Workers = Annotated[
+WorkersOption = Annotated[
     int | None,
     typer.Option("--workers", metavar="N", help="Processes that search; default one a core."),
 ]
-Dask = Annotated[
+DaskOption = Annotated[
     str | None,
     typer.Option(
         "--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster whose workers search."
     ),
 ]
-Resume = Annotated[
+ResumeOption = Annotated[
     bool,
     typer.Option("--resume", help="Go on where an earlier run of this study was ended."),
 ]

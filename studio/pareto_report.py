@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from softimpact.optimize import Front, Pareto, ParetoPoint, Study
 from softimpact.optimize.front import knee
-from softimpact.optimize.searches import Progress
+from softimpact.optimize.workers import Progress
 
 from .checks import Check, checked, safe_speed
 
@@ -66,6 +66,12 @@ class ParetoReport:
         """Return the point of least force that gives way by no more than a deflection [m]."""
         kept = [p for p in self.fronts[front] if p.point.deflection <= deflection * (1 + 1e-5)]
         return kept[-1] if kept else None
+
+
+def price_of_deflection(point: ParetoPoint) -> float:
+    """Return what a tenth more of the bound on the deflection buys [N]; zero where none binds."""
+    prices = () if point.meaning is None else point.meaning.prices
+    return sum(p.gain for p in prices if p.bound == "accuracy.max_deflection")
 
 
 def pareto_report(pareto: Pareto, on_progress: Progress) -> ParetoReport:

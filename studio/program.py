@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
@@ -31,10 +30,13 @@ from softimpact.symbolic.robot.rigid import Array
 from softimpact.symbolic.robot.robot import BASE
 
 from . import values
+from .cautions import not_permitted
 from .motion_file import limits_left
 from .motion_source import MotionSource, Survey, motion_source, require_all_move, survey
+from .program_engine import Engine
 from .program_record import ProgramResult, program_record
 from .program_run import Question, slowed_program
+from .program_trust import doubts
 from .progress import progress_bar
 from .situation import (
     TypedArm,
@@ -44,7 +46,7 @@ from .situation import (
     gravity_of,
     loaded_arm,
 )
-from .typed_motors import TypedMotors, motors_of
+from .typed_motors import TypedMotors, motors_meant
 from .zones_file import read_zones
 
 APART = 0.15
@@ -52,8 +54,6 @@ APART = 0.15
 
 COARSE = 0.05
 """Way of a watched point between two samples from which on a motion is called coarse [m]."""
-
-Engine = Literal["auto", "c", "python"]
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class TypedProgram:
 def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     """Return how fast a program may run; raises SoftImpactError."""
     engine: Engine = values.one_of("engine", how.engine, Engine)
-    motors, reaction = motors_of(how.motors, how.drives)
+    motors, reaction = motors_meant(how.motors, how.drives)
     if motors is not None:
         refuse_held(motors, "a safe program")
     bodies = _bodies(how)
@@ -87,7 +87,7 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     robot = arm.robot
     source, told = motion_source(path, robot, whole)
     model = impact_model(
-        robot, drives_=drives_of(robot, how.drives), gravity=gravity_of(how.gravity)
+        robot, drives=drives_of(robot, how.drives), gravity=gravity_of(how.gravity)
     )
     found, assumed = bracket(model, motors, reaction)
     ends = {kind: end for kind, end in found.items() if isinstance(end, Motors)}
@@ -101,7 +101,8 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     rigid = counted_as_rigid(model, how.drives)
     cautions = _cautions(robot, bodies, seen)
     warnings = [*arm.warnings, *rigid, *told, *limits, *assumed, *cautions]
-    record = program_record(path, question, answer, [*warnings, *answer.warnings])
+    warnings += [*answer.warnings, *doubts(question, answer.worst)]
+    record = program_record(path, question, answer, warnings)
     return ProgramResult(question, answer, record)
 
 
@@ -183,10 +184,7 @@ def _bodies(how: TypedProgram) -> list[Somebody]:
 
 
 def _cautions(robot: Robot, bodies: Sequence[Somebody], seen: Survey) -> Iterator[str]:
-    for name in dict.fromkeys(
-        body.contact.region.name for body in bodies if not body.contact.region.permitted
-    ):
-        yield f"contact with '{name}' is not to be designed for; its limits are for reference"
+    yield from not_permitted(body.contact.region for body in bodies)
     for name, speed, limit in zip(robot.joint_names, seen.fastest, robot.speed_limits, strict=True):
         if speed > limit * (1 + 1e-6):
             yield f"joint '{name}' moves at up to {speed:.4g}, beyond its speed limit {limit:.4g}"

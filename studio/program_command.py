@@ -10,7 +10,7 @@ import typer
 from typer.core import TyperCommand
 
 from . import options as o
-from .simulate_command import BODY, Clamped, Cover, Horizon, Shape
+from .simulate_command import BODY, ClampedOption, CoverOption, HorizonOption, ShapeOption
 
 
 class SeveralValues(TyperCommand):
@@ -39,7 +39,7 @@ class SeveralValues(TyperCommand):
         return list(super().parse_args(ctx, words))
 
 
-Motion = Annotated[
+MotionArgument = Annotated[
     Path,
     typer.Argument(
         metavar="MOTION",
@@ -48,13 +48,13 @@ Motion = Annotated[
         show_default=False,
     ),
 ]
-Robot = Annotated[
+RobotOption = Annotated[
     str,
     typer.Option(
         "--model", metavar="MODEL", help="Built-in robot, or path of a .urdf or MJCF .xml file."
     ),
 ]
-Points = Annotated[
+PointsOption = Annotated[
     list[str] | None,
     typer.Option(
         "--points",
@@ -63,7 +63,7 @@ Points = Annotated[
         "frames some 0.15 m apart along the arm.",
     ),
 ]
-Regions = Annotated[
+RegionsOption = Annotated[
     list[str] | None,
     typer.Option(
         "--regions",
@@ -72,7 +72,7 @@ Regions = Annotated[
         rich_help_panel=BODY,
     ),
 ]
-Zones = Annotated[
+ZonesOption = Annotated[
     Path | None,
     typer.Option(
         "--zones",
@@ -81,7 +81,7 @@ Zones = Annotated[
         rich_help_panel=BODY,
     ),
 ]
-Engine = Annotated[
+EngineOption = Annotated[
     str,
     typer.Option(
         metavar="NAME",
@@ -89,59 +89,59 @@ Engine = Annotated[
         "or auto.",
     ),
 ]
-Band = Annotated[
+BandOption = Annotated[
     bool,
     typer.Option(
         "--band", help="Where 95 of 100 cases of the worst moments lie, for what is not known."
     ),
 ]
-Out = Annotated[
+OutOption = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder for results.json, CSV tables and a figure."),
 ]
 
 
 def program(
-    motion: Motion,
-    model: Robot,
-    regions: Regions = None,
-    zones: Zones = None,
-    points: Points = None,
-    end: o.End = None,
-    lock: o.Lock = None,
-    payload: o.Payload = None,
-    tool: o.Tool = None,
-    cover: Cover = None,
-    shape: Shape = None,
-    clamped: Clamped = True,
-    motors: o.Motors = None,
-    reaction_time: o.ReactionTime = None,
-    stopping_time: o.StoppingTime = None,
-    horizon: Horizon = None,
-    joint_stiffness: o.JointStiffness = None,
-    rotor_inertia: o.RotorInertia = None,
-    position_gain: o.PositionGain = None,
-    damping_gain: o.DampingGain = None,
-    torque_limit: o.TorqueLimit = None,
-    gear_ratio: o.GearRatio = None,
-    gravity: o.Gravity = None,
-    band: Band = False,
-    engine: Engine = "auto",
-    out: Out = None,
-    report: o.Report = None,
-    json: o.Json = False,
+    motion: MotionArgument,
+    model: RobotOption,
+    regions: RegionsOption = None,
+    zones: ZonesOption = None,
+    points: PointsOption = None,
+    end: o.EndOption = None,
+    lock: o.LockOption = None,
+    payload: o.PayloadOption = None,
+    tool: o.ToolOption = None,
+    cover: CoverOption = None,
+    shape: ShapeOption = None,
+    clamped: ClampedOption = True,
+    motors: o.MotorsOption = None,
+    reaction_time: o.ReactionTimeOption = None,
+    stopping_time: o.StoppingTimeOption = None,
+    horizon: HorizonOption = None,
+    joint_stiffness: o.JointStiffnessOption = None,
+    rotor_inertia: o.RotorInertiaOption = None,
+    position_gain: o.PositionGainOption = None,
+    damping_gain: o.DampingGainOption = None,
+    torque_limit: o.TorqueLimitOption = None,
+    gear_ratio: o.GearRatioOption = None,
+    gravity: o.GravityOption = None,
+    band: BandOption = False,
+    engine: EngineOption = "auto",
+    out: OutOption = None,
+    report: o.ReportOption = None,
+    json: o.JsonOption = False,
 ) -> None:
     """Find the factor by which to slow a motion down, so that no watched point can hurt."""
     from .output import print_json, print_warnings
     from .program import TypedProgram, run_program
     from .program_record import GENERATOR, print_program
-    from .results_folder import replaced_folder, require_folder_of, require_replaceable
+    from .results_folder import replaced_folder, require_folder_of, require_replaceable_results
     from .situation import TypedArm, TypedDrives
     from .typed_motors import TypedMotors
 
     require_folder_of(report)
     if out is not None:
-        require_replaceable(out, GENERATOR)
+        require_replaceable_results(out, GENERATOR)
     how = TypedProgram(
         arm=TypedArm(model, None, end, lock, payload, tool),
         drives=TypedDrives(

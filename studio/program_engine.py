@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
@@ -28,6 +28,9 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .motion_source import moving_points
 from .program_table import LIMITS, ProgramTable
+
+Engine = Literal["auto", "c", "python"]
+"""Who integrates the impacts of a program."""
 
 STIFF = 1e7
 """What a rigid joint is in C [N·m/rad]: a hundred times the stiffest of geared joints."""

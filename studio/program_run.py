@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -21,7 +21,7 @@ from softimpact.symbolic import ImpactModel, InvalidValue, Motors
 from softimpact.symbolic.robot.rigid import Array
 
 from .motion_source import MotionSource, Survey, passes_of, samples_of
-from .program_engine import CompiledEngine, compiled_engine
+from .program_engine import CompiledEngine, Engine, compiled_engine
 from .program_table import Names, ProgramTable
 
 FEW = 20_000
@@ -98,7 +98,7 @@ def slowed_program(
     source: MotionSource,
     seen: Survey,
     question: Question,
-    engine: Literal["auto", "c", "python"],
+    engine: Engine,
     band: bool,
     progress: Progress,
 ) -> SlowedProgram:

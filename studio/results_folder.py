@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A folder of results, which the next run of the same command replaces."""
+"""A folder of results, which the next run of the same command replaces, and runs that fill it."""
 
 from __future__ import annotations
 
@@ -7,12 +7,19 @@ import errno
 import json
 import os
 from collections.abc import Iterator
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from softimpact.codegen import ForeignFolder
 from softimpact.codegen import folder as place
+
+from .output import print_warnings
+
+if TYPE_CHECKING:
+    from softimpact.optimize.execution import Execution
 
 RESULTS = "results.json"
 
@@ -33,7 +40,26 @@ def replaced_folder(folder: Path, generator: str) -> Iterator[Path]:
         yield fresh
 
 
-def require_replaceable(folder: Path, generator: str) -> None:
+@contextmanager
+def running(how: Execution, folder: Path) -> Iterator[Executor]:
+    """Return the executor for a ``with`` block, its journal beside the folder of results.
+
+    Args:
+        how: to run.
+        folder: of the results.
+    """
+    from softimpact.optimize.execution import executing
+
+    journal = folder.resolve().parent / f"{folder.resolve().name}.journal.jsonl"
+    if journal.exists() and not how.resume:
+        print_warnings([f"{journal}: results of a run that was ended; --resume would use them"])
+    with executing(how, journal) as pool:
+        if how.resume:
+            print_warnings([f"{pool.known} results of an earlier run are used again"])
+        yield pool
+
+
+def require_replaceable_results(folder: Path, generator: str) -> None:
     """Raise ForeignFolder or FolderNotWritable if results could not be written."""
     place.require_replaceable(folder.resolve(), partial(_require_own, generator))
 

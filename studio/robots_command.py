@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from .options import Json
+from .options import JsonOption
 
 
-def robots(json: Json = False) -> None:
+def robots(json: JsonOption = False) -> None:
     """List the built-in robots and studies; robots' frames are in --json."""
     from softimpact.robots import built_in_robots, built_in_studies
     from softimpact.symbolic import load_robot

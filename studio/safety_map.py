@@ -34,6 +34,7 @@ from softimpact.symbolic.impact.two_body import moving_mass, two_body
 from softimpact.symbolic.robot.rigid import Array
 
 from . import values
+from .cautions import not_permitted
 from .first_study import first_posture
 from .situation import (
     TypedArm,
@@ -43,7 +44,7 @@ from .situation import (
     gravity_of,
     loaded_arm,
 )
-from .typed_motors import TypedMotors, motors_of
+from .typed_motors import TypedMotors, motors_meant
 from .worst_directions import worst_directions
 
 Over = Literal["plane", "self-motion"]
@@ -158,7 +159,7 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         seen: called with the number of impacts that were looked at.
     """
     over: Over = values.one_of("map's ground", how.over, Over)
-    motors, reaction = motors_of(how.motors, how.drives)
+    motors, reaction = motors_meant(how.motors, how.drives)
     if motors is not None:
         refuse_held(motors, "a map of safe speeds")
     if not 0 < how.speed < np.inf:
@@ -171,7 +172,7 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
     if robot.loops:
         raise InvalidValue("model", f"'{robot.name}' has closed loops; maps are of open chains")
     drives = drives_of(robot, how.drives)
-    model = impact_model(robot, drives_=drives, gravity=gravity_of(how.gravity))
+    model = impact_model(robot, drives=drives, gravity=gravity_of(how.gravity))
     body = _body(how)
     asked = None if how.direction is None else unit_direction(
         values.vector("direction", how.direction, 3)
@@ -308,11 +309,7 @@ def _words(found: NDArray[np.str_], rows: NDArray[np.intp], count: int) -> NDArr
 
 
 def _cautions(model: ImpactModel, body: Contact, moving: int, directions: Array) -> Iterator[str]:
-    if not body.region.permitted:
-        yield (
-            f"contact with '{body.region.name}' is not to be designed for; its limits are for "
-            "reference"
-        )
+    yield from not_permitted([body.region])
     lost = len(directions) - moving
     if lost:
         yield (

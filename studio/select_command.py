@@ -9,23 +9,23 @@ import typer
 
 from . import options as o
 
-By = Annotated[
+ByOption = Annotated[
     str, typer.Option(metavar="FIGURE", help="peak_force, m_c, giaf or directional_giaf.")
 ]
 
 
 def select(
-    study: o.StudyFile,
-    by: By = "peak_force",
-    fidelity: o.Fidelity = "linearised",
-    report: o.Report = None,
-    json: o.Json = False,
+    study: o.StudyFileArgument,
+    by: ByOption = "peak_force",
+    fidelity: o.FidelityOption = "linearised",
+    report: o.ReportOption = None,
+    json: o.JsonOption = False,
 ) -> None:
     """Rank the configurations of a study at its nominal joint stiffness."""
     from softimpact.optimize import load_study
     from softimpact.simulate import Fidelity
 
-    from .output import print_json
+    from .output import print_json, print_warnings
     from .selection import Criterion, print_ranking, ranking, record
     from .values import one_of
 
@@ -37,7 +37,9 @@ def select(
         from .report.pareto_pages import write_selection_report
 
         write_selection_report(problem, criterion, ranked, report)
+    told = record(problem, criterion, model, ranked)
+    print_warnings(told["warnings"])
     if json:
-        print_json(record(problem, criterion, model, ranked))
+        print_json(told)
     else:
         print_ranking(problem, criterion, ranked)

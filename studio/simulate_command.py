@@ -11,7 +11,7 @@ from . import options as o
 
 BODY = "What is hit"
 
-Regions = Annotated[
+RegionsOption = Annotated[
     list[str] | None,
     typer.Option(
         "--region",
@@ -20,17 +20,17 @@ Regions = Annotated[
         rich_help_panel=BODY,
     ),
 ]
-Body = Annotated[
+BodyOption = Annotated[
     str | None,
     typer.Option(metavar="FILE", help="A body of your own (TOML).", rich_help_panel=BODY),
 ]
-Cover = Annotated[
+CoverOption = Annotated[
     str | None,
     typer.Option(
         metavar="FILE", help="What the robot wears at the contact (TOML).", rich_help_panel=BODY
     ),
 ]
-Shape = Annotated[
+ShapeOption = Annotated[
     str | None,
     typer.Option(
         metavar="SHAPE",
@@ -39,7 +39,7 @@ Shape = Annotated[
         rich_help_panel=BODY,
     ),
 ]
-Clamped = Annotated[
+ClampedOption = Annotated[
     bool,
     typer.Option(
         "--clamped/--free",
@@ -47,7 +47,7 @@ Clamped = Annotated[
         rich_help_panel=BODY,
     ),
 ]
-Speed = Annotated[
+SpeedOption = Annotated[
     float | None,
     typer.Option(
         metavar="V",
@@ -55,7 +55,7 @@ Speed = Annotated[
         "--joint-velocity.",
     ),
 ]
-JointVelocity = Annotated[
+JointVelocityOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST",
@@ -63,14 +63,14 @@ JointVelocity = Annotated[
         "those of least norm.",
     ),
 ]
-Peak = Annotated[
+PeakOption = Annotated[
     str,
     typer.Option(
         help="Which one peak_force is: peak (largest of all contacts), first_contact or "
         "first_peak; verdict and safe speed are by peak."
     ),
 ]
-Pid = Annotated[
+PidOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST",
@@ -79,68 +79,68 @@ Pid = Annotated[
         rich_help_panel=o.MOTORS,
     ),
 ]
-Reference = Annotated[
+ReferenceOption = Annotated[
     str | None,
     typer.Option(
         help="Of that controller after first touch: moving (on, the default) or held.",
         rich_help_panel=o.MOTORS,
     ),
 ]
-Horizon = Annotated[
+HorizonOption = Annotated[
     float | None,
     typer.Option(metavar="S", help="How long contacts count (s); default 0.5."),
 ]
-Band = Annotated[
+BandOption = Annotated[
     bool,
     typer.Option(
         "--band", help="Where 95 of 100 cases lie, for what is not known exactly (tolerances)."
     ),
 ]
-SafeSpeed = Annotated[
+SafeSpeedOption = Annotated[
     bool,
     typer.Option("--safe-speed", help="Find the largest speed up to which every limit is kept."),
 ]
 
 
 def simulate(
-    model: o.Model,
-    q: o.Configuration,
-    direction: o.Directions,
-    region: Regions = None,
-    speed: Speed = None,
-    tip: o.Tips = None,
-    end: o.End = None,
-    lock: o.Lock = None,
-    hold_base: o.HoldBase = False,
-    payload: o.Payload = None,
-    tool: o.Tool = None,
-    fidelity: o.Fidelity = "linearised",
-    body: Body = None,
-    cover: Cover = None,
-    shape: Shape = None,
-    clamped: Clamped = True,
-    joint_velocity: JointVelocity = None,
-    peak: Peak = "peak",
-    motors: o.Motors = None,
-    reaction_time: o.ReactionTime = None,
-    stopping_time: o.StoppingTime = None,
-    horizon: Horizon = None,
-    pid: Pid = None,
-    reference: Reference = None,
-    safe_speed: SafeSpeed = False,
-    band: Band = False,
-    report: o.Report = None,
-    joint_stiffness: o.JointStiffness = None,
-    rotor_inertia: o.RotorInertia = None,
-    position_gain: o.PositionGain = None,
-    damping_gain: o.DampingGain = None,
-    torque_limit: o.TorqueLimit = None,
-    computed_torque_gain: o.ComputedTorqueGain = None,
-    gear_ratio: o.GearRatio = None,
-    gravity: o.Gravity = None,
-    motor_angles: o.MotorAngles = False,
-    order: o.Order = 3,
-    json: o.Json = False,
+    model: o.ModelArgument,
+    q: o.ConfigurationOption,
+    direction: o.DirectionsOption,
+    region: RegionsOption = None,
+    speed: SpeedOption = None,
+    tip: o.TipsOption = None,
+    end: o.EndOption = None,
+    lock: o.LockOption = None,
+    hold_base: o.HoldBaseOption = False,
+    payload: o.PayloadOption = None,
+    tool: o.ToolOption = None,
+    fidelity: o.FidelityOption = "linearised",
+    body: BodyOption = None,
+    cover: CoverOption = None,
+    shape: ShapeOption = None,
+    clamped: ClampedOption = True,
+    joint_velocity: JointVelocityOption = None,
+    peak: PeakOption = "peak",
+    motors: o.MotorsOption = None,
+    reaction_time: o.ReactionTimeOption = None,
+    stopping_time: o.StoppingTimeOption = None,
+    horizon: HorizonOption = None,
+    pid: PidOption = None,
+    reference: ReferenceOption = None,
+    safe_speed: SafeSpeedOption = False,
+    band: BandOption = False,
+    report: o.ReportOption = None,
+    joint_stiffness: o.JointStiffnessOption = None,
+    rotor_inertia: o.RotorInertiaOption = None,
+    position_gain: o.PositionGainOption = None,
+    damping_gain: o.DampingGainOption = None,
+    torque_limit: o.TorqueLimitOption = None,
+    computed_torque_gain: o.ComputedTorqueGainOption = None,
+    gear_ratio: o.GearRatioOption = None,
+    gravity: o.GravityOption = None,
+    motor_angles: o.MotorAnglesOption = False,
+    order: o.OrderOption = 3,
+    json: o.JsonOption = False,
 ) -> None:
     """Simulate an impact and hold it against what the body may bear.
 

@@ -139,7 +139,7 @@ def situation(typed: Typed) -> Situation:
     q = values.vector("q", typed.q)
     direction = unit_direction(values.vector("direction", typed.direction, 3))
     model = impact_model(
-        robot, drives_=drives_of(robot, typed.drives), gravity=gravity_of(typed.gravity)
+        robot, drives=drives_of(robot, typed.drives), gravity=gravity_of(typed.gravity)
     )
     angles = (
         link_angles(model, np.array(q)) if typed.motor_angles else whole_configuration(robot, q)
@@ -162,7 +162,7 @@ def counted_as_rigid(model: ImpactModel, typed: TypedDrives) -> list[str]:
     return [f"joints of {RIGID_FROM:g} N·m/rad and more count as rigid"]
 
 
-def unknown_rotors(model: ImpactModel) -> list[str]:
+def unknown_rotors_line(model: ImpactModel) -> list[str]:
     """Return a line if rotors of which nothing is known count as zero in masses and factors."""
     from softimpact.simulate.bracket import unknown_rotors
 
@@ -206,7 +206,7 @@ def free_situation(typed: Typed) -> Situation:
     free = floating_robot(robot)
     q = whole_configuration(robot, values.vector("q", typed.q))
     direction = unit_direction(values.vector("direction", typed.direction, 3))
-    model = floating_model(free, drives_=drives_of(robot, typed.drives))
+    model = floating_model(free, drives=drives_of(robot, typed.drives))
     angles = np.array(free.coordinates(q)).ravel()
     warnings = (*robot.warnings, *beyond_limits(robot, q))
     return Situation(model, angles, direction, warnings=warnings)

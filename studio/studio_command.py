@@ -15,7 +15,7 @@ GENERATOR = "softimpact studio"
 
 PAGE = "index.html"
 
-What = Annotated[
+WhatArgument = Annotated[
     str,
     typer.Argument(
         metavar="MODEL|STUDY|RESULTS",
@@ -24,7 +24,7 @@ What = Annotated[
         show_default=False,
     ),
 ]
-Out = Annotated[
+OutOption = Annotated[
     Path | None,
     typer.Option(
         "--out", metavar="DIR", help="Write the page there as static files, and open nothing."
@@ -33,12 +33,12 @@ Out = Annotated[
 
 
 def studio(
-    what: What = "panda",
-    out: Out = None,
-    tip: o.Tip = None,
-    lock: o.Lock = None,
-    hold_base: o.HoldBase = False,
-    json: o.Json = False,
+    what: WhatArgument = "panda",
+    out: OutOption = None,
+    tip: o.TipOption = None,
+    lock: o.LockOption = None,
+    hold_base: o.HoldBaseOption = False,
+    json: o.JsonOption = False,
 ) -> None:
     """Explore impacts in the browser: posture, direction, springs, motors; the C computes there."""
     import tempfile
@@ -49,11 +49,11 @@ def studio(
     from .output import print_json, print_warnings, say
     from .page.opened import opened
     from .page.write import page_of
-    from .results_folder import replaced_folder, require_replaceable
+    from .results_folder import replaced_folder, require_replaceable_results
     from .situation import TypedArm
 
     if out is not None:
-        require_replaceable(out, GENERATOR)
+        require_replaceable_results(out, GENERATOR)
     asked = TypedArm(what, tip, lock=lock, hold_base=hold_base)
     shown = opened(what, None if asked == TypedArm(what) else asked)
     text = page_of(shown)

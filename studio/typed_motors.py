@@ -25,7 +25,7 @@ NOTHING_SAID = TypedMotors()
 """Motors of which nothing is known."""
 
 
-def motors_of(typed: TypedMotors, drives: TypedDrives) -> tuple[Motors | None, Motors]:
+def motors_meant(typed: TypedMotors, drives: TypedDrives) -> tuple[Motors | None, Motors]:
     """Return what motors do, None if that is open, and how they react.
 
     Raises:

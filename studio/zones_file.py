@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -14,8 +13,8 @@ from softimpact.simulate.zones import Somebody, Zone
 from softimpact.symbolic import Contact, InvalidValue, SoftImpactError, body_region
 from softimpact.symbolic.body.laws import Law
 from softimpact.symbolic.body.shapes import Shape, shape_from
+from softimpact.symbolic.file_section import Finite
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
 Corner = tuple[Finite, Finite, Finite]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from oracles import example_urdf
 
 from softimpact.optimize import Design, Outcome, PoseResult, Study, design, load_study
-from softimpact.optimize.co_design import Answers, Reference
+from softimpact.optimize.co_design import Answers, DesignReference
 from softimpact.optimize.poses import Candidate, candidates
 from softimpact.optimize.timing import Timing
 from softimpact.studio.design_report import DesignReport, design_report
@@ -92,7 +92,7 @@ def ur5_report(folder: Path) -> DesignReport:
     winner = poses[0].table
     assert winner is not None
     timing = Timing(duration=0.04, nodes=200, substeps=2)
-    reference = Reference(study.nominal, 90.0, 1e-3)
+    reference = DesignReference(study.nominal, 90.0, 1e-3)
     ranges = np.column_stack([study.lower, study.upper])
     answers = Answers(1e-3, ranges, (), study.motors[0], reference)
     return design_report(Design(study, poses, winner, None, answers, timing, compiled=False))

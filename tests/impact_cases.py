@@ -32,7 +32,7 @@ def r_min(tip: str = "O13", gain: float | None = None) -> tuple[ImpactModel, App
     """Return R-Min sagging under gravity in MSM's pose, about to hit along −x at 1 m/s."""
     robot = load_robot("rmin")
     given = drives(robot, computed_torque_gain=gain)
-    model = impact_model(robot, tip, drives_=given, gravity=EARTH)
+    model = impact_model(robot, tip, drives=given, gravity=EARTH)
     q = configuration_at_rest(model, np.radians([-130.6, -50.0]))
     return model, Approach(q, [-1.0, 0.0, 0.0], 1.0)
 

@@ -51,7 +51,7 @@ def oracle(package: Generated, sample: Sample) -> dict[str, list[Array]]:
         (elastic,) * robot.n,
         ca.DM(gains),
     )
-    model = impact_model(robot, package.tip, drives_=drives, gravity=package.manifest.gravity)
+    model = impact_model(robot, package.tip, drives=drives, gravity=package.manifest.gravity)
     q = ca.DM(sample.q)
     n = ca.DM(sample.n) / ca.norm_2(ca.DM(sample.n))
     reduced, chain = model.reduced(q, n), model.chain(q, n, package.manifest.chain_order)
@@ -116,7 +116,7 @@ def base_set_free(package: Generated, model: ImpactModel, q: ca.DM) -> dict[str,
     if not package.manifest.floating:
         return {}
     free = floating_robot(model.robot)
-    whole = floating_model(free, model.tip, drives_=model.drives)
+    whole = floating_model(free, model.tip, drives=model.drives)
     x = free.coordinates(q)
     found = impact_mitigation(whole.rotor_mass_matrix(x), whole.jacobian(x))
     absorption = giaf(whole.free_mobility(x), whole.mobility(x))

@@ -29,7 +29,7 @@ TYPED = ("panda", "--q", "0,0.3,0,-2,0,2,0.8", "--joint-stiffness", "1e4")
 @pytest.fixture(scope="module")
 def model() -> ImpactModel:
     panda = softimpact.load_robot("panda")
-    return softimpact.impact_model(panda, drives_=softimpact.drives(panda, joint_stiffness=1e4))
+    return softimpact.impact_model(panda, drives=softimpact.drives(panda, joint_stiffness=1e4))
 
 
 def on(region: str) -> softimpact.Contact:
@@ -182,13 +182,13 @@ def test_springs_stiffer_than_any_are_rigid(model: ImpactModel) -> None:
     """A simulation would follow vibrations of a megahertz, for minutes."""
     stiff, rigid = (
         softimpact.impact_model(
-            model.robot, drives_=softimpact.drives(model.robot, joint_stiffness=k)
+            model.robot, drives=softimpact.drives(model.robot, joint_stiffness=k)
         )
         for k in (1e12, np.inf)
     )
     assert stiff.drives.elastic == rigid.drives.elastic == (False,) * 7
     nearly = softimpact.drives(model.robot, joint_stiffness=1e7)
-    near = softimpact.impact_model(model.robot, drives_=nearly)
+    near = softimpact.impact_model(model.robot, drives=nearly)
     peaks = [
         softimpact.assess_impact(m, softimpact.Approach(Q, ALONG, 0.5), on("chest")).history.peak
         for m in (stiff, near)

@@ -63,7 +63,7 @@ def impacts(robot: Robot, order: int, count: int) -> list[Sample]:
 
 
 def _force(robot: Robot, sample: Sample, order: int) -> float:
-    model = impact_model(robot, drives_=drives(robot, sample.springs, sample.rotors))
+    model = impact_model(robot, drives=drives(robot, sample.springs, sample.rotors))
     approach = Approach(sample.q, sample.n, sample.speed)
     contact = Contact(body_region(sample.region), sample.clamped)
     history = simulate_impact(model, approach, contact, "chain", order=order, tolerance=1e-9)

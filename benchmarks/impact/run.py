@@ -80,7 +80,7 @@ def cases() -> list[Case]:
         Case("rr", impact_model(rr), straight),
         Case(
             "panda",
-            impact_model(panda, drives_=drives(panda, 1e4)),
+            impact_model(panda, drives=drives(panda, 1e4)),
             Approach(pose, np.array([0.0, 1.0, 0.0]), 1.0),
         ),
     ]

@@ -18,7 +18,7 @@ from softimpact import (
 )
 
 panda = load_robot("panda")
-model = impact_model(panda, drives_=drives(panda, joint_stiffness=1e4))
+model = impact_model(panda, drives=drives(panda, joint_stiffness=1e4))
 q, along_y = [-1.22, 0.84, 0.72, -2.41, 0.79, 1.97, -2.04], [0.0, 1.0, 0.0]
 
 # %% [markdown]

@@ -16,7 +16,7 @@ from .bound import AtMost
 ROUNDED = 1e-30
 """Square of a length [m²] that keeps the slope of a deflection of zero finite."""
 
-Vector3 = tuple[float, float, float]
+Load = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class Deflection(AtMost):
     unit: ClassVar[str] = "m"
 
     most: float
-    forces: tuple[Vector3, ...]
-    moments: tuple[Vector3, ...] = ()
+    forces: tuple[Load, ...]
+    moments: tuple[Load, ...] = ()
     payload: float = 0.0
     sag: bool = False
 

@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from softimpact.symbolic import Matrix
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
-Indices = NDArray[np.int64]
-"""Numbers of things."""
+if TYPE_CHECKING:
+    from ..scenarios import Scenarios
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +36,8 @@ class Objective(Protocol):
         more_is_better: whether ``value`` is to be large.
         scales_speed: whether it changes how fast impacts are.
         all_scenarios: whether every scenario counts, and not the worst alone.
+        span: values between which a front holds it unless it is told others; None where it can
+            only be sought.
     """
 
     kind: ClassVar[str] = ""
@@ -46,6 +45,7 @@ class Objective(Protocol):
     scales_speed: ClassVar[bool] = False
     more_is_better: ClassVar[bool] = False
     all_scenarios: ClassVar[bool] = False
+    span: ClassVar[tuple[float, float] | None] = None
 
     def own(self, scenarios: Indices, shares: Array, speeds: Array) -> Own:
         """Return the objective's variables.
@@ -72,3 +72,10 @@ class Objective(Protocol):
     def cost(self, own: Matrix, scenarios: Indices, speeds: Matrix) -> Matrix:
         """Return what is made small, in a unit in which one is much and 1e-4 is little."""
         ...
+
+    def held(self, scenarios: Scenarios, value: float) -> Scenarios:
+        """Return scenarios in which another objective is sought while this one has a value.
+
+        Only asked of objectives with a ``span``.
+        """
+        raise NotImplementedError

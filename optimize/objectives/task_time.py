@@ -10,9 +10,9 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import InvalidValue, Matrix
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
-from .objective import Indices, Objective, Own
+from .objective import Objective, Own
 from .safe_speed import SLOWEST
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix
 
 from ..hardware import Hardware
-from .variable import Range, Variable, checked
+from .variable import Range, Variable, checked_range
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Cover(Variable):
     def range(self, model: ImpactModel) -> Range:
         """Return the range, which starts at the stiffest cover."""
         ends = np.array([self.lower]), np.array([self.upper])
-        return checked(Range(("cover",), *ends, ends[1]))
+        return checked_range(Range(("cover",), *ends, ends[1]))
 
     def apply(self, hardware: Hardware, values: Matrix) -> Hardware:
         """Return the hardware with this cover."""

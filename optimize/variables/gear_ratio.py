@@ -11,7 +11,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue, Matrix
 
 from ..hardware import Hardware
-from .variable import Numbers, Range, Variable, joint_range
+from .variable import OneOrEach, Range, Variable, joint_range
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class GearRatio(Variable):
     unit: ClassVar[str] = "of the present ratio"
     moves: ClassVar[tuple[str, ...]] = ("rotors",)
 
-    lower: Numbers
-    upper: Numbers
+    lower: OneOrEach
+    upper: OneOrEach
 
     def range(self, model: ImpactModel) -> Range:
         """Return the range, which starts at the present gears."""

@@ -11,7 +11,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue, Matrix
 
 from ..hardware import Hardware
-from .variable import Numbers, Range, Variable, joint_range
+from .variable import OneOrEach, Range, Variable, joint_range
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class LinkMass(Variable):
     unit: ClassVar[str] = "of the present mass"
     moves: ClassVar[tuple[str, ...]] = ("masses",)
 
-    lower: Numbers
-    upper: Numbers
+    lower: OneOrEach
+    upper: OneOrEach
 
     def range(self, model: ImpactModel) -> Range:
         """Return the range, which starts at the links as they are."""

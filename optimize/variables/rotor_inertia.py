@@ -11,7 +11,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix
 
 from ..hardware import Hardware
-from .variable import Numbers, Range, Variable, joint_range
+from .variable import OneOrEach, Range, Variable, joint_range
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class RotorInertia(Variable):
     unit: ClassVar[str] = "kg m²"
     moves: ClassVar[tuple[str, ...]] = ("rotors",)
 
-    lower: Numbers
-    upper: Numbers
+    lower: OneOrEach
+    upper: OneOrEach
 
     def range(self, model: ImpactModel) -> Range:
         """Return the range, which starts at the robot's own rotors."""

@@ -14,7 +14,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from ..hardware import Hardware
 
-Numbers = float | tuple[float, ...]
+OneOrEach = float | tuple[float, ...]
 """One number for all, or one for each."""
 
 
@@ -58,7 +58,7 @@ class Variable(Protocol):
         ...
 
 
-def joint_range(model: ImpactModel, lower: Numbers, upper: Numbers, start: PerJoint) -> Range:
+def joint_range(model: ImpactModel, lower: OneOrEach, upper: OneOrEach, start: PerJoint) -> Range:
     """Return the range of a variable with one value a joint.
 
     Raises:
@@ -70,10 +70,10 @@ def joint_range(model: ImpactModel, lower: Numbers, upper: Numbers, start: PerJo
         per_joint(robot, field, values if isinstance(values, float | int) else list(values))
         for field, values in (("lower", lower), ("upper", upper))
     )
-    return checked(Range(robot.joint_names, low, high, per_joint(robot, "start", start)))
+    return checked_range(Range(robot.joint_names, low, high, per_joint(robot, "start", start)))
 
 
-def checked(range_: Range) -> Range:
+def checked_range(range_: Range) -> Range:
     """Return a range with its start within it; raises InvalidValue if there is none."""
     for name, low, high in zip(range_.names, range_.lower, range_.upper, strict=True):
         if not 0 < low < np.inf:

@@ -18,10 +18,10 @@ class FactorFunctions:
 
     function: ca.Function
 
-    def at(self, q: Array, rotors: Array, direction: Array) -> Factors:
+    def at(self, q: Array, rotors: Array, direction: Array) -> PostureFactors:
         """Return the factors of one configuration."""
         zeta, alone, along, free, rigid = self.function(q, rotors, direction)
-        return Factors(
+        return PostureFactors(
             giaf=float(zeta),
             single_joint_giaf=np.array(alone).ravel(),
             directional_giaf=float(along),
@@ -31,7 +31,7 @@ class FactorFunctions:
 
 
 @dataclass(frozen=True, eq=False)
-class Factors:
+class PostureFactors:
     """Factors of one configuration.
 
     Attributes:

@@ -66,7 +66,7 @@ def _on_base(model: ImpactModel, mass: float) -> ca.Function:
     robot = floating_robot(model.robot, base)
     q, rotors = ca.SX.sym("q", model.robot.n), ca.SX.sym("B", model.robot.n)
     geared = replace(drives(model.robot), rotors=rotors)
-    floating = floating_model(robot, model.tip, drives_=geared)
+    floating = floating_model(robot, model.tip, drives=geared)
     x = robot.coordinates(q)
     xi = impact_mitigation(floating.rotor_mass_matrix(x), floating.jacobian(x)).factor
     zeta = giaf(floating.free_mobility(x), floating.mobility(x))

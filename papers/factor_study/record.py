@@ -16,7 +16,7 @@ GENERATOR = "softimpact factors-study"
 """Marks a folder of results as one that may be replaced."""
 
 
-def as_record(found: FactorStudy) -> dict[str, Any]:
+def factor_study_record(found: FactorStudy) -> dict[str, Any]:
     """Return a factor study as plain data."""
     study = found.study
     return {

@@ -21,7 +21,7 @@ from .heavy_base import HeavyBase, on_heavy_base
 from .poses import PoseFactors, pose_factors
 from .redundancy import AlongSelfMotion, along_self_motion
 
-Case = tuple[str, str]
+TipAndRotors = tuple[str, str]
 """A tip and a set of rotor inertias, by name."""
 
 
@@ -47,9 +47,9 @@ class FactorStudy:
     poses: Array
     rotor_sets: Mapping[str, Array]
     tips: tuple[str, ...]
-    factors: Mapping[Case, PoseFactors]
+    factors: Mapping[TipAndRotors, PoseFactors]
     curve: SelfMotion
-    along: Mapping[Case, AlongSelfMotion]
+    along: Mapping[TipAndRotors, AlongSelfMotion]
     heavy_base: Mapping[str, HeavyBase]
     agreements: Sequence[Agreement]
 

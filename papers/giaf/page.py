@@ -36,7 +36,7 @@ CAPTIONS = {
 """By the beginning of a figure's file name, in the order of the page."""
 
 
-def page(found: FactorStudy, lines: Sequence[Statement], figures: Sequence[str]) -> str:
+def giaf_page(found: FactorStudy, lines: Sequence[Statement], figures: Sequence[str]) -> str:
     """Return the report as Markdown; figures are expected beside it."""
     counts = Counter(line.verdict for line in lines)
     summary = ", ".join(f"{verdict} {counts[verdict]}" for verdict in get_args(Holding))

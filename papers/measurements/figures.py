@@ -23,7 +23,7 @@ from softimpact.studio.figures.style import (
     tidy,
 )
 
-from .foretold import Band, two_body_force
+from .foretold import ForceBand, two_body_force
 from .setups import Measurement
 from .wall import ApparentMasses
 
@@ -32,7 +32,7 @@ DRAWN = (2.5, 50.0, 97.5)
 
 
 def device_figure(
-    found: Mapping[Measurement, Sequence[Band]], times: Sequence[float], title: str, path: Path
+    found: Mapping[Measurement, Sequence[ForceBand]], times: Sequence[float], title: str, path: Path
 ) -> Path:
     """Draw foretold forces over the time for which motors drive on, and the measured ones.
 
@@ -46,7 +46,9 @@ def device_figure(
     panels = figure.subplots(1, len(found), sharex=True)
     ms = 1e3 * np.array(times)
     for axes, (measured, bands) in zip(panels, found.items(), strict=True):
-        low, middle, high = (np.array([getattr(b, x) for b in bands]) for x in Band.__annotations__)
+        low, middle, high = (
+            np.array([getattr(b, x) for b in bands]) for x in ForceBand.__annotations__
+        )
         axes.fill_between(ms, low, high, color=SKY, alpha=0.45, linewidth=0)
         axes.plot(ms, middle, color=BLUE, linewidth=1.6)
         axes.axhline(measured.force, color=VERMILLION, linewidth=1.8)

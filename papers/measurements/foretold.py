@@ -68,7 +68,7 @@ class Servo:
 
 
 @dataclass(frozen=True)
-class Band:
+class ForceBand:
     """A force that is known so well only [N]."""
 
     low: float
@@ -80,9 +80,9 @@ class Band:
         return self.low <= force <= self.high
 
 
-def band(forces: Array) -> Band:
+def band(forces: Array) -> ForceBand:
     """Return the band that holds 95 of 100 forces, and their median."""
-    return Band(*(float(x) for x in np.percentile(forces, PERCENT)))
+    return ForceBand(*(float(x) for x in np.percentile(forces, PERCENT)))
 
 
 def foretold(
@@ -92,7 +92,7 @@ def foretold(
     *,
     count: int = 240,
     seed: int = 0,
-) -> Band:
+) -> ForceBand:
     """Return the band of the peak force of a measured impact.
 
     Args:
@@ -141,7 +141,7 @@ def _draws(
         drawn = torque * _spread(random, ROTOR_PER_TORQUE, count)
     stiffness = torque / _spread(random, WIND_UP, count)
     load = random.uniform(*PAYLOAD, (count, 1))
-    model = impact_model(held, FLANGE, drives_=own)
+    model = impact_model(held, FLANGE, drives=own)
     return model, symbols, np.hstack([drawn, stiffness, load])
 
 

@@ -127,7 +127,7 @@ def _from_peaks(
 ) -> Array:
     """Return (F/v)²/k of the first contact, the mass that a spring k would tell."""
     springs = robot.torque_limits / wind_up
-    model = impact_model(robot, FLANGE, drives_=drives(robot, joint_stiffness=springs))
+    model = impact_model(robot, FLANGE, drives=drives(robot, joint_stiffness=springs))
     velocity = np.array([approach_velocity(model, *at) for at in zip(q, n, strict=True)])
     rigid = BodyRegion("wall", "Wall", wall, 1.0, np.inf, None, 0.0)
     contact = Contact(replace(rigid, skin=PowerLaw(1e3 * wall, 1.0)))

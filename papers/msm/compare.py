@@ -14,11 +14,11 @@ from softimpact.symbolic import Robot, load_robot
 from softimpact.symbolic.robot.rigid import Array
 
 from . import printed
-from .compute import SPEED_STIFFNESS, Point, Results
+from .compute import SPEED_STIFFNESS, Results, SweepPoint
 from .ladder import LADDER, REGIONS
 from .scenarios import GRID, SCENARIOS
 
-Verdict = Literal["input", "agrees", "misprint", "not determined by the text"]
+PrintedVerdict = Literal["input", "agrees", "misprint", "not determined by the text"]
 
 ROUNDING = 5e-3
 """Relative difference within which a number that the text determines agrees."""
@@ -50,7 +50,7 @@ class Comparison:
     printed: float
     ours: float
     difference: float
-    verdict: Verdict
+    verdict: PrintedVerdict
     note: str = ""
 
 
@@ -60,13 +60,17 @@ def compared(results: Results) -> list[Comparison]:
     return [line for part in parts for line in part(results)]
 
 
-def grid_points(points: list[Point]) -> list[Point]:
+def grid_points(points: list[SweepPoint]) -> list[SweepPoint]:
     """Return the points of the paper's grid among those of a finer sweep."""
     return points[:: (len(points) - 1) // (GRID - 1)]
 
 
 def mean_error(
-    points: list[Point], region: str, rung: str, definition: PeakDefinition, against: str = "full"
+    points: list[SweepPoint],
+    region: str,
+    rung: str,
+    definition: PeakDefinition,
+    against: str = "full",
 ) -> float:
     """Return a model's mean absolute error over the paper's grid [%]."""
     errors = [
@@ -78,11 +82,11 @@ def mean_error(
 
 def _exact(
     section: str, what: str, scenario: str, unit: str, theirs: float, ours: float,
-    last_digit: float, otherwise: tuple[Verdict, str] = ("not determined by the text", ""),
+    last_digit: float, otherwise: tuple[PrintedVerdict, str] = ("not determined by the text", ""),
 ) -> Comparison:  # fmt: skip
     """Compare numbers that the text determines: to the last digit, which may be cut off."""
     near = abs(ours - theirs) < max(last_digit, ROUNDING * abs(theirs))
-    verdict: Verdict = "agrees" if near else otherwise[0]
+    verdict: PrintedVerdict = "agrees" if near else otherwise[0]
     note = "" if near else otherwise[1]
     difference = 0.0 if ours == theirs else 100 * (ours / theirs - 1) if theirs else np.inf
     return Comparison(section, what, scenario, unit, theirs, ours, float(difference), verdict, note)
@@ -174,7 +178,7 @@ def _speeds(results: Results) -> Iterator[Comparison]:
 def _points(section: str, what: str, scenario: str, theirs: float, ours: float) -> Comparison:
     near = abs(ours - theirs) <= POINTS
     note = "" if near else "rests on the controller's details and on where two peaks merge"
-    verdict: Verdict = "agrees" if near else "not determined by the text"
+    verdict: PrintedVerdict = "agrees" if near else "not determined by the text"
     return Comparison(section, what, scenario, "%", theirs, ours, ours - theirs, verdict, note)
 
 

@@ -16,8 +16,8 @@ from softimpact.simulate import Decoupling, decoupling_stiffness
 from softimpact.symbolic import Contact, InvalidValue, body_region, static_stiffness
 from softimpact.symbolic.robot.rigid import Array
 
-from .ladder import DEFINITIONS, LADDER, REGIONS, impact_at, motors_of
-from .scenarios import SCENARIOS, Scenario
+from .ladder import DEFINITIONS, LADDER, REGIONS, impact_at, motors_on
+from .scenarios import SCENARIOS, PaperScenario
 
 BETWEEN = 1
 """Stiffnesses computed between any two of the paper's grid."""
@@ -35,12 +35,12 @@ DECOUPLED = ("full", "two_mass")
 SOFTER = 0.1
 """Share of the softest k_s where the search for decoupling starts."""
 
-Peaks = dict[str, dict[str, dict[str, float]]]
+PeakTable = dict[str, dict[str, dict[str, float]]]
 """Peak force [N] by region, model and definition."""
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class SweepPoint:
     """A scenario with one joint stiffness.
 
     Attributes:
@@ -57,7 +57,7 @@ class Point:
     k_r: float
     m_a: float
     k_c: float
-    peaks: Peaks
+    peaks: PeakTable
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +82,8 @@ class Results:
         seconds: wall time of one impact by model, in one process after another.
     """
 
-    sweeps: dict[str, list[Point]]
-    nominal: dict[str, Point]
+    sweeps: dict[str, list[SweepPoint]]
+    nominal: dict[str, SweepPoint]
     speeds: dict[str, list[dict[str, float]]]
     traces: dict[str, dict[float, dict[str, Trace]]]
     decoupling: dict[str, dict[str, dict[str, Decoupling | None]]]
@@ -91,10 +91,10 @@ class Results:
     seconds: dict[str, float]
 
 
-def point(name: str, stiffness: float) -> Point:
+def point(name: str, stiffness: float) -> SweepPoint:
     """Compute one stiffness of a scenario's sweep."""
     scenario = SCENARIOS[name]
-    peaks: Peaks = {region: {} for region in REGIONS}
+    peaks: PeakTable = {region: {} for region in REGIONS}
     for region in REGIONS:
         for rung in LADDER:
             history = impact_at(scenario, rung, stiffness, region)
@@ -102,12 +102,12 @@ def point(name: str, stiffness: float) -> Point:
     return _parameters(scenario, stiffness, peaks)
 
 
-def _parameters(scenario: Scenario, stiffness: float, peaks: Peaks) -> Point:
+def _parameters(scenario: PaperScenario, stiffness: float, peaks: PeakTable) -> SweepPoint:
     model, approach = scenario.at(stiffness)
     at = (approach.q, approach.direction)
     reduced = model.reduced(*at)
     m_c, k_r, m_a = (float(x) for x in (reduced.m_c, reduced.k_r, reduced.m_a))
-    return Point(stiffness, m_c, k_r, m_a, float(static_stiffness(model.linear(*at))), peaks)
+    return SweepPoint(stiffness, m_c, k_r, m_a, float(static_stiffness(model.linear(*at))), peaks)
 
 
 def at_speed(name: str, speed: float) -> dict[str, float]:
@@ -138,14 +138,14 @@ def decoupled(name: str, region: str, rung: str) -> Decoupling | None:
             Contact(body_region(region)),
             (SOFTER * arm.softest, arm.stiffest),
             step.fidelity,
-            motors=motors_of(scenario, step),
+            motors=motors_on(scenario, step),
             accuracy=1e-3,
         )
     except InvalidValue:
         return None
 
 
-Task = tuple[str, tuple[Any, ...]]
+Job = tuple[str, tuple[Any, ...]]
 WORK: dict[str, Callable[..., Any]] = {
     "sweep": point,
     "speed": at_speed,
@@ -154,9 +154,9 @@ WORK: dict[str, Callable[..., Any]] = {
 }
 
 
-def work_of(scenarios: tuple[str, ...], between: int = BETWEEN) -> list[Task]:
+def work_of(scenarios: tuple[str, ...], between: int = BETWEEN) -> list[Job]:
     """Return everything to compute for some scenarios, the longest first."""
-    tasks: list[Task] = []
+    tasks: list[Job] = []
     for name in scenarios:
         tasks += [("decoupling", (name, r, rung)) for r in REGIONS for rung in DECOUPLED]
     for name in scenarios:
@@ -181,9 +181,9 @@ def compute(
         on_done: told the kind of each task when it ends.
     """
     tasks = work_of(scenarios, between)
-    found: dict[Task, Any] = {}
+    found: dict[Job, Any] = {}
     with workers(len(tasks)) as pool:
-        futures: dict[Future[Any], Task] = {
+        futures: dict[Future[Any], Job] = {
             pool.submit(WORK[kind], *arguments): (kind, arguments) for kind, arguments in tasks
         }
         for future in as_completed(futures):
@@ -192,7 +192,7 @@ def compute(
     return _collected(scenarios, tasks, found)
 
 
-def _collected(scenarios: tuple[str, ...], tasks: list[Task], found: dict[Task, Any]) -> Results:
+def _collected(scenarios: tuple[str, ...], tasks: list[Job], found: dict[Job, Any]) -> Results:
     def of(kind: str, name: str) -> list[tuple[tuple[Any, ...], Any]]:
         return [(a[1:], found[k, a]) for k, a in tasks if k == kind and a[0] == name]
 
@@ -212,13 +212,13 @@ def _collected(scenarios: tuple[str, ...], tasks: list[Task], found: dict[Task, 
     )
 
 
-def _motor_rates(scenario: Scenario) -> list[float]:
+def _motor_rates(scenario: PaperScenario) -> list[float]:
     model, approach = scenario.at(scenario.arm.softest)
     assert approach.link_velocity is not None
     return [float(v) for v in approach.link_velocity[list(model.actuated)]]
 
 
-def _seconds(scenario: Scenario, repeats: int = 5) -> dict[str, float]:
+def _seconds(scenario: PaperScenario, repeats: int = 5) -> dict[str, float]:
     """Return the least wall time of an impact on the head, model and integrator at hand."""
     seconds = {}
     for rung in COMPARED:

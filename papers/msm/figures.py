@@ -25,7 +25,7 @@ from softimpact.studio.figures.style import (
     VERMILLION,
 )
 
-from .compute import COMPARED, SPEEDS, Point, Results
+from .compute import COMPARED, SPEEDS, Results, SweepPoint
 from .ladder import LADDER, REGIONS
 from .ladder_figures import COLOURS, error_figure, ladder_figure
 from .scenarios import SCENARIOS
@@ -127,11 +127,13 @@ def _over_stiffness(axes: Axes, label: str) -> None:
     axes.set_ylabel(label)
 
 
-def _values(points: Sequence[Point], of: Callable[[Point], float]) -> tuple[list[float], ...]:
+def _values(
+    points: Sequence[SweepPoint], of: Callable[[SweepPoint], float]
+) -> tuple[list[float], ...]:
     return [p.stiffness for p in points], [of(p) for p in points]
 
 
-def _stiffness_figure(sweeps: dict[str, list[Point]]) -> Figure:
+def _stiffness_figure(sweeps: dict[str, list[SweepPoint]]) -> Figure:
     figure = _figure(1, width=4.6, height=3.2)
     axes = figure.axes[0]
     for name, points in sweeps.items():
@@ -144,7 +146,7 @@ def _stiffness_figure(sweeps: dict[str, list[Point]]) -> Figure:
     return figure
 
 
-def _mass_figure(sweeps: dict[str, list[Point]]) -> Figure:
+def _mass_figure(sweeps: dict[str, list[SweepPoint]]) -> Figure:
     figure = _figure(1, width=4.6, height=3.2)
     axes = figure.axes[0]
     for name, points in sweeps.items():
@@ -157,7 +159,7 @@ def _mass_figure(sweeps: dict[str, list[Point]]) -> Figure:
     return figure
 
 
-def _peak_figure(sweeps: dict[str, list[Point]]) -> Figure:
+def _peak_figure(sweeps: dict[str, list[SweepPoint]]) -> Figure:
     figure = _figure(2, width=3.8, height=3.6)
     for axes, region in zip(figure.axes, REGIONS, strict=True):
         for name, points in sweeps.items():

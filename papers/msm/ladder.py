@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 from softimpact.simulate import (
     Controller,
+    ControllerReference,
     Fidelity,
     ImpactHistory,
     PeakDefinition,
-    Reference,
     simulate_impact,
 )
 from softimpact.symbolic import Contact, Motors, body_region
 
-from .scenarios import Scenario
+from .scenarios import PaperScenario
 
 REGIONS = ("head", "chest")
 CHAIN_ORDER = 3
@@ -36,7 +36,7 @@ class Rung:
 
     title: str
     fidelity: Fidelity
-    reference: Reference | None = None
+    reference: ControllerReference | None = None
 
 
 LADDER = {
@@ -53,7 +53,7 @@ LADDER = {
 """All models by name; the last is what the others are held against."""
 
 
-def motors_of(scenario: Scenario, step: Rung) -> Motors | Controller | None:
+def motors_on(scenario: PaperScenario, step: Rung) -> Motors | Controller | None:
     """Return what the motors do on a rung; K_p holds them where the paper's Eq. 5 does."""
     if step.reference is not None:
         return scenario.arm.controller(step.reference)
@@ -61,7 +61,7 @@ def motors_of(scenario: Scenario, step: Rung) -> Motors | Controller | None:
 
 
 def impact_at(
-    scenario: Scenario,
+    scenario: PaperScenario,
     rung: str,
     stiffness: float,
     region: str,
@@ -86,7 +86,7 @@ def impact_at(
         Contact(body_region(region)),
         step.fidelity,
         order=CHAIN_ORDER,
-        motors=motors_of(scenario, step),
+        motors=motors_on(scenario, step),
         horizon=horizon,
         pressing=False,
     )

@@ -10,7 +10,7 @@ from typing import get_args
 from softimpact.simulate import Decoupling
 from softimpact.studio.output import shown
 
-from .compare import Comparison, Verdict, mean_error
+from .compare import Comparison, PrintedVerdict, mean_error
 from .compute import DECOUPLED, Results
 from .ladder import DEFINITIONS, LADDER, REGIONS
 from .scenarios import SCENARIOS
@@ -50,10 +50,12 @@ is in percent of the printed number, for numbers in % in points.
 """
 
 
-def page(results: Results, comparisons: Sequence[Comparison], captions: Mapping[str, str]) -> str:
+def msm_page(
+    results: Results, comparisons: Sequence[Comparison], captions: Mapping[str, str]
+) -> str:
     """Return the report as Markdown; figures are expected beside it."""
     counts = Counter(line.verdict for line in comparisons)
-    summary = ", ".join(f"{v} {counts[v]}" for v in get_args(Verdict))
+    summary = ", ".join(f"{v} {counts[v]}" for v in get_args(PrintedVerdict))
     parts = [
         "# A reduced mass-spring-mass model of compliant robots, recomputed",
         "Jeanneau, Bégoc, Briot, J. Mechanisms Robotics 16(4), 041012, 2024: our numbers beside "

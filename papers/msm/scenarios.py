@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from softimpact.simulate import Approach, Controller, Reference
+from softimpact.simulate import Approach, Controller, ControllerReference
 from softimpact.symbolic import (
     ImpactModel,
     Robot,
@@ -26,7 +26,7 @@ scale over the robots' ranges, which tells how the paper chose them."""
 
 
 @dataclass(frozen=True)
-class Arm:
+class PaperRobot:
     """A robot of MSM with its controller and the joint stiffnesses looked at.
 
     Attributes:
@@ -47,7 +47,7 @@ class Arm:
     stiffest: float
     gravity: tuple[float, float, float]
 
-    def controller(self, reference: Reference) -> Controller:
+    def controller(self, reference: ControllerReference) -> Controller:
         """Return the robot's controller."""
         return Controller(self.proportional, self.derivative, self.integral, reference)
 
@@ -57,7 +57,7 @@ class Arm:
 
 
 @dataclass(frozen=True)
-class Scenario:
+class PaperScenario:
     """A robot in a configuration, and how it moves.
 
     Attributes:
@@ -72,7 +72,7 @@ class Scenario:
 
     name: str
     title: str
-    arm: Arm
+    arm: PaperRobot
     tip: str
     motor_angles: tuple[float, float]
     motor_rates: tuple[float, float] | None = None
@@ -96,11 +96,11 @@ class Scenario:
 
 
 @lru_cache(maxsize=64)
-def _at_rest(scenario: Scenario, stiffness: float) -> tuple[ImpactModel, Approach]:
+def _at_rest(scenario: PaperScenario, stiffness: float) -> tuple[ImpactModel, Approach]:
     arm = scenario.arm
     robot = _with_springs(arm.robot, stiffness)
     gains = drives(robot, computed_torque_gain=arm.proportional)
-    model = impact_model(robot, scenario.tip, drives_=gains, gravity=arm.gravity)
+    model = impact_model(robot, scenario.tip, drives=gains, gravity=arm.gravity)
     q = configuration_at_rest(model, scenario.motor_angles)
     n, rates = scenario.motion(model, q)
     return model, Approach(q, n, 1.0, rates)
@@ -113,19 +113,19 @@ def _with_springs(name: str, stiffness: float) -> Robot:
     return replace(robot, joints=tuple(joints))
 
 
-RR = Arm("rr", 6050.0, 121.0, 1.25e5, 5e2, 5e4, (0.0, 0.0, 0.0))
-R_MIN = Arm("rmin", 1076.0, 51.0, 9.26e3, 1e2, 1e4, (0.0, 0.0, -9.81))
+RR = PaperRobot("rr", 6050.0, 121.0, 1.25e5, 5e2, 5e4, (0.0, 0.0, 0.0))
+R_MIN = PaperRobot("rmin", 1076.0, 51.0, 9.26e3, 1e2, 1e4, (0.0, 0.0, -9.81))
 FOLDED = np.pi / 3
 AT_IMPACT = (float(np.radians(-130.6)), float(np.radians(-50.0)))
 
 SCENARIOS = {
     scenario.name: scenario
     for scenario in (
-        Scenario("a", "RR straight, end effector", RR, "P", (0.0, 0.0), (1.0, 0.0)),
-        Scenario("b", "RR straight, elbow", RR, "O3", (0.0, 0.0), (1.0, 0.0)),
-        Scenario("c", "RR folded, end effector", RR, "P", (0.0, FOLDED), (1.0, 0.0)),
-        Scenario("d", "RR folded, elbow", RR, "O3", (0.0, FOLDED), (-1.0, 0.0)),
-        Scenario("e", "R-Min, end effector", R_MIN, "P", AT_IMPACT, None, (-1.0, 0.0, 0.0)),
-        Scenario("f", "R-Min, elbow", R_MIN, "O13", AT_IMPACT, None, (-1.0, 0.0, 0.0)),
+        PaperScenario("a", "RR straight, end effector", RR, "P", (0.0, 0.0), (1.0, 0.0)),
+        PaperScenario("b", "RR straight, elbow", RR, "O3", (0.0, 0.0), (1.0, 0.0)),
+        PaperScenario("c", "RR folded, end effector", RR, "P", (0.0, FOLDED), (1.0, 0.0)),
+        PaperScenario("d", "RR folded, elbow", RR, "O3", (0.0, FOLDED), (-1.0, 0.0)),
+        PaperScenario("e", "R-Min, end effector", R_MIN, "P", AT_IMPACT, None, (-1.0, 0.0, 0.0)),
+        PaperScenario("f", "R-Min, elbow", R_MIN, "O13", AT_IMPACT, None, (-1.0, 0.0, 0.0)),
     )
 }

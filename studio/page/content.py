@@ -12,7 +12,7 @@ import numpy as np
 import softimpact
 from softimpact.codegen import region_parameters
 from softimpact.simulate.bracket import unknown_rotors
-from softimpact.simulate.tolerances import Tolerances, factors
+from softimpact.simulate.tolerances import Tolerances, error_factors
 from softimpact.simulate.trajectory import passes
 from softimpact.symbolic import (
     REGIONS,
@@ -186,7 +186,7 @@ def _motion(opened: Opened) -> dict[str, Any]:
 
 def _varied(n: int) -> dict[str, list[Any]]:
     """Return factors by which numbers may err, a row an impact; links do not vary in the page."""
-    found = factors(replace(Tolerances(), links=0.0), n, VARIED)
+    found = error_factors(replace(Tolerances(), links=0.0), n, VARIED)
     named = (
         *("rotors", "springs", "position_gains", "damping_gains"),
         *("reaction_time", "body", "law", "damping"),

@@ -66,12 +66,12 @@ class PlacedContact(ImpactModel):
         return ca.mtimes(ca.reshape(direction, 1, 3), self.jacobian(q))
 
 
-def page_package(robot: Robot, drives_: Drives) -> Package:
+def page_package(robot: Robot, drives: Drives) -> Package:
     """Return the package of a robot's page.
 
     Args:
         robot: whose tip is where it holds its payload.
-        drives_: defaults of the parameters.
+        drives: defaults of the parameters.
 
     Raises:
         InvalidValue: the robot is no open chain, or no contact is possible.
@@ -90,7 +90,7 @@ def page_package(robot: Robot, drives_: Drives) -> Package:
         functions.append(reduced_model(symbols))
     if moves_in_space(replace(at_tip, robot=robot)):
         functions += [impact_factors(symbols), directional_factor(symbols)]
-    numbers = defaults_of(robot, parameters[: -len(_placed(robot))], drives_, Payload())
+    numbers = defaults_of(robot, parameters[: -len(_placed(robot))], drives, Payload())
     return Package(
         prefix=PREFIX,
         robot=robot,

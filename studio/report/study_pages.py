@@ -8,9 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from softimpact.optimize import Study
-from softimpact.simulate.assessment import unused_of_the_file
+from softimpact.optimize.study_scenarios import contacts_of
 from softimpact.symbolic.robot.rigid import Array
 
+from ..cautions import not_permitted, study_warnings
 from ..design_report import peak_in_words, versions
 from ..output import Cell
 from .page import Page, Section, TableOfNumbers
@@ -21,7 +22,9 @@ def study_page(
     study: Study, question: str, answer: str, is_good: bool | None, sections: Sequence[Section]
 ) -> Page:
     """Return the page of a study, which ends with what it rests on."""
-    warnings = [*study.robot.warnings, *unused_of_the_file(study.model)]
+    warnings, regions = study_warnings(study), (c.region for c in contacts_of(study))
+    if is_good and any(not_permitted(regions)):
+        is_good = False
     return Page(
         question=question,
         answer=answer,

@@ -9,11 +9,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ValidationError
 
 from ..errors import InvalidValue, UnknownName
+from ..file_section import NotNegative, Positive, Section
 from .bodies import body_region
 from .contact import naming
 from .laws import Law, in_series
@@ -21,18 +22,10 @@ from .laws.named import law_from
 from .pads import PADS
 from .regions import NEWTON_PER_CM2, TISSUE_DAMPING, BodyRegion
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+_AnySection = TypeVar("_AnySection", bound=Section)
 
 
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
-
-_AnySection = TypeVar("_AnySection", bound=_Section)
-
-
-class LimitsSection(_Section):
+class LimitsSection(Section):
     """What the body may bear; what is left out is its region's."""
 
     permitted: bool | None = None
@@ -43,7 +36,7 @@ class LimitsSection(_Section):
     energy: Positive | None = None
 
 
-class BodyFile(_Section):
+class BodyFile(Section):
     """A body, as written: SI units, but pressures in N/cm² as the standard has them."""
 
     name: str
@@ -58,7 +51,7 @@ class BodyFile(_Section):
     limits: LimitsSection = LimitsSection()
 
 
-class CoverFile(_Section):
+class CoverFile(Section):
     """A cover, as written: one law, or several one behind the other."""
 
     name: str = ""

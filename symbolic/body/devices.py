@@ -11,9 +11,9 @@ import math
 
 from .pads import PADS, Pad
 from .regions import REGIONS, BodyRegion
-from .tables import rows
+from .tables import table_rows
 
-SPRINGS = tuple(1e3 * float(row["spring"]) for row in rows("devices.csv"))
+SPRINGS = tuple(1e3 * float(row["spring"]) for row in table_rows("devices.csv"))
 """K2 of the devices there are [N/m]."""
 
 HEAVIEST = max(region.effective_mass for region in REGIONS.values())

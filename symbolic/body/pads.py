@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .laws import PowerLaw
-from .tables import rows
+from .tables import table_rows
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def read_pads() -> dict[str, Pad]:
             1e-3 * float(row["thickness"]),
             PowerLaw(float(row["stiffness"])),
         )
-        for row in rows("pads.csv")
+        for row in table_rows("pads.csv")
     }
 
 

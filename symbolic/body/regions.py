@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from .laws import Law
-from .tables import number, rows
+from .tables import number, table_rows
 
 TISSUE_DAMPING = 10.0
 """Damping of the body's spring [N·s/m] (MSM §3.1.1, whose printed unit is a slip)."""
@@ -78,7 +78,7 @@ def read_regions() -> dict[str, BodyRegion]:
             energy_limit=number(row["energy"]),
             region=row["name"],
         )
-        for row in rows("regions.csv")
+        for row in table_rows("regions.csv")
     }
 
 
@@ -92,7 +92,7 @@ def read_areas(regions: dict[str, BodyRegion]) -> dict[str, BodyRegion]:
             quasi_static_pressure=number(row["pressure_quasi_static"], NEWTON_PER_CM2),
             transient_pressure=number(row["pressure_transient"], NEWTON_PER_CM2),
         )
-        for row in rows("areas.csv")
+        for row in table_rows("areas.csv")
     }
 
 

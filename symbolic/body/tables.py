@@ -11,7 +11,7 @@ DATA = files(__package__) / "data"
 """Where the tables are."""
 
 
-def rows(name: str) -> Iterator[dict[str, str]]:
+def table_rows(name: str) -> Iterator[dict[str, str]]:
     """Yield the rows of ``data/NAME`` by column."""
     text = (DATA / name).read_text(encoding="utf-8")
     yield from csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))

@@ -11,7 +11,7 @@ import casadi as ca
 from ..matrices import Matrix
 from ..robot.rigid import Array, Inertia
 from ..robot.robot import JointKind, Robot
-from .kinematics import Motion, rotate
+from .kinematics import JointMotion, rotate
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Composite:
         tensor = [a + b for a, b in zip(self.tensor, other.tensor, strict=True)]
         return Composite(self.mass + other.mass, self.first_moment + other.first_moment, tensor)
 
-    def in_parent(self, move: Motion) -> Composite:
+    def in_parent(self, move: JointMotion) -> Composite:
         """Return the same masses in the frame of the joint's parent."""
         tensor = _turned(self.tensor, move.cosine, move.sine)
         h = move.to_parent(self.first_moment)

@@ -18,16 +18,19 @@ from ..robot.joint_frames import customised
 from ..robot.rigid import Array
 from ..robot.robot import BASE, Joint, JointKind, Robot
 from .composites import Composite, bodies_of
-from .kinematics import Motion, cross, motions, require_length
+from .kinematics import JointMotion, cross, motions, require_length
 
 Gravity = Sequence[float] | Array
 """Acceleration along the base's axes [m/s²], length 3."""
+
+FixedGravity = tuple[float, float, float]
+"""The same as numbers that may be a key."""
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
 """Acceleration of gravity along the base's axes [m/s²]."""
 
 
-def _composites(robot: Robot, moves: list[Motion]) -> list[Composite]:
+def _composites(robot: Robot, moves: list[JointMotion]) -> list[Composite]:
     composites = bodies_of(robot)
     for i in reversed(range(robot.n)):
         parent = robot.joints[i].parent

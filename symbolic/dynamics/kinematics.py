@@ -17,7 +17,7 @@ from ..robot.robot import BASE, Joint, JointKind, Robot
 
 
 @dataclass(frozen=True)
-class Motion:
+class JointMotion:
     """Where a joint has moved its frame, in the frame of its parent.
 
     Attributes:
@@ -45,13 +45,13 @@ class Motion:
         return ca.vertcat(c * v[0] + s * v[1], c * v[1] - s * v[0], v[2])
 
 
-def motion(joint: Joint, coordinate: Matrix) -> Motion:
+def motion(joint: Joint, coordinate: Matrix) -> JointMotion:
     """Return a joint's motion at a coordinate."""
     R, p = joint.placement.rotation, ca.SX(joint.placement.translation)
     if joint.kind is JointKind.SLIDE:
-        return Motion(R, 1.0, 0.0, p + rotate(R, ca.vertcat(0, 0, coordinate + joint.offset)))
+        return JointMotion(R, 1.0, 0.0, p + rotate(R, ca.vertcat(0, 0, coordinate + joint.offset)))
     c, s = _cosine_and_sine(joint.offset, coordinate)
-    return Motion(R, c, s, p)
+    return JointMotion(R, c, s, p)
 
 
 def _cosine_and_sine(offset: float, angle: Matrix) -> tuple[Matrix, Matrix]:
@@ -70,7 +70,7 @@ def require_length(robot: Robot, field: str, values: Matrix) -> None:
         raise WrongLength(field, found, robot.n, robot.joint_names)
 
 
-def motions(robot: Robot, q: Matrix) -> list[Motion]:
+def motions(robot: Robot, q: Matrix) -> list[JointMotion]:
     """Return the motions of all joints at configuration q; raises WrongLength."""
     require_length(robot, "q", q)
     return [motion(joint, q[i]) for i, joint in enumerate(robot.joints)]
@@ -96,7 +96,7 @@ class FramePose:
     position: Matrix
 
 
-def poses(robot: Robot, moves: list[Motion], reference: int = BASE) -> dict[int, FramePose]:
+def poses(robot: Robot, moves: list[JointMotion], reference: int = BASE) -> dict[int, FramePose]:
     """Return the poses of the base and all joint frames in the frame of joint ``reference``."""
     known = {reference: FramePose(ca.SX.eye(3), ca.SX.zeros(3))}
     child = reference
@@ -113,7 +113,7 @@ def poses(robot: Robot, moves: list[Motion], reference: int = BASE) -> dict[int,
     return known
 
 
-def _moved(parent: FramePose, move: Motion) -> FramePose:
+def _moved(parent: FramePose, move: JointMotion) -> FramePose:
     turned = ca.mtimes(parent.rotation, ca.SX(ca.sparsify(ca.DM(move.rotation))))
     x, y, z = (ca.densify(turned[:, k]) for k in range(3))
     c, s = move.cosine, move.sine

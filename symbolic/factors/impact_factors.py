@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..dynamics.kinematics import direction_jacobian
 from ..errors import InvalidValue, SingularDirection
-from ..impact.analysis import IMMOBILE, reach
+from ..impact.analysis import IMMOBILE, stretched_length
 from ..impact.approach import unit_direction
 from ..impact.floating import BASE_COORDINATES, BASE_JOINTS
 from ..impact.impact_model import ImpactModel
@@ -157,7 +157,7 @@ def impact_factors(
     require_closed_at(model.robot, angles)
     n = unit_direction(direction)
     J = np.array(model.jacobian(angles))
-    still = IMMOBILE * reach(model)
+    still = IMMOBILE * stretched_length(model)
     if np.linalg.norm(J.T @ n) <= still:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")
     M, rotors = ca.DM(model.mass_matrix(angles)), ca.DM(model.drives.rotors)

@@ -106,7 +106,7 @@ def analyse(
     require_closed_at(model.robot, angles)
     n = unit_direction(direction)
     J = model.jacobian(angles)
-    still = IMMOBILE * reach(model)
+    still = IMMOBILE * stretched_length(model)
     if np.linalg.norm(np.array(J).T @ n) <= still:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")
     if not model.moving(law):
@@ -132,7 +132,7 @@ def analyse(
     )
 
 
-def reach(model: ImpactModel) -> float:
+def stretched_length(model: ImpactModel) -> float:
     """Return the length of the stretched arm from its first joint [m]: the size of J's entries."""
     robot, frame = model.robot, model.robot.frame(model.tip)
     path = [robot.joints[i] for i in robot.ancestors(frame.joint)]

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import InvalidValue, SingularDirection
 from ..matrices import Factorisation, Matrix
-from ..robot.rigid import Array, three_numbers
+from ..robot.rigid import Array, Indices, three_numbers
 from .impact_model import ImpactModel
 
 REACHED = 1e-6
@@ -46,6 +46,23 @@ def approach_velocity(model: ImpactModel, q: ArrayLike, direction: ArrayLike) ->
     if np.linalg.norm(J @ velocity - n) > REACHED:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")
     return velocity
+
+
+def singular_postures(model: ImpactModel, postures: Array, direction: Array) -> Indices:
+    """Return the numbers of postures in which ``approach_velocity`` raises, all looked at at once.
+
+    Args:
+        model: whose contact point moves.
+        postures: m×n.
+        direction: unit vector, length 3.
+    """
+    q = ca.SX.sym("q", model.robot.n)
+    jacobians = np.array(ca.Function("J", [q], [model.jacobian(q)])(postures.T))
+    J = jacobians.reshape(3, len(postures), -1).transpose(1, 0, 2)
+    J = J * np.array(model.actuated, dtype=float)
+    velocities = np.linalg.pinv(J, rcond=1e-9) @ direction
+    missed = np.linalg.norm((J @ velocities[:, :, None])[:, :, 0] - direction, axis=1)
+    return np.flatnonzero(missed > REACHED)
 
 
 def generalised_velocity(model: ImpactModel, link_velocity: ArrayLike) -> Array:

@@ -21,11 +21,13 @@ from numpy.typing import ArrayLike
 from ..dynamics.equations_of_motion import STANDARD_GRAVITY, Gravity, bias_torques, mass_matrix
 from ..dynamics.kinematics import FramePose, cross, frame_jacobian, frame_pose
 from ..errors import InvalidInertia, MasslessBase
+from ..former_names import renamed
 from ..matrices import Matrix
 from ..robot.plausibility import require_sound_masses
 from ..robot.rigid import Inertia, Placement
 from ..robot.robot import Joint, JointKind, Robot
-from .drives import Drives, drives
+from .drives import Drives
+from .drives import drives as drives_with
 from .impact_model import ImpactModel, impact_model
 
 BASE_COORDINATES = 6
@@ -176,8 +178,9 @@ def _free_joint(inertia: Inertia) -> tuple[Joint, ...]:
     return (*joints[:-1], replace(joints[-1], inertia=inertia))
 
 
+@renamed(drives_="drives")
 def floating_model(
-    robot: FloatingRobot, tip: str | None = None, *, drives_: Drives | None = None
+    robot: FloatingRobot, tip: str | None = None, *, drives: Drives | None = None
 ) -> ImpactModel:
     """Return the impact model of a floating robot.
 
@@ -187,9 +190,9 @@ def floating_model(
     Args:
         robot: with its base free.
         tip: contact frame; default the robot's own; raises FrameNotFound.
-        drives_: of its joints, without the base; default rigid joints with the file's armature.
+        drives: of its joints, without the base; default rigid joints with the file's armature.
     """
-    own = drives_ or drives(robot.fixed)
+    own = drives or drives_with(robot.fixed)
     none = ca.DM.zeros(BASE_COORDINATES)
     padded = Drives(
         ca.vertcat(none, own.rotors),
@@ -198,4 +201,4 @@ def floating_model(
         ca.vertcat(none, own.gains),
         own.computed_torque_gain,
     )
-    return impact_model(robot.freed, tip, drives_=padded)
+    return impact_model(robot.freed, tip, drives=padded)

@@ -15,12 +15,14 @@ from ..dynamics.equations_of_motion import Gravity, mass_matrix, stiffness_of_po
 from ..dynamics.kinematics import contact_point_jacobian, direction_jacobian
 from ..errors import InvalidValue, WrongLength
 from ..factors.contact_mobility import ContactMobility, contact_mobility
+from ..former_names import renamed
 from ..loops.loops import closed_chain, constrained_stiffness, loop_tangent
 from ..matrices import Kind, Matrix, Numbers, symmetric
 from ..robot.rigid import Array, three_numbers
 from ..robot.robot import BASE, Robot, vector_of
 from .chain import Chain, ChainEnd, chain
-from .drives import Drives, drives, require_rotors
+from .drives import Drives, require_rotors
+from .drives import drives as drives_with
 from .elastic import (
     DenseMass,
     ElasticMass,
@@ -241,11 +243,12 @@ class ImpactModel(ByContent):
         return symmetric(lambda i, j: product[i, j], product.shape[0])
 
 
+@renamed(drives_="drives")
 def impact_model(
     robot: Robot,
     tip: str | None = None,
     *,
-    drives_: Drives | None = None,
+    drives: Drives | None = None,
     gravity: Gravity = WEIGHTLESS,
 ) -> ImpactModel:
     """Return the model of a robot at rest.
@@ -253,7 +256,7 @@ def impact_model(
     Args:
         robot: any robot.
         tip: contact frame; default the robot's own.
-        drives_: rotors, springs and gains; default rigid joints with the file's armature.
+        drives: rotors, springs and gains; default rigid joints with the file's armature.
         gravity: whose curvature enters K0 [m/s²]; zero leaves it out.
 
     Raises:
@@ -269,9 +272,9 @@ def impact_model(
         raise InvalidValue("tip", f"robot '{robot.name}' has none of its own; choose of: {frames}")
     frame = robot.frame(name)
     x, y, z = three_numbers("gravity", gravity).tolist()
-    known = drives_ or drives(robot)
+    known = drives or drives_with(robot)
     if len(known.elastic) != robot.n:
-        raise WrongLength("drives_", len(known.elastic), robot.n, robot.joint_names)
+        raise WrongLength("drives", len(known.elastic), robot.n, robot.joint_names)
     for i in closed_chain(robot).dependent:
         if known.elastic[i]:
             raise InvalidValue(

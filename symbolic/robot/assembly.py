@@ -10,7 +10,7 @@ from typing import Literal
 
 from ..errors import ModelFileError, UnsupportedModel
 from .constraints import Ball, Constraint, Coupling, Loop, Through, Weld
-from .description import WORLD, Body, Description
+from .description import WORLD, Description, RigidBody
 from .rigid import Inertia, Placement
 from .robot import BASE, Frame, Joint, Robot
 
@@ -112,7 +112,7 @@ class _Assembly:
             names = ", ".join(f"'{name}'" for name in beside)
             self.warnings.append(f"free bodies beside the robot do not count: {names}")
 
-    def _add(self, i: int, body: Body) -> None:
+    def _add(self, i: int, body: RigidBody) -> None:
         """Add a body's joints, and its inertia to what carries it."""
         if i == WORLD:
             self.carriers[i] = (BASE, Placement.identity())
@@ -175,7 +175,7 @@ class _Assembly:
                 yield constraint
 
 
-def _roots(bodies: tuple[Body, ...]) -> list[int]:
+def _roots(bodies: tuple[RigidBody, ...]) -> list[int]:
     """For each body the one of its carriers that stands on the world."""
     roots = [WORLD]
     for i, body in enumerate(bodies[1:], start=1):

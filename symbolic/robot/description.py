@@ -24,7 +24,7 @@ LARGEST = 1e15
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class RigidBody:
     """A body and the joints between it and the body that carries it.
 
     Attributes:
@@ -68,7 +68,7 @@ class Description:
 
     source: str
     name: str
-    bodies: tuple[Body, ...]
+    bodies: tuple[RigidBody, ...]
     sites: tuple[Frame, ...] = ()
     constraints: tuple[Constraint, ...] = ()
     tendons: tuple[Tendon, ...] = ()

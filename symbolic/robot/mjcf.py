@@ -16,8 +16,8 @@ import numpy as np
 
 from ..errors import ModelFileError, UnknownName
 from .constraints import Ball
-from .description import Body, Description
-from .mjcf_drives import Motors, motors_of
+from .description import Description, RigidBody
+from .mjcf_drives import Actuation, actuation_of
 from .mjcf_equalities import constraints_of
 from .mjcf_inertia import Rules, body_inertias, placement, scaled, stated_inertia
 from .mjcf_joints import require_sound_joints, set_spring_dampers
@@ -167,7 +167,7 @@ class _Reader:
         keys: list[list[float]],
     ) -> None:
         self.model, self.path, self.inertias, self.keys = model, path, inertias, keys
-        self.motors: Motors = motors_of(model)
+        self.motors: Actuation = actuation_of(model)
         self.ties = constraints_of(model, self.joint_name, self.site_name, self.body_name)
         self.balls: list[Ball] = []
         self.values = self._values_of_joints()
@@ -205,7 +205,7 @@ class _Reader:
             tuple(self.warnings),
         )
 
-    def _body(self, i: int) -> Body:
+    def _body(self, i: int) -> RigidBody:
         model = self.model
         first = int(model.body_jntadr[i])
         indices = range(first, first + int(model.body_jntnum[i]))
@@ -214,7 +214,7 @@ class _Reader:
             self.warnings.append(
                 f"gravity compensation (gravcomp) of body '{self.body_name(i)}' does not count"
             )
-        return Body(
+        return RigidBody(
             self.body_name(i) if i else "",
             int(model.body_parentid[i]) if i else BASE,
             placement(model.body_pos[i], model.body_quat[i]),

@@ -39,7 +39,7 @@ class Drive:
 
 
 @dataclass
-class Motors:
+class Actuation:
     """Drives by joint, and tendons that act on several joints at once.
 
     Attributes:
@@ -59,9 +59,9 @@ class Motors:
         return drive if self.named else replace(drive, actuated=True)
 
 
-def motors_of(model: mujoco.MjModel) -> Motors:
+def actuation_of(model: mujoco.MjModel) -> Actuation:
     """Read actuators and fixed tendons of a compiled model."""
-    motors = Motors()
+    motors = Actuation()
     fixed = {i: terms for i in range(model.ntendon) if (terms := fixed_terms(model, i))}
     shared: dict[int, float] = {}  # inertia of motors on tendons of several joints
     limits: dict[int, list[float]] = {}
@@ -115,7 +115,7 @@ def _damping(model: mujoco.MjModel, actuator: int) -> float:
 
 
 def _add_motor(
-    motors: Motors,
+    motors: Actuation,
     model: mujoco.MjModel,
     i: int,
     name: str,
@@ -147,7 +147,7 @@ def _add_motor(
 
 
 def _add_motor_through_space(
-    motors: Motors,
+    motors: Actuation,
     model: mujoco.MjModel,
     i: int,
     name: str,
@@ -171,7 +171,7 @@ def _add_motor_through_space(
         limits.setdefault(joint, []).append(np.inf)
 
 
-def _servo(motors: Motors, model: mujoco.MjModel, i: int, name: str) -> tuple[float, float]:
+def _servo(motors: Actuation, model: mujoco.MjModel, i: int, name: str) -> tuple[float, float]:
     """K_p and K_d of a motor whose force is −K_p length − K_d velocity and what is commanded."""
     kind, gain = int(model.actuator_biastype[i]), int(model.actuator_gaintype[i])
     if kind == PLAIN_BIAS and gain == FIXED:
@@ -200,7 +200,7 @@ def _force_limit(model: mujoco.MjModel, i: int) -> float:
     return limit
 
 
-def _limit_joints(motors: Motors, model: mujoco.MjModel) -> None:
+def _limit_joints(motors: Actuation, model: mujoco.MjModel) -> None:
     for joint in range(model.njnt):
         if model.jnt_actfrclimited[joint]:
             limit = float(abs(model.jnt_actfrcrange[joint]).max())
@@ -210,7 +210,7 @@ def _limit_joints(motors: Motors, model: mujoco.MjModel) -> None:
 
 
 def _tendons(
-    motors: Motors,
+    motors: Actuation,
     model: mujoco.MjModel,
     fixed: dict[int, list[tuple[int, float]]],
     shared: dict[int, float],
@@ -255,7 +255,7 @@ def _tendons(
 
 
 def _add_through_space(
-    motors: Motors, model: mujoco.MjModel, i: int, name: str, number: Callable[[str], float]
+    motors: Actuation, model: mujoco.MjModel, i: int, name: str, number: Callable[[str], float]
 ) -> None:
     """Note a tendon through space that would bind or load joints; motors on it are motors'."""
     if number("damping") or number("frictionloss"):

@@ -14,6 +14,9 @@ from ..errors import InvalidValue
 
 Array = NDArray[np.float64]
 
+Indices = NDArray[np.int64]
+"""Which of many things, by their numbers."""
+
 ROTATION_NOISE = 1e-12
 """Entries of a rotation this near to -1, 0 or 1 are that number: what quaternions and roll, pitch
 and yaw leave behind must not enter the expression graph."""

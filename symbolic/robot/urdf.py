@@ -16,7 +16,7 @@ import numpy as np
 
 from ..errors import InvalidInertia, ModelFileError, UnknownName
 from .constraints import Constraint, Coupling
-from .description import WORLD, Body, Description
+from .description import WORLD, Description, RigidBody
 from .rigid import Array, Inertia, Placement, frame_along, rotation_about_z, rotation_from_axis
 from .robot import BASE, Joint, JointKind
 from .xml_file import Element
@@ -91,7 +91,7 @@ class _Reader:
             raise self._error("has no root: its joints form a ring")
         if len(roots) > 1:
             self.warnings.append(f"has {len(roots)} roots: {', '.join(roots)}")
-        bodies = [Body("", BASE, Placement.identity(), Inertia.zero())]
+        bodies = [RigidBody("", BASE, Placement.identity(), Inertia.zero())]
         bodies += self._bodies(roots, children, links)
         if len(bodies) <= len(links):
             reached = {body.name for body in bodies}
@@ -160,7 +160,7 @@ class _Reader:
         roots: list[str],
         children: Mapping[str, list[Element]],
         links: Mapping[str, Element],
-    ) -> Iterator[Body]:
+    ) -> Iterator[RigidBody]:
         """Yield links depth first, as often nested as they may be."""
         index = {"": WORLD}
         waiting: list[tuple[str, str, Element | None]] = [("", root, None) for root in roots]
@@ -175,11 +175,11 @@ class _Reader:
                 child = below.first("child")
                 waiting.append((name, str(child.get("link") if child else ""), below))
 
-    def _body(self, carrier: int, name: str, link: Element, joint: Element | None) -> Body:
+    def _body(self, carrier: int, name: str, link: Element, joint: Element | None) -> RigidBody:
         inertia = self._inertia(link, name)
         if joint is None:  # the world is the base itself and no frame of its own
             shown = "" if name == "world" else name
-            return Body(shown, carrier, Placement.identity(), inertia)
+            return RigidBody(shown, carrier, Placement.identity(), inertia)
         joint_name = str(joint.get("name"))
         where = self._origin(joint, f"joint '{joint_name}'")
         kind = joint.get("type")
@@ -187,7 +187,7 @@ class _Reader:
             raise UnknownName(f"type of joint '{joint_name}'", str(kind), TYPES)
         free = joint_name if kind == "floating" else None
         joints = tuple(self._joints(joint, joint_name, kind))
-        return Body(name, carrier, where, inertia, joints, free)
+        return RigidBody(name, carrier, where, inertia, joints, free)
 
     def _joints(self, joint: Element, name: str, kind: str) -> Iterator[Joint]:
         if kind in MOVING:

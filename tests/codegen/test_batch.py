@@ -48,7 +48,7 @@ def test_rows_are_what_one_call_says(rr: batch.CompiledPackage) -> None:
     found = rr.reflected_mass(q, n)
     assert (found["status"] == 0).all()
     robot = load_robot("rr")
-    model = impact_model(robot, drives_=drives(robot, rotor_inertia=0.5))
+    model = impact_model(robot, drives=drives(robot, rotor_inertia=0.5))
     for i in (0, 4_999, 9_999):
         right = float(model.reflected_mass(q[i], n / np.linalg.norm(n)))
         assert found["m_c"][i, ...] == pytest.approx(right, rel=1e-9)

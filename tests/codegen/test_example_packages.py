@@ -33,6 +33,6 @@ def test_packages_of_example_robots(name: str, tmp_path: Path) -> None:
     arm = arm_of(load_robot(example_urdf(name)), ARMS[name]).robot
     known = drives(arm, rotor_inertia=0.1)
     folder = tmp_path / "package"
-    manifest = generate_package(arm, folder, name="arm", drives_=known)
+    manifest = generate_package(arm, folder, name="arm", drives=known)
     package = Generated(arm, ARMS[name], folder, manifest)
     assert "all passed" in package.run_own_test("gcc", "double", tmp_path / "test")

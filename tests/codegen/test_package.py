@@ -95,7 +95,7 @@ def test_planar_robots_have_no_operational_space_inertia(
 @pytest.mark.slow
 def test_every_robot_number_comes_from_the_model(tmp_path: Path, panda: Robot) -> None:
     values = drives(panda, joint_stiffness=1234.5, rotor_inertia=0.25, position_gain=7)
-    generate_package(panda, tmp_path / "p", drives_=values, name="My Arm-2")
+    generate_package(panda, tmp_path / "p", drives=values, name="My Arm-2")
     common = (tmp_path / "p/src/my_arm_2_common.c").read_text()
     assert common.count("MY_ARM_2_R(1234.5)") == common.count("MY_ARM_2_R(0.25)") == 7
     assert ImpactModel(panda, "hand_tcp", values).size == 14

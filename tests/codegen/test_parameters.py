@@ -37,7 +37,7 @@ def make(tmp_path_factory: pytest.TempPathFactory) -> Make:
             manifest = generate_package(
                 robot,
                 folder,
-                drives_=values,
+                drives=values,
                 chain_order=2,
                 payload=payload,
                 freeze=freeze,

@@ -31,7 +31,7 @@ def test_c_program_prints_what_python_computes(tmp_path: Path) -> None:
     subprocess.run([compiler, *flags, source, *sources, "-o", program, "-lm"], check=True)
     printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout
     panda = load_robot("panda")
-    model = impact_model(panda, drives_=drives(panda, 3000.0))
+    model = impact_model(panda, drives=drives(panda, 3000.0))
     found = analyse(model, [-1.22, 0.84, 0.72, -2.41, 0.79, 1.97, -2.04], [0.0, 1.0, 0.0])
     assert printed == f"m_c = {found.m_c:.2f} kg, k_r = {found.k_r:.0f} N/m\n"
 

@@ -69,7 +69,7 @@ class Search:
         gains = 10 ** np.clip(4 + 1.5 * x[17:24], 1, 7)
         damping = min(abs(x[24]), 2) * np.sqrt(gains * PANDA.armature)
         given = drives(PANDA, springs, position_gain=gains, damping_gain=damping)
-        model = impact_model(PANDA, drives_=given)
+        model = impact_model(PANDA, drives=given)
         J = np.array(model.jacobian(q))
         if np.linalg.cond(J) > 30:
             return -1.0

@@ -138,7 +138,7 @@ def test_elastic_robots_hit_with_their_links_alone(robot: Robot, q: Array, seed:
     """m_c of the elastic robot is (nᵀΛ_F⁻¹n)⁻¹, whatever its rotors, springs and gains."""
     q, n = q[: robot.n], unit_vector(seed)
     elastic = impact_model(
-        robot, drives_=drives(robot, joint_stiffness=1e3, computed_torque_gain=77.0)
+        robot, drives=drives(robot, joint_stiffness=1e3, computed_torque_gain=77.0)
     )
     expected = 1 / (n @ np.array(elastic.free_mobility(q).matrix) @ n)
     assert float(elastic.reflected_mass(q, n)) == pytest.approx(expected, rel=1e-9)
@@ -156,7 +156,7 @@ def test_rigid_robots_hit_with_their_rotors_too(robot: Robot, q: Array, seed: in
     expected = 1 / (n @ np.array(rigid.mobility(q).matrix) @ n)
     m_c = float(rigid.reflected_mass(q, n))
     assert m_c == pytest.approx(expected, rel=1e-9)
-    elastic = impact_model(robot, drives_=drives(robot, joint_stiffness=1e3))
+    elastic = impact_model(robot, drives=drives(robot, joint_stiffness=1e3))
     assert m_c >= float(elastic.reflected_mass(q, n)) * (1 - 1e-9)
 
 
@@ -168,7 +168,7 @@ def test_stiff_springs_make_the_rigid_robot(robot: Robot, q: Array, seed: int) -
     Rigid motions are the model's slow modes: the mobility they leave at the contact is J(M+B)⁻¹Jᵀ.
     """
     q, n = q[: robot.n], unit_vector(seed)
-    stiff = impact_model(robot, drives_=drives(robot, joint_stiffness=1e9)).linear(q, ca.DM(n))
+    stiff = impact_model(robot, drives=drives(robot, joint_stiffness=1e9)).linear(q, ca.DM(n))
     squares, shares = modes(stiff)
     slow = np.argsort(squares)[: robot.n]
     rigid = float(impact_model(robot).reflected_mass(q, n))

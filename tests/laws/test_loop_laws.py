@@ -92,9 +92,9 @@ def test_rotors_of_joints_that_follow_count_as_links(mechanism: Robot) -> None:
     turning = mechanism.with_armature(np.linspace(0.05, 0.2, mechanism.n))
     chain_ = closed_chain(turning)
     springs = np.where(np.isin(np.arange(turning.n), chain_.independent), 1e3, np.inf)
-    elastic = impact_model(turning, drives_=drives(turning, springs))
+    elastic = impact_model(turning, drives=drives(turning, springs))
     behind = np.where(np.isfinite(springs), 0.0, turning.armature)
-    rigid = impact_model(turning, drives_=drives(turning, rotor_inertia=behind))
+    rigid = impact_model(turning, drives=drives(turning, rotor_inertia=behind))
     for q in near_home(mechanism, 2):
         expected = float(rigid.reflected_mass(q, N))
         assert float(elastic.reflected_mass(q, N)) == pytest.approx(expected, rel=1e-10)
@@ -142,7 +142,7 @@ def test_what_an_impact_feels_does_not_depend_on_the_independent_joints(
     for names in (CHOICES[0], choice):
         chosen = replace(robot, independent=names)
         gains = drives(chosen, position_gain=[50.0, 0.0, 0.0, 80.0, 0.0, 0.0])
-        model = impact_model(chosen, tip, drives_=gains, gravity=GRAVITY)
+        model = impact_model(chosen, tip, drives=gains, gravity=GRAVITY)
         linear = model.linear(configuration_at_rest(model, MOTORS), N)
         reduced = chain(linear, 4)
         found.append([static_stiffness(linear), *reduced.mass, *reduced.stiffness])
@@ -155,7 +155,7 @@ def test_a_slow_push_meets_k_c() -> None:
     """R-Min pushed by a small force gives way by force over k_c."""
     robot = load_robot("rmin")
     gains = drives(robot, position_gain=[50.0, 0.0, 0.0, 80.0, 0.0, 0.0])
-    model = impact_model(robot, "O13", drives_=gains, gravity=GRAVITY)
+    model = impact_model(robot, "O13", drives=gains, gravity=GRAVITY)
     rest = configuration_at_rest(model, MOTORS)
     k_c = float(static_stiffness(model.linear(rest, N)))
     force, q = 0.05, rest

@@ -38,7 +38,7 @@ def random_arm(seed: int, **options: object) -> tuple[ImpactModel, Approach]:
     """Return the Panda near an easy pose, with springs of two decades."""
     random = np.random.default_rng(seed)
     springs = 10 ** random.uniform(3, 5, 7)
-    model = impact_model(PANDA, drives_=drives(PANDA, springs, **options))  # type: ignore[arg-type]
+    model = impact_model(PANDA, drives=drives(PANDA, springs, **options))  # type: ignore[arg-type]
     q = POSE + random.uniform(-0.4, 0.4, 7)
     return model, Approach(q, random.normal(size=3), random.uniform(0.1, 1.0))
 
@@ -139,7 +139,7 @@ def test_the_peak_grows_with_speed(
 def test_a_chain_of_full_order_is_the_linearised_robot(law: MotorKind) -> None:
     springs = np.array([2e4, 1e4, 8e3, 1.5e4, 5e3, 3e3, 4e3])
     given = drives(PANDA, springs, position_gain=2e3)
-    model = impact_model(PANDA, drives_=given, gravity=EARTH)
+    model = impact_model(PANDA, drives=given, gravity=EARTH)
     approach, motors = Approach(POSE, np.array([0.4, 1.0, -0.3]), 0.6), Motors(law, 0.012)
     whole, chain = (
         simulate_impact(model, approach, CHEST, f, motors=motors, horizon=0.06, order=model.size)
@@ -177,7 +177,7 @@ def test_first_contacts_of_held_motors_are_those_of_version_0_1(
     stiffness: float, gain: float, force: float
 ) -> None:
     """Panda, README pose, chest clamped, 0.5 m/s: more gain, less force, as if they helped."""
-    model = impact_model(PANDA, drives_=drives(PANDA, stiffness, position_gain=gain))
+    model = impact_model(PANDA, drives=drives(PANDA, stiffness, position_gain=gain))
     approach = Approach(README, ALONG_Y, 0.5)
     held = simulate_impact(model, approach, CHEST, motors=Motors("held"), horizon=None)
     assert held.first_contact == pytest.approx(force, rel=1e-7)
@@ -190,7 +190,7 @@ def test_first_contacts_of_held_motors_are_those_of_version_0_1(
 
 @pytest.mark.parametrize("gain", [0.0, 1e4])
 def test_held_motors_give_no_safe_speed(panda: Robot, gain: float) -> None:
-    model = impact_model(panda, drives_=drives(panda, 1e4, position_gain=gain))
+    model = impact_model(panda, drives=drives(panda, 1e4, position_gain=gain))
     with pytest.raises(InvalidValue, match="'held' cannot give a safe speed"):
         largest_safe_speed(model, Approach(POSE, ALONG_Y, 0.5), CHEST, 100.0, motors=Motors("held"))
 
@@ -199,7 +199,7 @@ def test_a_safe_first_contact_is_safe_at_all_lower_speeds() -> None:
     """At lower speed a contact may merge with the next hit and be the harder one for it."""
     q = [-1.044873, -1.101723, 0.999723, -2.486088, 0.45017, 2.252942, 2.679557]
     approach = Approach(q, [0.848110, -0.501178, 0.171844], 0.12)
-    model, motors = impact_model(PANDA, drives_=drives(PANDA, 365.507)), Motors("free")
+    model, motors = impact_model(PANDA, drives=drives(PANDA, 365.507)), Motors("free")
     speeds = np.linspace(0.05, 0.12, 29)
     found = many_peaks(model, approach, HEAD, speeds, motors=motors, horizon=0.06).first_contact
     fall = int(np.argmin(np.diff(found)))

@@ -43,7 +43,7 @@ Case = Callable[[], tuple[ImpactModel, Approach]]
 
 def elastic_panda() -> tuple[ImpactModel, Approach]:
     robot = load_robot("panda")
-    model = impact_model(robot, drives_=drives(robot, 2e3), gravity=EARTH)
+    model = impact_model(robot, drives=drives(robot, 2e3), gravity=EARTH)
     return model, Approach(POSE, np.array([0.4, 1.0, -0.3]), 2.0)
 
 
@@ -154,7 +154,7 @@ def test_stiff_joints_hit_like_rigid_ones(panda: Robot) -> None:
     errors = [
         abs(
             simulate_impact(
-                impact_model(panda, drives_=drives(panda, stiffness)), approach, HEAD
+                impact_model(panda, drives=drives(panda, stiffness)), approach, HEAD
             ).first_contact
             / rigid
             - 1
@@ -163,7 +163,7 @@ def test_stiff_joints_hit_like_rigid_ones(panda: Robot) -> None:
     ]
     assert errors[0] > errors[1] > errors[2]
     assert errors[2] < 1e-3
-    full = impact_model(panda, drives_=drives(panda, 1e8))
+    full = impact_model(panda, drives=drives(panda, 1e8))
     slow = replace(approach, speed=1e-2)
     nearly = simulate_impact(full, slow, HEAD, "full").first_contact
     alone = simulate_impact(impact_model(panda), slow, HEAD, "one_mass").first_contact

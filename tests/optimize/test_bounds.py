@@ -140,7 +140,7 @@ def test_speeds_of_joints_count_the_gears(tmp_path: Path) -> None:
                 study.robot, joints=tuple(replace(j, speed_limit=2.0) for j in study.robot.joints)
             ),
             "tool",
-            drives_=study.model.drives,
+            drives=study.model.drives,
         ),
     )
     present, higher = (

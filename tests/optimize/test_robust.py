@@ -54,7 +54,7 @@ def simulated(found: RobustDesign, index: int, springs: Array) -> float:
     if load:
         robot = with_load(robot, found.study.model.tip, load)
     drives = found.study.model.with_springs(springs).drives
-    model = impact_model(robot, scenarios.points[one.point], drives_=drives)
+    model = impact_model(robot, scenarios.points[one.point], drives=drives)
     approach = Approach(
         found.postures[one.pose], scenarios.directions[one.direction], scenarios.speeds[one.speed]
     )

@@ -36,7 +36,7 @@ HORIZON = 0.04
 @pytest.fixture(scope="module")
 def model() -> ImpactModel:
     robot = load_robot("panda")
-    return impact_model(robot, drives_=drives(robot, joint_stiffness=1e4))
+    return impact_model(robot, drives=drives(robot, joint_stiffness=1e4))
 
 
 @pytest.fixture(scope="module")

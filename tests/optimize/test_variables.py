@@ -48,7 +48,7 @@ def simulated(study: Study, **changes: object) -> float:
     """Peak force of a robot that is built so, by SUNDIALS."""
     robot, contact = changes.get("robot", study.robot), changes.get("contact", study.contact)
     rotors = changes.get("rotors", study.robot.armature)
-    model = impact_model(robot, "tool", drives_=drives(robot, SPRINGS, rotors))  # type: ignore[arg-type]
+    model = impact_model(robot, "tool", drives=drives(robot, SPRINGS, rotors))  # type: ignore[arg-type]
     return simulate_impact(
         model,
         Approach(Q, study.direction, study.speed),

@@ -53,7 +53,7 @@ def at_rest(
     """Return a scenario's model and configuration."""
     robot = robot_with(k_s, distance)
     given = drives(robot, computed_torque_gain=gain)
-    model = impact_model(robot, TIPS[scenario], drives_=given, gravity=GRAVITY)
+    model = impact_model(robot, TIPS[scenario], drives=given, gravity=GRAVITY)
     return model, configuration_at_rest(model, MOTORS)
 
 

@@ -57,7 +57,7 @@ scenarios = pytest.mark.parametrize("scenario", SCENARIOS.values(), ids=SCENARIO
 def linear(scenario: Scenario, gain: float = COMPUTED_TORQUE_GAIN) -> LinearModel:
     """Return M0, K0 and J_c of a scenario."""
     robot = load_robot("rr")
-    model = impact_model(robot, scenario.tip, drives_=drives(robot, computed_torque_gain=gain))
+    model = impact_model(robot, scenario.tip, drives=drives(robot, computed_torque_gain=gain))
     moved = np.array(model.jacobian(scenario.q))[:, 0]  # q̇ = [1, 0, 0, 0]
     return model.linear(scenario.q, ca.DM(moved / np.linalg.norm(moved)))
 

@@ -20,7 +20,7 @@ from softimpact.papers.msm.compute import Results, compute
 from softimpact.papers.msm.figures import STYLE, draw
 from softimpact.papers.msm.ladder import LADDER
 from softimpact.papers.msm.ladder_figures import BARS
-from softimpact.papers.msm.page import page
+from softimpact.papers.msm.page import msm_page
 from softimpact.papers.msm.scenarios import RR, SCENARIOS
 
 PNG = b"\x89PNG\r\n"
@@ -64,7 +64,7 @@ def test_the_page_shows_every_number_and_figure(
     results: Results, comparisons: list[Comparison], tmp_path: Path
 ) -> None:
     captions = draw(results, tmp_path)
-    text = page(results, comparisons, captions)
+    text = msm_page(results, comparisons, captions)
     assert text.count("| input") + text.count("| agrees") + text.count("| misprint") + text.count(
         "| not deter"
     ) == len(comparisons)

@@ -13,7 +13,7 @@ from impact_cases import ALONG_Y, CHEST, HEAD, POSE, r_min
 from softimpact.simulate import Approach
 from softimpact.simulate.band import Band, impact_band, varied_peaks
 from softimpact.simulate.many import many_peaks
-from softimpact.simulate.tolerances import EXACT, Tolerances, factors, normal_sequence
+from softimpact.simulate.tolerances import EXACT, Tolerances, error_factors, normal_sequence
 from softimpact.symbolic import (
     Contact,
     Curve,
@@ -47,13 +47,13 @@ MOTORS = {
 @pytest.fixture(scope="module")
 def arm(panda: Robot) -> ImpactModel:
     given = drives(panda, 8e3, position_gain=2e3, damping_gain=20.0)
-    return impact_model(panda, drives_=given, gravity=(0.0, 0.0, -9.81))
+    return impact_model(panda, drives=given, gravity=(0.0, 0.0, -9.81))
 
 
 @pytest.fixture(scope="module")
 def plain(panda: Robot) -> ImpactModel:
     """Return the arm without gains and gravity, whose steps cost a third."""
-    return impact_model(panda, drives_=drives(panda, 8e3))
+    return impact_model(panda, drives=drives(panda, 8e3))
 
 
 def loose(contact: Contact) -> Contact:
@@ -97,7 +97,7 @@ def test_every_kind_of_robot_has_a_band(name: str, panda: Robot) -> None:
         model, approach = r_min()
     elif name == "rr":
         rr = load_robot("rr")
-        model = impact_model(rr, drives_=drives(rr, 1e3, 0.1))
+        model = impact_model(rr, drives=drives(rr, 1e3, 0.1))
         approach = Approach(np.radians([30.0, 40.0, 20.0, 30.0])[: rr.n], [1, 0, 0], 1.0)
     else:
         model, approach = impact_model(panda), APPROACH
@@ -113,7 +113,7 @@ def test_each_impact_is_that_of_a_robot_built_with_its_numbers(arm: ImpactModel,
     found = varied_peaks(
         arm, APPROACH, contact, motors=motors, tolerances=wild, horizon=SHORT, samples=40
     )
-    sampled = factors(wild, arm.robot.n, 40)
+    sampled = error_factors(wild, arm.robot.n, 40)
     # gravity's share in K0 stays with the links as they are
     still = replace(arm, gravity=(0.0, 0.0, 0.0))
     for s in (0, 17, 39):

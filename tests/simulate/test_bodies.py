@@ -111,7 +111,7 @@ def test_agrees_with_scipy(name: str) -> None:
 
 @pytest.fixture(scope="module")
 def arm(panda: Robot) -> ImpactModel:
-    return impact_model(panda, drives_=drives(panda, 1e4))
+    return impact_model(panda, drives=drives(panda, 1e4))
 
 
 HEAVY = Contact(measuring_device(75e3, PADS["sh70"], 2.0))

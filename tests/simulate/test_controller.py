@@ -17,8 +17,8 @@ from softimpact.robots import built_in_robots
 from softimpact.simulate import (
     Approach,
     Controller,
+    ControllerReference,
     ImpactHistory,
-    Reference,
     largest_safe_speed,
     simulate_impact,
 )
@@ -43,7 +43,7 @@ FOLDED = np.array([0.2, 0.0, 1.1, 0.0])
 
 def turned_by_both_motors(gain: float | None = None) -> tuple[ImpactModel, Approach]:
     robot = load_robot("rr")
-    model = impact_model(robot, "P", drives_=drives(robot, computed_torque_gain=gain))
+    model = impact_model(robot, "P", drives=drives(robot, computed_torque_gain=gain))
     rates = np.array([1.0, 0.0, 0.7, 0.0])
     moved = np.array(model.jacobian(FOLDED)) @ rates
     speed = float(np.linalg.norm(moved))
@@ -51,7 +51,7 @@ def turned_by_both_motors(gain: float | None = None) -> tuple[ImpactModel, Appro
 
 
 def elastic_panda(robot: Robot) -> tuple[ImpactModel, Approach]:
-    model = impact_model(robot, drives_=drives(robot, 5e3), gravity=(1.0, -2.0, -9.0))
+    model = impact_model(robot, drives=drives(robot, 5e3), gravity=(1.0, -2.0, -9.0))
     return model, Approach(POSE, np.array([0.5, 1.0, 0.3]), 1.0)
 
 
@@ -84,7 +84,7 @@ def forces_by_mujoco(
 
 @pytest.mark.parametrize("reference", ["moving", "held"])
 def test_controlled_rr_agrees_with_mujoco_before_and_after_the_reaction(
-    reference: Reference,
+    reference: ControllerReference,
 ) -> None:
     model, approach = turned_by_both_motors()
     controller = replace(RR, reference=reference, reaction_time=0.006)
@@ -117,7 +117,9 @@ def test_the_reaction_is_an_event() -> None:
 @pytest.mark.parametrize(
     "arm", ["rr", *(pytest.param(arm, marks=pytest.mark.slow) for arm in ("panda", "rmin"))]
 )
-def test_slow_controlled_impacts_are_linear(panda: Robot, arm: str, reference: Reference) -> None:
+def test_slow_controlled_impacts_are_linear(
+    panda: Robot, arm: str, reference: ControllerReference
+) -> None:
     cases: dict[str, Callable[[], tuple[ImpactModel, Approach]]] = {
         "rr": turned_by_both_motors,
         "rmin": r_min,
@@ -152,7 +154,7 @@ def test_proportional_control_of_a_standing_reference_is_k_p() -> None:
 
 @pytest.mark.parametrize("reference", ["moving", "held"])
 def test_a_controlled_chain_of_full_order_is_the_linear_robot(
-    panda: Robot, reference: Reference
+    panda: Robot, reference: ControllerReference
 ) -> None:
     controller = replace(RR, reference=reference)
     model, approach = elastic_panda(panda)

@@ -36,7 +36,7 @@ STRAIGHT = Approach(np.zeros(4), np.array([0.0, 1.0, 0.0]), 1.0, np.array([1.0, 
 @pytest.fixture(scope="module")
 def rr() -> ImpactModel:
     robot = load_robot("rr")
-    return impact_model(robot, "P", drives_=drives(robot, computed_torque_gain=6050.0))
+    return impact_model(robot, "P", drives=drives(robot, computed_torque_gain=6050.0))
 
 
 @pytest.mark.parametrize("fidelity", ["two_mass", "linearised"])
@@ -94,7 +94,7 @@ def test_the_unit_of_stiffness_does_not_matter(rr: ImpactModel) -> None:
 
 
 def test_springs_soft_enough_decouple_everywhere(panda: Robot) -> None:
-    model = impact_model(panda, drives_=drives(panda, 1.0))
+    model = impact_model(panda, drives=drives(panda, 1.0))
     approach = Approach(POSE, ALONG_Y, 1.0)
 
     def case(stiffness: float) -> tuple[ImpactModel, Approach]:
@@ -106,7 +106,7 @@ def test_springs_soft_enough_decouple_everywhere(panda: Robot) -> None:
 
 def test_all_springs_are_scaled(panda: Robot) -> None:
     both = replace(panda, joints=tuple(replace(joint, stiffness=7.0) for joint in panda.joints))
-    model = scaled_springs(impact_model(both, drives_=drives(both, 1e3)), 2.5)
+    model = scaled_springs(impact_model(both, drives=drives(both, 1e3)), 2.5)
     assert np.array(model.drives.springs).ravel() == pytest.approx([2500.0] * panda.n)
     assert [joint.stiffness for joint in model.robot.joints] == [17.5] * panda.n
 

@@ -62,7 +62,7 @@ def peak_by_mujoco(
 
 
 def test_panda_agrees_with_mujoco(panda: Robot) -> None:
-    model = impact_model(panda, drives_=drives(panda, 3e3))
+    model = impact_model(panda, drives=drives(panda, 3e3))
     approach = Approach(POSE, np.array([0.4, 1.0, -0.3]), 1.5)
     ours = simulate_impact(model, approach, HEAD, "full")
     linear = simulate_impact(model, approach, HEAD)
@@ -101,9 +101,9 @@ def every_kind_of_drive(robot: Robot) -> list[ImpactModel]:
     gravity = (1.0, -2.0, -9.0)
     return [
         impact_model(robot),
-        impact_model(robot, drives_=drives(robot, 1e3), gravity=gravity),
-        impact_model(robot, drives_=drives(robot, some, position_gain=1e4), gravity=gravity),
-        impact_model(robot, drives_=drives(robot, some, computed_torque_gain=6050.0)),
+        impact_model(robot, drives=drives(robot, 1e3), gravity=gravity),
+        impact_model(robot, drives=drives(robot, some, position_gain=1e4), gravity=gravity),
+        impact_model(robot, drives=drives(robot, some, computed_torque_gain=6050.0)),
     ]
 
 
@@ -126,7 +126,7 @@ def test_linearised_is_near_where_joints_need_not_rush(panda: Robot) -> None:
     errors = []
     for i, q in enumerate(configurations(panda, 20, seed=3)):
         random = np.random.default_rng(i)
-        model = impact_model(panda, drives_=drives(panda, 10 ** random.uniform(3, 5)))
+        model = impact_model(panda, drives=drives(panda, 10 ** random.uniform(3, 5)))
         n = unit_direction(random.normal(size=3))
         if np.linalg.norm(approach_velocity(model, q, n)) > 4:  # rad/s for 1 m/s
             continue
@@ -141,7 +141,7 @@ def test_linearised_is_near_where_joints_need_not_rush(panda: Robot) -> None:
 
 
 def test_turning_about_the_base_axis_changes_nothing(panda: Robot) -> None:
-    model = impact_model(panda, drives_=drives(panda, 5e3), gravity=(0.0, 0.0, -9.81))
+    model = impact_model(panda, drives=drives(panda, 5e3), gravity=(0.0, 0.0, -9.81))
     angle = 0.8
     c, s = np.cos(angle), np.sin(angle)
     here = simulate_impact(model, Approach(POSE, ALONG_Y, 1.0), HEAD, "full")

@@ -41,7 +41,7 @@ AHEAD = Approach(POSE, np.array([0.0, 1.0, 0.0]), 1.0)
 
 @pytest.fixture(scope="module")
 def arm(panda: Robot) -> ImpactModel:
-    return impact_model(panda, drives_=drives(panda, 1e4))
+    return impact_model(panda, drives=drives(panda, 1e4))
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +52,7 @@ def two_peaks() -> ImpactHistory:
 
 def straight_rr(contact: Contact, horizon: float | None) -> ImpactHistory:
     robot = load_robot("rr")
-    model = impact_model(robot, "P", drives_=drives(robot, computed_torque_gain=6050.0))
+    model = impact_model(robot, "P", drives=drives(robot, computed_torque_gain=6050.0))
     approach = Approach(np.zeros(4), np.array([0.0, 1.0, 0.0]), 1.0, np.array([1.0, 0, 0, 0]))
     return simulate_impact(model, approach, contact, motors=Motors("held"), horizon=horizon)
 
@@ -229,7 +229,7 @@ def test_bad_options_are_rejected(
 
 
 def test_an_impact_that_never_peaks_is_followed_for_two_seconds(panda: Robot) -> None:
-    heavy = impact_model(panda, drives_=drives(panda, rotor_inertia=1e9))
+    heavy = impact_model(panda, drives=drives(panda, rotor_inertia=1e9))
     found = simulate_impact(heavy, AHEAD, HEAD, horizon=None)
     assert found.first_peak is found.separation is None
     assert found.time[-1] == pytest.approx(2.0)

@@ -38,7 +38,7 @@ FOLDED = np.array([0.0, 0.0, np.pi / 3, 0.0])
 
 @pytest.fixture(scope="module")
 def arm(panda: Robot) -> ImpactModel:
-    return impact_model(panda, drives_=drives(panda, 1e4))
+    return impact_model(panda, drives=drives(panda, 1e4))
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def rr() -> ImpactModel:
 
 @pytest.mark.parametrize("gain", [None, 6050.0])
 def test_chain_of_full_order_is_the_linearised_robot(panda: Robot, gain: float | None) -> None:
-    model = impact_model(panda, drives_=drives(panda, 3e3, computed_torque_gain=gain))
+    model = impact_model(panda, drives=drives(panda, 3e3, computed_torque_gain=gain))
     for q in configurations(panda, 2, seed=8):
         approach = Approach(q, np.array([0.3, 1.0, -0.4]), 0.7)
         whole = simulate_impact(model, approach, HEAD)
@@ -75,7 +75,7 @@ def test_a_chain_keeps_its_last_spring_where_a_servo_drives_the_motors(panda: Ro
         "grounded too": {"computed_torque_gain": 500.0}
     }
     for expected, gains in driven.items():
-        model = impact_model(panda, drives_=drives(panda, 1e4, **gains))
+        model = impact_model(panda, drives=drives(panda, 1e4, **gains))
         default, free, grounded = (
             simulate_impact(
                 model, approach, CHEST, "chain", order=4, end=end, motors=motors[expected]
@@ -89,7 +89,7 @@ def test_a_chain_keeps_its_last_spring_where_a_servo_drives_the_motors(panda: Ro
 def test_stiff_springs_make_a_rigid_robot(panda: Robot) -> None:
     approach = Approach(POSE, np.array([0.0, 1.0, 0.0]), 1.0)
     rigid = simulate_impact(impact_model(panda), approach, HEAD)
-    stiff = impact_model(panda, drives_=drives(panda, 1e8))
+    stiff = impact_model(panda, drives=drives(panda, 1e8))
     assert simulate_impact(stiff, approach, HEAD).first_contact == pytest.approx(
         rigid.first_contact, rel=1e-4
     )
@@ -103,7 +103,7 @@ def test_stiff_springs_make_a_rigid_robot(panda: Robot) -> None:
 @pytest.mark.parametrize("fidelity", ["two_mass", "chain", "linearised"])
 def test_soft_springs_leave_the_links_alone(panda: Robot, fidelity: Fidelity) -> None:
     approach = Approach(POSE, np.array([0.0, 1.0, 0.0]), 1.0)
-    soft = impact_model(panda, drives_=drives(panda, 0.1))
+    soft = impact_model(panda, drives=drives(panda, 0.1))
     alone = simulate_impact(soft, approach, HEAD, "one_mass")
     assert simulate_impact(soft, approach, HEAD, fidelity).first_contact == pytest.approx(
         alone.first_contact, rel=1e-5
@@ -111,7 +111,7 @@ def test_soft_springs_leave_the_links_alone(panda: Robot, fidelity: Fidelity) ->
 
 
 def test_a_stiff_spring_joins_the_two_masses(panda: Robot) -> None:
-    stiff = impact_model(panda, drives_=drives(panda, 9e8))  # from 1e9 on it is rigid
+    stiff = impact_model(panda, drives=drives(panda, 9e8))  # from 1e9 on it is rigid
     n = unit_direction([0, 1, 0])
     reduced = stiff.reduced(POSE, n)
     expected = peak_of_one_mass(float(reduced.m_c + reduced.m_a), 1.0, HEAD)
@@ -137,7 +137,7 @@ def test_force_does_not_know_left_from_right(arm: ImpactModel, fidelity: Fidelit
 def test_force_grows_with_speed(seed: int, fidelity: Fidelity, speed: float, factor: float) -> None:
     random = np.random.default_rng(seed)
     robot = load_robot("rr")
-    model = impact_model(robot, "P", drives_=drives(robot, position_gain=random.uniform(0, 1e4)))
+    model = impact_model(robot, "P", drives=drives(robot, position_gain=random.uniform(0, 1e4)))
     q = np.array([0.0, 0.0, random.uniform(0.3, 2.8), 0.0])
     approach = Approach(q, np.append(random.normal(size=2), 0.0), speed)
     slow = simulate_impact(model, approach, HEAD, fidelity)

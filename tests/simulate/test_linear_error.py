@@ -33,7 +33,7 @@ SPEED_LIMITS = np.array([2.175] * 4 + [2.61] * 3)
 
 def test_it_is_the_change_along_the_motion(panda: Robot) -> None:
     """Against Pinocchio: the path's bend by differences, h, M and J."""
-    model, oracle = impact_model(panda, drives_=drives(panda, 1e4)), Pinocchio.of_robot(panda)
+    model, oracle = impact_model(panda, drives=drives(panda, 1e4)), Pinocchio.of_robot(panda)
     n, speed, duration, step = unit_direction([0.4, 1.0, -0.3]), 0.7, 0.03, 1e-4
     rates = speed * approach_velocity(model, POSE, n)
     x = [n @ oracle.pose(model.tip, POSE + k * step * rates).translation for k in (-1, 0, 1)]
@@ -51,7 +51,7 @@ def test_it_is_the_change_along_the_motion(panda: Robot) -> None:
 
 
 def test_it_vanishes_with_speed_and_duration(panda: Robot) -> None:
-    model, approach = impact_model(panda, drives_=drives(panda, 1e4)), Approach(POSE, ALONG_Y, 1.0)
+    model, approach = impact_model(panda, drives=drives(panda, 1e4)), Approach(POSE, ALONG_Y, 1.0)
     assert linear_error(model, approach, 0.0) == 0
     whole = linear_error(model, approach, 1e-3)
     assert whole > 0
@@ -69,7 +69,7 @@ def test_it_bounds_the_error_of_reachable_impacts(panda: Robot, count: int, seed
         given = drives(
             panda, 10 ** random.uniform(3, 5), None, gain, damping_gain=0.5 * np.sqrt(gain)
         )
-        model, n = impact_model(panda, drives_=given), unit_direction(random.normal(size=3))
+        model, n = impact_model(panda, drives=given), unit_direction(random.normal(size=3))
         fastest = float(1 / (abs(approach_velocity(model, q, n)) / SPEED_LIMITS).max())
         approach = Approach(q, n, min(random.uniform(0.1, 1.5), fastest))
         contact = (CHEST, FREE_HEAD)[random.integers(2)]
@@ -92,7 +92,7 @@ def test_it_bounds_the_error_of_reachable_impacts(panda: Robot, count: int, seed
 def test_safe_speeds_are_asked_of_the_nonlinear_robot_too(panda: Robot) -> None:
     """Where the linear model is trusted at the impact's speed, yet not at the safe one."""
     given = drives(panda, 3e3, 0.3)
-    model, n = impact_model(panda, drives_=given), unit_direction([-1, 0.4, -2])
+    model, n = impact_model(panda, drives=given), unit_direction([-1, 0.4, -2])
     contact, motors = Contact(body_region("thigh"), clamped=False), Motors("free")
     q = np.array([-0.15, 0.67, 0.06, -0.45, -0.05, 1.2, 0.19])
     slow = assess_impact(model, Approach(q, n, 0.2), contact, motors=motors, safe_speed=True)

@@ -49,7 +49,7 @@ KINDS = [
 
 def panda_with(robot: Robot, springs: object, **options: object) -> ImpactModel:
     given = drives(robot, springs, position_gain=GAINS, damping_gain=DAMPING_GAINS, **options)  # type: ignore[arg-type]
-    return impact_model(robot, drives_=given, gravity=EARTH)
+    return impact_model(robot, drives=given, gravity=EARTH)
 
 
 def damped(robot: Robot) -> Robot:
@@ -180,7 +180,7 @@ LIMIT = 25.0
 def test_full_agrees_with_mujoco(panda: Robot, kind: MotorKind) -> None:
     until, approach = 0.03, Approach(POSE, ASKEW, 1.2)
     given = drives(panda, SPRINGS, None, GAINS, damping_gain=DAMPING_GAINS, torque_limit=LIMIT)
-    model = impact_model(panda, "hand_tcp", drives_=given)
+    model = impact_model(panda, "hand_tcp", drives=given)
     theirs = moved_by_mujoco(panda, approach, until + 1e-4, driven=kind == "driven")
     motors = Motors(kind, np.inf)
     ours = simulate_impact(model, approach, HEAD, "full", motors=motors, horizon=until)

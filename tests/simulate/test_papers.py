@@ -28,7 +28,7 @@ MSM_RR = [
 def turned_by_first_motor(tip: str, q: list[float]) -> tuple[ImpactModel, Approach]:
     robot = load_robot("rr")
     model = impact_model(
-        robot, tip, drives_=drives(robot, computed_torque_gain=COMPUTED_TORQUE_GAIN)
+        robot, tip, drives=drives(robot, computed_torque_gain=COMPUTED_TORQUE_GAIN)
     )
     rates = np.array([1.0, 0.0, 0.0, 0.0])
     moved = np.array(model.jacobian(q)) @ rates

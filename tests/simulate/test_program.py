@@ -40,7 +40,7 @@ CHEST, HORIZON = Contact(body_region("chest"), clamped=False), 0.1
 @pytest.fixture(scope="module")
 def model() -> ImpactModel:
     robot = load_robot("panda")
-    return impact_model(robot, drives_=drives(robot, joint_stiffness=1e4))
+    return impact_model(robot, drives=drives(robot, joint_stiffness=1e4))
 
 
 @pytest.fixture(scope="module")

@@ -56,7 +56,7 @@ def test_they_are_those_of_the_simulator(
 ) -> None:
     motors, gains = CASES[name]
     robot = load_robot("panda")
-    model = impact_model(robot, drives_=drives(robot, joint_stiffness=stiffness, **gains))
+    model = impact_model(robot, drives=drives(robot, joint_stiffness=stiffness, **gains))
     at, speeds = samples(model, 12, seed=5)
     contact = Contact(body_region(body), clamped)
     found = SampledImpacts(model, at, contact, motors).peaks(speeds)
@@ -73,8 +73,8 @@ def test_numbers_of_the_model_may_differ_too() -> None:
     known = drives(robot, joint_stiffness=1e4)
     symbols = ca.SX.sym("p", 14)
     symbolic = replace(known, rotors=symbols[:7], springs=symbols[7:])
-    model = impact_model(robot, drives_=symbolic)
-    at, speeds = samples(impact_model(robot, drives_=known), 6, seed=2)
+    model = impact_model(robot, drives=symbolic)
+    at, speeds = samples(impact_model(robot, drives=known), 6, seed=2)
     values = np.exp(np.random.default_rng(0).uniform(-1, 1, (6, 14))) * np.repeat([0.4, 1e4], 7)
     contact, motors = Contact(body_region("hand")), Motors("driven", 0.02)
     found = SampledImpacts(model, replace(at, values=values, symbols=symbols), contact, motors)
@@ -82,13 +82,13 @@ def test_numbers_of_the_model_may_differ_too() -> None:
     for i in range(2):
         own = drives(robot, joint_stiffness=values[i, 7:], rotor_inertia=values[i, :7])
         approach = Approach(at.q[i], at.direction[i], speeds[i])
-        one = simulate_impact(impact_model(robot, drives_=own), approach, contact, motors=motors)
+        one = simulate_impact(impact_model(robot, drives=own), approach, contact, motors=motors)
         assert peaks[i] == pytest.approx(one.peak, rel=WITHIN)
 
 
 def test_speeds_may_be_asked_again() -> None:
     robot = load_robot("ur5e")
-    model = impact_model(robot, drives_=drives(robot, joint_stiffness=1e4))
+    model = impact_model(robot, drives=drives(robot, joint_stiffness=1e4))
     at, speeds = samples(model, 3, seed=1)
     impacts = SampledImpacts(model, at, Contact(body_region("chest")), Motors("driven", 0.02))
     first = impacts.peaks(speeds).peak

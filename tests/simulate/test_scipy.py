@@ -77,7 +77,7 @@ def test_agrees_with_scipy(panda: Robot, region: str, clamped: bool, case: int) 
     random = np.random.default_rng(case)
     gain = [None, 6050.0][case]
     model = impact_model(
-        panda, drives_=drives(panda, random.uniform(1e3, 3e4, 7), computed_torque_gain=gain)
+        panda, drives=drives(panda, random.uniform(1e3, 3e4, 7), computed_torque_gain=gain)
     )
     approach = Approach(q, random.normal(size=3), random.uniform(0.1, 2))
     contact = Contact(body_region(region), clamped=clamped)

@@ -30,7 +30,7 @@ def test_writes_what_the_library_writes(tmp_path: Path) -> None:
     result = run_json("generate", "rr", "--out", typed, *options)
     robot = load_robot("rr")
     gains = drives(robot, position_gain=[500, 0, 400, 0])
-    manifest = generate_package(robot, called, real="float", drives_=gains, chain_order=2)
+    manifest = generate_package(robot, called, real="float", drives=gains, chain_order=2)
     assert contents(typed) == contents(called)
     assert result["real"] == manifest.real == "float"
     assert result["chain_order"] == 2
@@ -133,7 +133,7 @@ def test_payload_and_frozen_parameters(tmp_path: Path) -> None:
     generate_package(
         load_robot("rr"),
         called,
-        drives_=drives(load_robot("rr")),
+        drives=drives(load_robot("rr")),
         chain_order=2,
         payload=Payload(2.0, (0.0, 0.0, 0.125)),
         freeze=["rotor_inertia", "payload_mass"],

@@ -114,7 +114,7 @@ def test_a_cover_of_any_law_is_known_to_c(files: tuple[Path, Path], tmp_path: Pa
 def test_what_presses_late_is_never_missed() -> None:
     tool("gcc")
     numbers = drives(PANDA, joint_stiffness=5e3)
-    model = impact_model(PANDA, drives_=numbers)
+    model = impact_model(PANDA, drives=numbers)
     package = compiled_arm(PANDA, numbers, tip="hand_tcp")
     random = np.random.default_rng(7)
     q, rate = REST + random.uniform(-0.6, 0.6, (60, 7)), random.normal(size=(60, 7))
@@ -177,7 +177,7 @@ def test_zones_that_are_none(
 
 
 def test_what_c_does_not_know_is_named() -> None:
-    elastic = impact_model(PANDA, drives_=drives(PANDA, joint_stiffness=1e4))
+    elastic = impact_model(PANDA, drives=drives(PANDA, joint_stiffness=1e4))
     chest = [Somebody(Contact(body_region("chest")))]
     ends, _ = bracket(elastic, None)
     kinds = {kind: end for kind, end in ends.items() if isinstance(end, Motors)}

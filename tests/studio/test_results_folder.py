@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from softimpact.codegen import FolderNotWritable, ForeignFolder
-from softimpact.studio.results_folder import RESULTS, replaced_folder, require_replaceable
+from softimpact.studio.results_folder import RESULTS, replaced_folder, require_replaceable_results
 
 MINE = "softimpact test"
 
@@ -78,7 +78,7 @@ def test_a_link_stays_one(tmp_path: Path) -> None:
 def test_results_of_another_command_are_foreign(tmp_path: Path) -> None:
     written(tmp_path / "out", "first", "softimpact other")
     with pytest.raises(ForeignFolder, match="no earlier results of 'softimpact test'"):
-        require_replaceable(tmp_path / "out", MINE)
+        require_replaceable_results(tmp_path / "out", MINE)
 
 
 @pytest.mark.parametrize("out", [".", "..", "", "/"])
@@ -88,4 +88,4 @@ def test_folders_in_use_are_refused_before_the_work(
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     with pytest.raises(FolderNotWritable, match="name one in it"):
-        require_replaceable(Path(out), MINE)
+        require_replaceable_results(Path(out), MINE)

@@ -36,7 +36,7 @@ def crank(kind: JointKind = JointKind.HINGE, arm: float = 0.5, height: float = 0
 @settings(max_examples=15)
 @given(arms(), st.integers(0, 999), st.floats(1e2, 1e5))
 def test_laws_of_elastic_arms(robot: Robot, seed: int, stiffness: float) -> None:
-    model = impact_model(robot, drives_=drives(robot, stiffness))
+    model = impact_model(robot, drives=drives(robot, stiffness))
     q, n = np.random.default_rng(seed).uniform(-2, 2, robot.n), unit_vector(seed)
     a = analyse(model, q, n, order=4)
     assume(a.giaf is not None)
@@ -60,7 +60,7 @@ def test_laws_of_elastic_arms(robot: Robot, seed: int, stiffness: float) -> None
 @given(robots(), st.integers(0, 999))
 def test_any_tree_of_hinges_and_slides_has_an_answer(robot: Robot, seed: int) -> None:
     chain = chain_to(robot, "tip")
-    model = impact_model(chain, drives_=drives(chain, 1e3, position_gain=1e2))
+    model = impact_model(chain, drives=drives(chain, 1e3, position_gain=1e2))
     q, n = np.random.default_rng(seed).uniform(-2, 2, chain.n), unit_vector(seed)
     try:
         a = analyse(model, q, n)
@@ -76,7 +76,7 @@ def test_any_tree_of_hinges_and_slides_has_an_answer(robot: Robot, seed: int) ->
 
 
 def test_one_held_joint_is_a_mass_on_a_spring() -> None:
-    model = impact_model(crank(), drives_=drives(crank(), position_gain=50.0))
+    model = impact_model(crank(), drives=drives(crank(), position_gain=50.0))
     a = analyse(model, [0.0], [0, 2, 0], order=5)
     mass = (2 * 0.5**2 + 0.3) / 0.5**2
     assert a.m_c == pytest.approx(mass)
@@ -88,7 +88,7 @@ def test_one_held_joint_is_a_mass_on_a_spring() -> None:
 
 
 def test_one_elastic_joint_is_two_masses() -> None:
-    a = analyse(impact_model(crank(), drives_=drives(crank(), 80.0)), [0.0], [0, 1, 0])
+    a = analyse(impact_model(crank(), drives=drives(crank(), 80.0)), [0.0], [0, 1, 0])
     assert a.m_c == pytest.approx(2.0, rel=1e-6)
     assert a.k_r == pytest.approx(80 / 0.5**2)
     assert a.chain.mass == pytest.approx((2.0, 0.3 / 0.5**2), rel=1e-6)

@@ -62,7 +62,7 @@ def test_springs_do_not_move_before_the_impact() -> None:
 
 def test_generalised_velocity_appends_resting_deflections(model: ImpactModel) -> None:
     v = np.arange(7.0)
-    elastic = impact_model(model.robot, drives_=drives(model.robot, joint_stiffness=1e4))
+    elastic = impact_model(model.robot, drives=drives(model.robot, joint_stiffness=1e4))
     assert_near(generalised_velocity(elastic, v), np.concatenate([v, np.zeros(7)]))
     assert_near(generalised_velocity(model, v), v)
     with pytest.raises(WrongLength, match="joint_velocity"):

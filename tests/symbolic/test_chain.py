@@ -154,7 +154,7 @@ def test_a_chain_is_its_own_chain() -> None:
 
 def test_chain_closes_where_springs_reach_no_further() -> None:
     """RR without gains: two springs, so three masses are exact and a fourth does not exist."""
-    model = impact_model(load_robot("rr"), drives_=drives(load_robot("rr")))
+    model = impact_model(load_robot("rr"), drives=drives(load_robot("rr")))
     linear = model.linear(np.array([0, 0, np.pi / 3, 0]), np.array([0.6, 0.8, 0]))
     found = chain(linear, 4, reorthogonalise=True)
     m, k = numbers(found)
@@ -182,12 +182,12 @@ def test_chain_of_one_joint(tmp_path: Path) -> None:
         '<site name="p" pos="1 0 0"/></body></worldbody></mujoco>'
     )
     robot = load_robot(path)
-    model = impact_model(robot, drives_=drives(robot, joint_stiffness=100.0))
+    model = impact_model(robot, drives=drives(robot, joint_stiffness=100.0))
     m, k = numbers(model.chain([0.0], ALONG_Y, 2))
     assert m == pytest.approx([1.5, 0.5])  # link and rotor, a metre from the axis
     assert k == pytest.approx([100.0, 0.0], abs=1e-9)
     assert model.chain([0.0], ALONG_Y, 2).order == 2
-    rigid = impact_model(robot, drives_=drives(robot, position_gain=80.0))
+    rigid = impact_model(robot, drives=drives(robot, position_gain=80.0))
     m, k = numbers(rigid.chain([0.0], ALONG_Y, 1))
     assert (m[0], k[0]) == (pytest.approx(2.0), pytest.approx(80.0))
 
@@ -225,7 +225,7 @@ def test_order_beyond_the_coordinates_adds_no_noise(seed: int) -> None:
 
 def test_elastic_and_dense_mass_give_the_same_chain() -> None:
     robot = load_robot("panda")
-    model = impact_model(robot, drives_=drives(robot, joint_stiffness=1e4, position_gain=500.0))
+    model = impact_model(robot, drives=drives(robot, joint_stiffness=1e4, position_gain=500.0))
     linear = model.linear(POSE, ALONG_Y)
     plain = LinearModel(DenseMass(linear.mass.matrix), linear.stiffness, linear.jacobian)
     for ours, theirs in zip(numbers(chain(linear, 3)), numbers(chain(plain, 3)), strict=True):

@@ -167,7 +167,7 @@ def test_drives_with_springs_sag_as_in_open_chains() -> None:
     robot = load_robot("panda")
     theta = np.array([0.1, 0.3, -0.2, -2.0, 0.4, 1.8, 0.6])
     given = drives(robot, joint_stiffness=2e3)
-    q = configuration_at_rest(impact_model(robot, drives_=given, gravity=GRAVITY), theta)
+    q = configuration_at_rest(impact_model(robot, drives=given, gravity=GRAVITY), theta)
     assert_near(q, link_angles_at_rest(robot, theta, np.full(7, 2e3)), 1e-9)
     assert abs(q - theta).max() > 1e-4
 

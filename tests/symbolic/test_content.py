@@ -125,7 +125,7 @@ def misses() -> dict[str, int]:
 
 def everything(robot: Robot) -> ImpactModel:
     """Ask a robot for what caches keep."""
-    model = impact_model(robot, drives_=drives(robot, 1e4, 0.1), gravity=(0, 0, -9.81))
+    model = impact_model(robot, drives=drives(robot, 1e4, 0.1), gravity=(0, 0, -9.81))
     q, n = np.linspace(0.9, -1.5, robot.n), np.array([0.0, 1.0, 0.0])
     analyse(model, q, n)
     mass_matrix(robot, ca.MX.sym("q", robot.n))

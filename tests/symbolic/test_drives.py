@@ -120,7 +120,7 @@ def test_vectors_are_flat(robot: Robot) -> None:
 def test_only_motors_that_are_not_driven_need_rotors(robot: Robot, law: MotorLaw) -> None:
     """The rotor of an elastic joint must not be zero, unless its motion is given."""
     given = drives(robot, joint_stiffness=1e3, rotor_inertia=[1, 1, 0, 1, 1, 1, 1])
-    model = impact_model(robot, drives_=given)
+    model = impact_model(robot, drives=given)
     q, n = np.full(7, 0.3), np.array([0.0, 1.0, 0.0])
     if law == "driven":
         assert model.linear(q, n, law).jacobian.shape == (1, 7)

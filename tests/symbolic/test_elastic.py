@@ -69,11 +69,11 @@ def test_rigid_joints_lose_their_deflection(robot: Robot, rigid: list[int]) -> N
     k_s = np.linspace(1e3, 7e3, 7)
     k_s[list(rigid)] = np.inf
     some = impact_model(
-        robot, drives_=drives(robot, joint_stiffness=k_s, position_gain=50.0), gravity=GRAVITY
+        robot, drives=drives(robot, joint_stiffness=k_s, position_gain=50.0), gravity=GRAVITY
     )
     all_ = impact_model(
         robot,
-        drives_=drives(robot, joint_stiffness=np.linspace(1e3, 7e3, 7), position_gain=50.0),
+        drives=drives(robot, joint_stiffness=np.linspace(1e3, 7e3, 7), position_gain=50.0),
         gravity=GRAVITY,
     )
     keep = [i for i in range(14) if i < 7 or i - 7 not in rigid]
@@ -87,12 +87,12 @@ def test_rigid_joints_lose_their_deflection(robot: Robot, rigid: list[int]) -> N
 def test_stiffness_is_springs_gains_and_gravity(robot: Robot) -> None:
     k_s, gains = np.linspace(1e3, 7e3, 7), np.linspace(10, 70, 7)
     model = impact_model(
-        robot, drives_=drives(robot, joint_stiffness=k_s, position_gain=gains), gravity=GRAVITY
+        robot, drives=drives(robot, joint_stiffness=k_s, position_gain=gains), gravity=GRAVITY
     )
     H = np.array(stiffness_of_potential(robot, POSE, GRAVITY))
     expected = np.block([[np.diag(gains) + H, H], [H, np.diag(k_s) + H]])
     assert_near(model.generalised_stiffness(POSE), expected)
-    weightless = impact_model(robot, drives_=drives(robot, joint_stiffness=k_s))
+    weightless = impact_model(robot, drives=drives(robot, joint_stiffness=k_s))
     expected = np.diag(np.concatenate([np.zeros(7), k_s]))
     assert_near(weightless.generalised_stiffness(POSE), expected)
 
@@ -103,7 +103,7 @@ def test_the_hessian_of_the_energy_is_the_stiffness(robot: Robot) -> None:
 
     k_s, gain = 2e3, 30.0
     model = impact_model(
-        robot, drives_=drives(robot, joint_stiffness=k_s, position_gain=gain), gravity=GRAVITY
+        robot, drives=drives(robot, joint_stiffness=k_s, position_gain=gain), gravity=GRAVITY
     )
 
     def gradient(z: Array) -> Array:
@@ -118,7 +118,7 @@ def test_the_hessian_of_the_energy_is_the_stiffness(robot: Robot) -> None:
 
 def test_computed_torque_gain_weighs_the_motors_inertia(robot: Robot) -> None:
     model = impact_model(
-        robot, drives_=drives(robot, joint_stiffness=1e4, computed_torque_gain=6050.0)
+        robot, drives=drives(robot, joint_stiffness=1e4, computed_torque_gain=6050.0)
     )
     block = np.array(model.generalised_stiffness(POSE))[:7, :7]
     expected = 6050 * (np.array(mass_matrix(robot, POSE)) + np.diag(robot.armature))
@@ -128,13 +128,13 @@ def test_computed_torque_gain_weighs_the_motors_inertia(robot: Robot) -> None:
 def test_passive_joints_have_no_controller() -> None:
     """RR's deflections are joints of its file: only q1 and q3 have motors."""
     robot = load_robot("rr")
-    model = impact_model(robot, drives_=drives(robot, computed_torque_gain=100.0))
+    model = impact_model(robot, drives=drives(robot, computed_torque_gain=100.0))
     q = np.array([0.0, 0.0, 1.0, 0.0])
     M = np.array(mass_matrix(robot, q))
     motors = np.diag([1.0, 0, 1, 0])
     expected = 100 * motors @ M @ motors + np.diag([0, 1e4, 0, 1e4])
     assert_near(model.generalised_stiffness(q), expected)
-    gains = impact_model(robot, drives_=drives(robot, position_gain=5.0))
+    gains = impact_model(robot, drives=drives(robot, position_gain=5.0))
     assert_near(gains.generalised_stiffness(q), np.diag([5, 1e4, 5, 1e4]))
 
 
@@ -153,9 +153,9 @@ def test_parts_without_elastic_joints() -> None:
 
 def test_reflected_mass_with_some_rigid_joints_counts_their_rotors(robot: Robot) -> None:
     k_s = np.full(7, 1e4)
-    elastic = impact_model(robot, drives_=drives(robot, joint_stiffness=k_s))
+    elastic = impact_model(robot, drives=drives(robot, joint_stiffness=k_s))
     k_s[0] = np.inf
-    some = impact_model(robot, drives_=drives(robot, joint_stiffness=k_s))
+    some = impact_model(robot, drives=drives(robot, joint_stiffness=k_s))
     rigid = impact_model(robot)
     masses = [float(m.reflected_mass(POSE, ALONG_Y)) for m in (elastic, some, rigid)]
     assert masses[0] < masses[1] < masses[2]

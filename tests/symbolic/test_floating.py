@@ -219,7 +219,7 @@ def test_impact_model_has_rotors_on_the_joints_alone() -> None:
     robot = load_robot(example_urdf("go2.urdf"))
     free = floating_robot(robot)
     given = drives(robot, rotor_inertia=0.02, joint_stiffness=100.0)
-    model = floating_model(free, "FL_foot", drives_=given)
+    model = floating_model(free, "FL_foot", drives=given)
     q = np.array(free.coordinates(np.full(12, 0.3))).ravel()
     difference = np.array(model.rotor_mass_matrix(q) - model.mass_matrix(q))
     assert_near(difference, np.diag([0.0] * 6 + [0.02] * 12))
@@ -238,7 +238,7 @@ def test_base_inertia_does_not_matter_to_a_fixed_robot() -> None:
 def test_computed_torque_turns_the_joints_alone() -> None:
     robot = load_robot("panda")
     free = floating_robot(robot, Inertia.from_center_of_mass(20.0, np.zeros(3), np.eye(3)))
-    model = floating_model(free, drives_=drives(robot, computed_torque_gain=30.0))
+    model = floating_model(free, drives=drives(robot, computed_torque_gain=30.0))
     q = free.coordinates(ca.DM(np.linspace(-0.4, 0.5, 7)))
     expected = np.zeros((13, 13))
     expected[6:, 6:] = 30.0 * np.array(model.rotor_mass_matrix(q))[6:, 6:]

@@ -28,7 +28,7 @@ def expressions() -> dict[str, Matrix]:
     """The four quantities of a 14-coordinate Panda with numeric rotors and symbolic springs."""
     robot = load_robot("panda")
     q, n, k_s = ca.SX.sym("q", 7), ca.SX.sym("n", 3), ca.SX.sym("k_s", 7)
-    model = impact_model(robot, drives_=drives(robot, joint_stiffness=1.0)).with_springs(k_s)
+    model = impact_model(robot, drives=drives(robot, joint_stiffness=1.0)).with_springs(k_s)
     triple = model.reduced(q, n)
     return {
         "mass_matrix": model.mass_matrix(q),

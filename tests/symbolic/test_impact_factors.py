@@ -100,7 +100,7 @@ def test_two_joints_in_space_are_singular_not_nan() -> None:
 def test_floating_robot_leaves_the_base_out_of_joint_results() -> None:
     robot = load_robot(example_urdf("go2.urdf"))
     free = floating_robot(robot)
-    model = floating_model(free, "FL_foot", drives_=drives(robot, rotor_inertia=0.01))
+    model = floating_model(free, "FL_foot", drives=drives(robot, rotor_inertia=0.01))
     q = np.array(free.coordinates(ca.DM(np.tile([0.0, 0.9, -1.8], 4)))).ravel()
     found = impact_factors(model, q, [0, 0, 1])
     assert found.mitigation is not None
@@ -140,7 +140,7 @@ def test_bad_configurations(model: ImpactModel) -> None:
 def test_a_planar_closed_chain_has_what_a_plane_leaves() -> None:
     robot = load_robot("rmin")
     q = close_loops(robot, closed_chain(robot).home[list(closed_chain(robot).independent)])
-    model = impact_model(robot, "P", drives_=drives(robot, rotor_inertia=0.01))
+    model = impact_model(robot, "P", drives=drives(robot, rotor_inertia=0.01))
     found = impact_factors(model, q, [1.0, 0.0, 0.0])
     assert found.rank == 2
     assert found.spatial is None

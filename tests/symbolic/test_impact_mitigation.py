@@ -40,7 +40,7 @@ def mitigation(
     """Return the impact mitigation of a robot on a base, and its H and J."""
     free = floating_robot(robot, base)
     given = None if rotors is None else drives(robot, rotor_inertia=rotors)
-    model = floating_model(free, drives_=given)
+    model = floating_model(free, drives=given)
     x = free.coordinates(ca.DM(q))
     H, J = model.rotor_mass_matrix(x), model.jacobian(x)
     return impact_mitigation(H, J), np.array(H), np.array(J)

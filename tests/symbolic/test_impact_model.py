@@ -29,14 +29,14 @@ from softimpact.symbolic import (
 def model() -> ImpactModel:
     robot = load_robot("panda")
     return impact_model(
-        robot, drives_=drives(robot, joint_stiffness=5e3, computed_torque_gain=100.0)
+        robot, drives=drives(robot, joint_stiffness=5e3, computed_torque_gain=100.0)
     )
 
 
 def test_size_counts_motors_and_deflections(model: ImpactModel) -> None:
     assert model.size == 14
     k_s = [1e3, np.inf, 1e3, 1e3, 1e3, 1e3, 1e3]
-    assert impact_model(model.robot, drives_=drives(model.robot, k_s)).size == 13
+    assert impact_model(model.robot, drives=drives(model.robot, k_s)).size == 13
     assert impact_model(model.robot).size == 7
 
 
@@ -62,8 +62,8 @@ def test_gravity_is_three_finite_numbers(panda: Robot, gravity: tuple[float, ...
 
 
 def test_drives_must_be_the_robots(panda: Robot) -> None:
-    with pytest.raises(WrongLength, match="drives_: has 4 values, but 7"):
-        impact_model(panda, drives_=drives(load_robot("rr")))
+    with pytest.raises(WrongLength, match="drives: has 4 values, but 7"):
+        impact_model(panda, drives=drives(load_robot("rr")))
 
 
 def test_reduction_of_the_panda_is_the_papers(model: ImpactModel) -> None:
@@ -80,7 +80,7 @@ def test_with_springs_replaces_only_them(model: ImpactModel) -> None:
     q = next(configurations(model.robot, 1))
     k_s = np.linspace(1e3, 2e3, 7)
     expected = drives(model.robot, k_s, computed_torque_gain=100.0)
-    other = impact_model(model.robot, drives_=expected)
+    other = impact_model(model.robot, drives=expected)
     found = model.with_springs(ca.DM(k_s))
     assert_near(found.generalised_stiffness(q), other.generalised_stiffness(q), 0)
     assert_near(found.generalised_mass(q).matrix, model.generalised_mass(q).matrix, 0)
@@ -102,3 +102,10 @@ def test_symbols_give_the_same_numbers(model: ImpactModel, kind: Matrix) -> None
     found = ca.Function("f", [x, d, k], all_of(x, d, k))(q, n, k_s)
     for ours, theirs in zip(found, all_of(ca.DM(q), ca.DM(n), ca.DM(k_s)), strict=True):
         assert_near(ours, theirs, 1e-11)
+
+
+def test_programs_for_0_1_0_still_name_drives_as_they_did(panda: Robot) -> None:
+    given = drives(panda, 3e3)
+    with pytest.warns(DeprecationWarning, match=r"impact_model\(drives_=…\) is drives= now"):
+        former = impact_model(panda, **{"drives_": given})  # type: ignore[arg-type]
+    assert former == impact_model(panda, drives=given)

@@ -271,8 +271,8 @@ def test_a_spring_behind_the_motor_is_a_joint_more(tmp_path: Path) -> None:
     same = drives(modelled, position_gain=[30.0, 0.0, 0.0, 0.0])
     q = close_loops(plain, [1.1])
     n = ca.DM([0.6, 0.8, 0.0])
-    ours = impact_model(plain, drives_=given, gravity=GRAVITY).linear(q, n)
-    theirs = impact_model(modelled, drives_=same, gravity=GRAVITY).linear([1.1, 0.0, *q[1:]], n)
+    ours = impact_model(plain, drives=given, gravity=GRAVITY).linear(q, n)
+    theirs = impact_model(modelled, drives=same, gravity=GRAVITY).linear([1.1, 0.0, *q[1:]], n)
     assert_near(ours.mass.matrix, theirs.mass.matrix, 1e-7)
     assert_near(ours.stiffness, theirs.stiffness, 1e-9)
     assert_near(ours.jacobian, theirs.jacobian, 1e-9)
@@ -281,7 +281,7 @@ def test_a_spring_behind_the_motor_is_a_joint_more(tmp_path: Path) -> None:
 def test_computed_torque_gains_follow_the_motors_inertia() -> None:
     robot = load_robot("rmin")
     q = closed_chain(robot).home
-    held = impact_model(robot, drives_=drives(robot, computed_torque_gain=1076.0))
+    held = impact_model(robot, drives=drives(robot, computed_torque_gain=1076.0))
     free = impact_model(robot)
     added = np.array(held.generalised_stiffness(q) - free.generalised_stiffness(q))
     M0 = np.array(free.generalised_mass(q).matrix)
@@ -372,4 +372,4 @@ def test_elastic_joints_must_be_independent() -> None:
     robot = load_robot("rmin").with_armature(0.1 * np.ones(6))
     stiffness = [np.inf, 100.0, np.inf, np.inf, np.inf, np.inf]
     with pytest.raises(InvalidValue, match="'q12' follows from others through a loop"):
-        impact_model(robot, drives_=drives(robot, joint_stiffness=stiffness))
+        impact_model(robot, drives=drives(robot, joint_stiffness=stiffness))

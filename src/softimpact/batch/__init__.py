@@ -14,10 +14,11 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal
 
-from softimpact.symbolic import Drives, InvalidValue, Robot, chain_to, drives, load_robot
+from softimpact.codegen.manifest import Real
+from softimpact.symbolic import Drives, InvalidValue, Robot, chain_to, load_robot
 from softimpact.symbolic.impact.drives import PerJoint
+from softimpact.symbolic.impact.drives import drives as drives_with
 
 from .build import CompilerFailed, NoCompiler, prepared
 from .calls import Arrays, CompiledPackage
@@ -31,7 +32,7 @@ def compiled(
     tip: str | None = None,
     end: str | None = None,
     points: Mapping[str, str] | Sequence[str] | None = None,
-    real: Literal["double", "float"] = "double",
+    real: Real = "double",
     joint_stiffness: PerJoint | None = None,
     rotor_inertia: PerJoint | None = None,
     position_gain: PerJoint | None = None,
@@ -61,17 +62,17 @@ def compiled(
         raise InvalidValue("tip", f"{model} names no contact frame; name one")
     arm = chain_to(robot, end or str(contact))
     given = (joint_stiffness, rotor_inertia, position_gain)
-    known = None if all(x is None for x in given) else drives(arm, *given)
+    known = None if all(x is None for x in given) else drives_with(arm, *given)
     return compiled_arm(arm, known, tip=contact or end, points=points, real=real, threads=threads)
 
 
 def compiled_arm(
     arm: Robot,
-    drives_: Drives | None = None,
+    drives: Drives | None = None,
     *,
     tip: str | None = None,
     points: Mapping[str, str] | Sequence[str] | None = None,
-    real: Literal["double", "float"] = "double",
+    real: Real = "double",
     gravity: tuple[float, float, float] | None = None,
     threads: int | None = None,
 ) -> CompiledPackage:
@@ -79,7 +80,7 @@ def compiled_arm(
 
     Args:
         arm: all of its joints are moved.
-        drives_: defaults of the parameters; the file's unless given.
+        drives: defaults of the parameters; the file's unless given.
         tip: contact frame; default the arm's own.
         points: as ``compiled``, and what follows.
         real: number type.
@@ -94,7 +95,7 @@ def compiled_arm(
         raise InvalidValue("points", "takes a list of frames, or frames by name")
     if points is not None and not isinstance(points, Mapping):
         points = {f"point_{i}": frame for i, frame in enumerate(points, 1)}
-    sources = prepared(arm, str(tip or arm.tip), real, drives_, dict(points or {}), gravity)
+    sources = prepared(arm, str(tip or arm.tip), real, drives, dict(points or {}), gravity)
     return CompiledPackage(sources, threads or _processors())
 
 

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 
 import softimpact
 from softimpact.toolchain import c_compiler, cache_folder
+from softimpact.symbolic.dynamics.equations_of_motion import FixedGravity
 from softimpact.symbolic import Drives, Robot, SoftImpactError
 
 if TYPE_CHECKING:
@@ -121,16 +122,13 @@ class Sources:
         raise CompilerFailed(self.compiler[0], reason.strip())
 
 
-Gravity = tuple[float, float, float]
-
-
 def prepared(
     robot: Robot,
     tip: str,
     real: Real,
     drives: Drives | None,
     points: Mapping[str, str],
-    gravity: Gravity | None = None,
+    gravity: FixedGravity | None = None,
 ) -> Sources:
     """Return the sources of a robot's package, generated if they are not in the cache.
 
@@ -199,7 +197,7 @@ def _generate(
     real: Real,
     drives: Drives | None,
     points: Mapping[str, str],
-    gravity: Gravity | None,
+    gravity: FixedGravity | None,
 ) -> None:
     """Write a package's sources; whoever comes first wins."""
     from softimpact.codegen.batch_source import batch_sources
@@ -211,7 +209,7 @@ def _generate(
         tip=tip,
         real=real,
         name=PREFIX,
-        drives_=drives,
+        drives=drives,
         gravity=gravity,
         points=points,
         verified=False,

@@ -19,7 +19,7 @@ from softimpact.symbolic.body.verdict import limits_of
 from .build import PREFIX, Sources
 
 if TYPE_CHECKING:
-    from softimpact.codegen.interface import Entry, Interface, Variable
+    from softimpact.codegen.interface import Entry, Interface, CVariable
 
 Arrays = dict[str, NDArray[Any]]
 """Results by name, one row a call, and ``status``."""
@@ -171,7 +171,7 @@ class CompiledPackage:
 
         return np.dtype(NUMPY[self.sources.real if type_ == "real" else type_])
 
-    def _rows(self, a: Variable, values: Any) -> NDArray[Any]:
+    def _rows(self, a: CVariable, values: Any) -> NDArray[Any]:
         width = int(np.prod([size or 1 for size in a.shape]))
         array = np.ascontiguousarray(values, dtype=self._kind(a.type))
         rows = array.reshape(-1, 1) if width == 1 else np.atleast_2d(array)
@@ -217,7 +217,7 @@ class CompiledPackage:
             given["motors"] = kinds[given["motors"]]
         return _filled(self._defaults, given, "parameters")
 
-    def _results(self, written: Variable, count: int) -> tuple[NDArray[Any], Arrays]:
+    def _results(self, written: CVariable, count: int) -> tuple[NDArray[Any], Arrays]:
         """Return room for results, and how it is seen by name."""
         if written.type not in self.interface.structs:
             sizes = [size or 1 for size in written.shape]

@@ -14,7 +14,7 @@ from ...errors import InvalidValue
 from ...matrices import Matrix
 from ...robot.rigid import Array
 from .law import Law
-from .points import Points
+from .points import CubicPoints
 
 SOLID = 1e8
 """Stiffness [N/m] that is as good as solid: a hundred times that of skin under 500 N."""
@@ -55,11 +55,11 @@ class Curve(Law):
         return self.points.force(depth)
 
     @property
-    def points(self) -> Points:
+    def points(self) -> CubicPoints:
         """The points with their slopes."""
         depth, force = np.array(self.depths), np.array(self.forces)
         slopes = monotone_slopes(depth, force)
-        return Points(depth, force, slopes, slopes, max(SOLID, float(slopes[-1])))
+        return CubicPoints(depth, force, slopes, slopes, max(SOLID, float(slopes[-1])))
 
     def check(self) -> None:
         """Raise InvalidValue if the points are not a law."""

@@ -15,7 +15,7 @@ from ...robot.rigid import Array
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
+class CubicPoints:
     """Points of a law and slopes on both sides of each, joined by cubics.
 
     Attributes:

@@ -15,7 +15,7 @@ from ...matrices import Matrix
 from ...robot.rigid import Array
 from .curve import Curve
 from .law import Law
-from .points import Points
+from .points import CubicPoints
 from .power import PowerLaw
 
 LEAST_FORCE = 1e-4
@@ -95,7 +95,7 @@ def in_series(*laws: Law) -> Law:
     return parts[0] if len(parts) == 1 else Series(parts)
 
 
-def points_of(law: Law) -> Points:
+def points_of(law: Law) -> CubicPoints:
     """Return the points through which a law goes: a curve's own, any other's sampled."""
     if isinstance(law, Curve):
         return law.points
@@ -103,7 +103,7 @@ def points_of(law: Law) -> Points:
 
 
 @lru_cache(maxsize=64)
-def _sampled(laws: tuple[Law, ...]) -> Points:
+def _sampled(laws: tuple[Law, ...]) -> CubicPoints:
     decades = np.log10(MOST_FORCE / LEAST_FORCE)
     forces = np.geomspace(LEAST_FORCE, MOST_FORCE, round(START * decades) + 1)
     corners = [f for law in laws for f in getattr(law, "forces", ())]
@@ -122,13 +122,13 @@ def _sampled(laws: tuple[Law, ...]) -> Points:
     return points
 
 
-def _rising(depth: Array, force: Array, before: Array, after: Array) -> Points:
+def _rising(depth: Array, force: Array, before: Array, after: Array) -> CubicPoints:
     """Return points with 0 in front, and slopes that keep a cubic through them rising."""
     depth, force, before, after = (np.append(0.0, part) for part in (depth, force, before, after))
     steepest = 3 * np.diff(force) / np.diff(depth)  # Fritsch and Carlson
     before[1:] = np.minimum(before[1:], steepest)
     after[:-1] = np.minimum(after[:-1], steepest)
-    return Points(depth, force, before, after, float(after[-1]))
+    return CubicPoints(depth, force, before, after, float(after[-1]))
 
 
 def _depths(laws: tuple[Law, ...], forces: Array) -> Array:

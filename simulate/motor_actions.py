@@ -36,7 +36,7 @@ class MotorSide:
 
 
 @dataclass(frozen=True, eq=False)
-class Law:
+class MotorAction:
     """What motors do (SX).
 
     Attributes:
@@ -54,22 +54,22 @@ class Law:
     memory_rate: Matrix = field(default_factory=lambda: ca.SX(0, 1))
 
 
-LawBuilder = Callable[[MotorSide, Matrix], Law]
+MotorActionBuilder = Callable[[MotorSide, Matrix], MotorAction]
 """From the motors and the torques at first touch to a law."""
 
 
-def free(motors: MotorSide, at_touch: Matrix) -> Law:
+def free(motors: MotorSide, at_touch: Matrix) -> MotorAction:
     """No torque changes."""
-    return Law(0 * motors.moved, ca.SX(0, 1))
+    return MotorAction(0 * motors.moved, ca.SX(0, 1))
 
 
-def held(motors: MotorSide, at_touch: Matrix) -> Law:
+def held(motors: MotorSide, at_touch: Matrix) -> MotorAction:
     """Constant K_p hold the motors where they were at first touch; parameters are its entries."""
     gains = ca.SX.sym("K_p", *motors.inertia.shape)
-    return Law(-ca.mtimes(gains, motors.moved), ca.vec(gains))
+    return MotorAction(-ca.mtimes(gains, motors.moved), ca.vec(gains))
 
 
-def servo(motors: MotorSide, at_touch: Matrix) -> Law:
+def servo(motors: MotorSide, at_touch: Matrix) -> MotorAction:
     """K_p and K_d on the deviation from a reference that moves on; torques saturate.
 
     Parameters are K_p (n×n), K_d, the limits and the reference's speed.
@@ -79,7 +79,7 @@ def servo(motors: MotorSide, at_touch: Matrix) -> Law:
     damping, limit, wanted_speed = (ca.SX.sym(name, n) for name in ("K_d", "limit", "dw"))
     wanted = ca.SX.sym("w", n)
     asked = ca.mtimes(gains, wanted - motors.moved) + damping * (wanted_speed - motors.speed)
-    return Law(
+    return MotorAction(
         torque=ca.fmax(ca.fmin(asked, limit), -limit),
         parameters=ca.vertcat(ca.vec(gains), damping, limit, wanted_speed),
         memory=wanted,
@@ -87,13 +87,13 @@ def servo(motors: MotorSide, at_touch: Matrix) -> Law:
     )
 
 
-def prescribed(motors: MotorSide, at_touch: Matrix) -> Law:
+def prescribed(motors: MotorSide, at_touch: Matrix) -> MotorAction:
     """The motors' accelerations are parameters: zero if they are driven or have stopped."""
     acceleration = ca.SX.sym("a", int(motors.moved.numel()))
-    return Law(0 * motors.moved, acceleration, acceleration)
+    return MotorAction(0 * motors.moved, acceleration, acceleration)
 
 
-def computed_torque(motors: MotorSide, at_touch: Matrix) -> Law:
+def computed_torque(motors: MotorSide, at_touch: Matrix) -> MotorAction:
     """Computed torque with PID in the active space (MSM §3.1.3); see ``Controller``.
 
     Parameters are k_p, k_d, k_i, whether the robot has not reacted yet, and the reference's speed.
@@ -106,7 +106,7 @@ def computed_torque(motors: MotorSide, at_touch: Matrix) -> Law:
     pid = ca.mtimes(motors.inertia[A, A], acceleration)
     torque = ca.SX(-at_touch)
     torque[A] += motors.potential[A] + follows * (pid + motors.coriolis[A])
-    return Law(
+    return MotorAction(
         torque=torque,
         parameters=ca.vertcat(k_p, k_d, k_i, follows, wanted_speed),
         memory=ca.vertcat(wanted, summed),
