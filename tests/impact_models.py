@@ -21,4 +21,4 @@ def model_of(compiled: Impacts, sample: Sample) -> ImpactModel:
         ca.DM(named["position_gain"]),
         damping_gains=ca.DM(named["damping_gain"]),
     )
-    return impact_model(robot, compiled.package.tip, drives_=known)
+    return impact_model(robot, compiled.package.tip, drives=known)

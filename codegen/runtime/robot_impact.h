@@ -105,11 +105,14 @@ typedef struct {
 #define ROBOT_LED 0
 #define ROBOT_LOOSE 1
 
+typedef struct robot_watch robot_watch;
+
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
     bool rough; /* longer steps do */
     robot_real stop_above; /* force after whose passing the rest does not matter, N */
+    robot_watch *watch; /* who sees each step and ends the impact, or NULL; robot_state.h */
 } robot_budget;
 
 typedef struct {

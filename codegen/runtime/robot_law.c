@@ -9,18 +9,18 @@
 #include "robot_impact.h"
 
 /* Halvings of a force that is only a first guess. */
-#define HALVINGS 16
+#define FORCE_HALVINGS 16
 
 /* What a sum of depth and force, each times a number, does from a point of a law to the next. */
 typedef struct {
     robot_real start, rise, bend;
-} course;
+} law_course;
 
-static course course_of(const robot_region *region, int i, robot_real hold, robot_real soft)
+static law_course course_of(const robot_region *region, int i, robot_real hold, robot_real soft)
 {
     const robot_law_point *const point = &region->law[i];
     const robot_real knee = hold*(point->knee_depth - point->depth) + soft*(point->knee_force - point->force);
-    course c = {hold*point->depth + soft*point->force, knee, ROBOT_R(0.0)};
+    law_course c = {hold*point->depth + soft*point->force, knee, ROBOT_R(0.0)};
     if (i + 1 < region->law_points) {
         const robot_law_point *const next = &region->law[i + 1];
         c.rise = ROBOT_R(2.0)*knee;
@@ -30,7 +30,7 @@ static course course_of(const robot_region *region, int i, robot_real hold, robo
 }
 
 /* The piece in which such a sum, which rises, is `sum`, and where in it. */
-static int find(const robot_region *region, robot_real hold, robot_real soft, robot_real sum, robot_real *t)
+static int piece_of(const robot_region *region, robot_real hold, robot_real soft, robot_real sum, robot_real *t)
 {
     int low = 0;
     int high = region->law_points;
@@ -43,7 +43,7 @@ static int find(const robot_region *region, robot_real hold, robot_real soft, ro
             high = middle;
         }
     }
-    const course c = course_of(region, low, hold, soft);
+    const law_course c = course_of(region, low, hold, soft);
     const robot_real rest = ROBOT_FMAX(sum - c.start, ROBOT_R(0.0));
     const robot_real square = ROBOT_FMAX(c.rise*c.rise + ROBOT_R(4.0)*c.bend*rest, ROBOT_R(0.0));
     const robot_real both = c.rise + ROBOT_SQRT(square);
@@ -51,7 +51,7 @@ static int find(const robot_region *region, robot_real hold, robot_real soft, ro
     return low;
 }
 
-static robot_real at(course c, robot_real t)
+static robot_real value_at(law_course c, robot_real t)
 {
     return c.start + t*(c.rise + t*c.bend);
 }
@@ -61,9 +61,9 @@ robot_real robot_law_press(const robot_region *region, robot_real hold, robot_re
 {
     robot_real t;
     const robot_real yields = ROBOT_FMAX(soft, ROBOT_R(0.0));
-    const int i = find(region, hold, yields, pressed, &t);
-    *depth = at(course_of(region, i, ROBOT_R(1.0), ROBOT_R(0.0)), t);
-    return at(course_of(region, i, ROBOT_R(0.0), ROBOT_R(1.0)), t);
+    const int i = piece_of(region, hold, yields, pressed, &t);
+    *depth = value_at(course_of(region, i, ROBOT_R(1.0), ROBOT_R(0.0)), t);
+    return value_at(course_of(region, i, ROBOT_R(0.0), ROBOT_R(1.0)), t);
 }
 
 robot_real robot_law_depth(const robot_region *region, robot_real force)
@@ -77,7 +77,7 @@ robot_real robot_law_depth(const robot_region *region, robot_real force)
 }
 
 /* Twice the work from t = 0 on: of 2 f d'. */
-static robot_real twice_work(course depth, course force, robot_real t)
+static robot_real twice_work(law_course depth, law_course force, robot_real t)
 {
     const robot_real third = ROBOT_R(1.0)/ROBOT_R(3.0);
     const robot_real level = force.start*depth.rise;
@@ -94,7 +94,7 @@ robot_real robot_law_twice_work(const robot_region *region, robot_real force)
     }
     robot_real t;
     robot_real sum = ROBOT_R(0.0);
-    const int last = find(region, ROBOT_R(0.0), ROBOT_R(1.0), force, &t);
+    const int last = piece_of(region, ROBOT_R(0.0), ROBOT_R(1.0), force, &t);
     for (int i = 0; i <= last; ++i) {
         sum += twice_work(course_of(region, i, ROBOT_R(1.0), ROBOT_R(0.0)),
             course_of(region, i, ROBOT_R(0.0), ROBOT_R(1.0)), i < last ? ROBOT_R(1.0) : t);
@@ -163,7 +163,7 @@ robot_real robot_two_body_force(const robot_region *region, robot_real mobility,
     }
     robot_real low = ROBOT_R(0.0);
     robot_real high = spring;
-    for (int k = 0; k < HALVINGS; ++k) {
+    for (int k = 0; k < FORCE_HALVINGS; ++k) {
         const robot_real middle = ROBOT_R(0.5)*(low + high);
         if (robot_two_body_speed(region, mobility, middle) > speed) {
             high = middle;

@@ -1,20 +1,16 @@
 /* SPDX-License-Identifier: 0BSD */
-/*
- * What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits.
- *
- * The steps are those of robot_run.c, without its end as soon as no peak can come: here the rest counts.
- */
-#define robot_impact_run robot_impact_run_on /* nobody calls it */
-#include "robot_run.c"
-#undef robot_impact_run
+/* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
+#include "robot_state.h"
 
 /* When the quasi-static limit takes over from the transient one, and until when it is looked, s. */
 #define LATE ROBOT_R(0.5)
 #define PRESSED_UNTIL ROBOT_R(0.6)
 /* Share of a limit up to which it counts as kept, as for peaks. */
 #define PRESSED_KEPT ROBOT_R(0.995)
+/* Steps after which it is looked whether the rest matters. */
+#define LOOKS_LATE 2
 /* Halvings of a speed that presses too hard. */
-#define HALVINGS 14
+#define SLOWER 14
 #define LEAST_SPEED ROBOT_R(1e-6) /* of a contact point that does not rest, m/s */
 
 /* An impact that is followed until 0.6 s. */
@@ -22,74 +18,56 @@ typedef struct {
     robot_params p;
     robot_impact impact;
     robot_budget budget;
+    robot_watch watch;
     bool bounded; /* some force is a bound */
-} pressing;
+} robot_pressing;
 
-/* Largest force from LATE on in what is left of a phase; false if the steps do not do. */
-static bool walk(robot_state *s, robot_real matters, robot_budget *budget, robot_peak *late, bool *over)
+/* Notes the largest force from LATE on: nodes, tops between them, and the force at LATE itself. */
+static bool pass(const robot_state *s, robot_watch *watch)
 {
-    const robot_real bends = s->impact->smooth*BENDS;
-    const robot_real depth = robot_law_depth(s->impact->region, matters);
-    robot_peak early = {ROBOT_R(0.0), ROBOT_R(0.0), 1, 1, false};
-    robot_trial t;
-    while (s->ticks > 0 && !*over) {
-        if (budget->steps <= 0) {
-            return false;
-        }
-        --budget->steps;
-        robot_peak *const peak = s->time >= LATE ? late : &early;
-        const robot_real before = s->f;
-        robot_glide(s, &t);
-        const bool taken = s->touching ? step_pressed(s, &t, bends, SHORTEST, peak)
-            : step_apart(s, &t, SHORTEST, peak);
-        if (taken && s->phase->damped) {
-            robot_damp(s->phase, s->speed, ROBOT_R(0.5)*s->h, s->rate);
-        }
-        if (taken && s->past > 0 && s->time >= LATE) {
-            const robot_real since = s->time - LATE; /* the force at LATE itself, if that is in this step */
-            const robot_real share = ROBOT_FMIN(since/s->h, ROBOT_R(1.0));
-            late->force = ROBOT_FMAX(late->force, share*before + (ROBOT_R(1.0) - share)*s->f);
-            late->force = ROBOT_FMAX(late->force, s->f);
-        }
-        if (taken && s->f < matters && s->past % LOOKS == 0) {
-            robot_state asked = *s;
-            asked.depth = depth;
-            *over = robot_is_settled(&asked, matters, ROBOT_R(1.0));
+    if (s->time >= LATE) {
+        const robot_real share = ROBOT_FMIN((s->time - LATE)/s->h, ROBOT_R(1.0));
+        const robot_real then = share*watch->last + (ROBOT_R(1.0) - share)*s->f;
+        const robot_real up = watch->last - watch->before;
+        const robot_real down = watch->last - s->f;
+        watch->late = ROBOT_FMAX(watch->late, ROBOT_FMAX(then, s->f));
+        if (s->past > 1 && up >= ROBOT_R(0.0) && down > ROBOT_R(0.0)) {
+            const robot_real bend = (up/s->h_before + down/s->h)/(s->h + s->h_before);
+            const robot_real slope = up/s->h_before - bend*s->h_before;
+            watch->late = ROBOT_FMAX(watch->late, watch->last + ROBOT_R(0.25)*slope*slope/bend);
         }
     }
-    return true;
+    watch->before = watch->last;
+    watch->last = s->f;
+    return s->f < watch->matters && s->past % LOOKS_LATE == 0
+        && robot_is_settled(s, watch->matters, watch->depth, ROBOT_R(1.0));
 }
 
 /*
  * Largest force from LATE on; less than `matters`, or nothing, if it is proven that none exceeds that. The
  * largest of numbers where that is not known.
  */
-static robot_real pressed_by(pressing *p, robot_real speed, robot_real matters)
+static robot_real pressed_by(robot_pressing *k, robot_real speed, robot_real matters)
 {
-    robot_impact *const impact = &p->impact;
-    robot_peak late = {ROBOT_R(0.0), ROBOT_R(0.0), 1, 1, false};
-    robot_state s;
-    bool over = false;
-    start(impact, speed, false, &s);
-    for (int k = impact->first; k <= impact->last && !over; ++k) {
-        if (k > impact->first) {
-            robot_impact_let_go(impact);
-            if (impact->status != ROBOT_OK) {
-                return ROBOT_REAL_MAX;
-            }
-            robot_release(&s);
-        }
-        if (impact->phase[k].blurred || !walk(&s, matters, &p->budget, &late, &over)) {
-            const robot_real bound = robot_bound(impact);
-            p->bounded = true;
-            return bound > ROBOT_R(0.0) ? bound*speed : ROBOT_REAL_MAX;
-        }
+    robot_peak peak;
+    k->watch.pass = pass;
+    k->watch.matters = matters;
+    k->watch.depth = robot_law_depth(k->impact.region, matters);
+    k->watch.late = ROBOT_R(0.0);
+    k->watch.before = ROBOT_R(0.0);
+    k->watch.last = ROBOT_R(0.0);
+    k->budget.watch = &k->watch;
+    robot_impact_run(&k->impact, speed, &k->budget, &peak);
+    if (peak.ended) {
+        return k->watch.late;
     }
-    return late.force;
+    const robot_real bound = k->impact.status == ROBOT_OK ? robot_bound(&k->impact) : ROBOT_R(0.0);
+    k->bounded = true;
+    return bound > ROBOT_R(0.0) ? bound*speed : ROBOT_REAL_MAX;
 }
 
 /* Whether what presses keeps a limit at a speed, by any motors; false where that is not known. */
-static bool keeps(pressing *k, const robot_region *region, robot_real speed, robot_real limit)
+static bool keeps(robot_pressing *k, const robot_region *region, robot_real speed, robot_real limit)
 {
     int first;
     int last;
@@ -102,25 +80,26 @@ static bool keeps(pressing *k, const robot_region *region, robot_real speed, rob
     return kept;
 }
 
-static void prepare_pressing(const robot_params *p, pressing *k)
+static void prepare_pressing(const robot_params *p, robot_pressing *k)
 {
     k->p = *p;
     k->p.horizon = ROBOT_FMAX(ROBOT_HORIZON(p), PRESSED_UNTIL);
     k->budget.steps = p->steps;
     k->budget.rough = false;
     k->budget.stop_above = ROBOT_REAL_MAX;
+    k->budget.watch = NULL;
     k->bounded = false;
 }
 
 /* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
-static robot_real slow_down(pressing *k, const robot_region *region, robot_real speed, robot_real limit)
+static robot_real slow_down(robot_pressing *k, const robot_region *region, robot_real speed, robot_real limit)
 {
     if (keeps(k, region, speed, limit)) {
         return speed;
     }
     robot_real low = ROBOT_R(0.0);
     robot_real high = speed;
-    for (int i = 0; i < HALVINGS; ++i) {
+    for (int i = 0; i < SLOWER; ++i) {
         const robot_real middle = ROBOT_R(0.5)*(low + high);
         k->budget.steps = k->p.steps;
         if (keeps(k, region, middle, limit)) {
@@ -138,7 +117,7 @@ int robot_pressing_force_at(const robot_real q[ROBOT_JOINTS], int point, const r
     if (q == NULL || n == NULL || region == NULL || p == NULL || force == NULL) {
         return ROBOT_NULL_POINTER;
     }
-    pressing k;
+    robot_pressing k;
     int status = robot_check_positive(&speed, 1);
     if (status == ROBOT_OK) {
         status = robot_approach(q, point, n, region, p, &k.impact);
@@ -176,7 +155,7 @@ static int check_limits(const robot_region *region)
 }
 
 /* Largest speed up to a cap, where that is positive, that keeps all limits of a region. */
-static int find_allowed(const robot_region *region, const robot_params *p, robot_real cap, pressing *k,
+static int find_allowed(const robot_region *region, const robot_params *p, robot_real cap, robot_pressing *k,
     robot_allowed_speed_t *found)
 {
     robot_safe_speed_t safe;
@@ -199,7 +178,7 @@ int robot_allowed_speed_at(const robot_real q[ROBOT_JOINTS], int point, const ro
     if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
         return ROBOT_NULL_POINTER;
     }
-    pressing k;
+    robot_pressing k;
     robot_allowed_speed_t found;
     int status = check_limits(region);
     if (status == ROBOT_OK) {
@@ -219,8 +198,8 @@ int robot_allowed_speed_at(const robot_real q[ROBOT_JOINTS], int point, const ro
 }
 
 /* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
-static int set_out(const robot_real *q, const robot_real *dq, const robot_region *region,
-    const robot_params *p, robot_real rates[ROBOT_N], pressing *k)
+static int set_off(const robot_real *q, const robot_real *dq, const robot_region *region,
+    const robot_params *p, robot_real rates[ROBOT_N], robot_pressing *k)
 {
     int status = robot_check_finite(dq, ROBOT_JOINTS);
     if (status == ROBOT_OK) {
@@ -239,13 +218,13 @@ int robot_allowed_factor(const robot_real q[ROBOT_JOINTS], const robot_real dq[R
     if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
         return ROBOT_NULL_POINTER;
     }
-    pressing k;
+    robot_pressing k;
     robot_real rates[ROBOT_N];
     robot_allowed_factor_t found = {ROBOT_R(1.0), -1, ROBOT_R(0.0), ROBOT_R(0.0), 0};
     bool bounded = false;
     int status = check_limits(region);
     if (status == ROBOT_OK) {
-        status = set_out(q, dq, region, p, rates, &k);
+        status = set_off(q, dq, region, p, rates, &k);
     }
     for (int point = 0; point < ROBOT_POINTS && status == ROBOT_OK; ++point) {
         const robot_real speed = robot_arrive_as_it_moves(point, rates, &k.impact.arrival);
@@ -283,11 +262,11 @@ int robot_may_press(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_
     if (q == NULL || dq == NULL || region == NULL || p == NULL || may == NULL) {
         return ROBOT_NULL_POINTER;
     }
-    pressing k;
+    robot_pressing k;
     robot_real rates[ROBOT_N];
     int status = robot_check_positive(&limit, 1);
     if (status == ROBOT_OK) {
-        status = set_out(q, dq, region, p, rates, &k);
+        status = set_off(q, dq, region, p, rates, &k);
     }
     if (status != ROBOT_OK) {
         return status;

@@ -160,10 +160,14 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
         if (taken && s->phase->damped) {
             robot_damp(s->phase, s->speed, ROBOT_R(0.5)*s->h, s->rate);
         }
+        if (taken && budget->watch != NULL && budget->watch->pass(s, budget->watch)) {
+            peak->ended = true;
+            return true;
+        }
         const bool falls = taken && s->f < peak->force;
-        const bool looks = falls && (s->past % LOOKS == 0 || !s->touching);
+        const bool looks = falls && budget->watch == NULL && (s->past % LOOKS == 0 || !s->touching);
         if ((falls && peak->force > budget->stop_above)
-            || (looks && robot_is_settled(s, peak->force, share))) {
+            || (looks && robot_is_settled(s, peak->force, s->depth, share))) {
             peak->ended = true;
             return true;
         }

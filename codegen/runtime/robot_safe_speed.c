@@ -100,7 +100,7 @@ static bool are_weak(const robot_impact *impact, robot_real speed, robot_real fo
 int robot_find_speed(const robot_region *region, const robot_params *p, robot_real limit,
     robot_real cap, robot_impact *impact, robot_safe_speed_t *found)
 {
-    robot_budget budget = {p->steps, false, limit};
+    robot_budget budget = {p->steps, false, limit, NULL};
     bool bounded = false;
     int first;
     int last;

@@ -14,7 +14,7 @@
  */
 #include "robot_state.h"
 
-bool robot_is_settled(const robot_state *s, robot_real force, robot_real share)
+bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share)
 {
     const robot_impact *const impact = s->impact;
     const robot_phase *const phase = s->phase;
@@ -47,8 +47,8 @@ bool robot_is_settled(const robot_state *s, robot_real force, robot_real share)
     }
     const robot_real slip = region->damping*ROBOT_SQRT(twice*impact->mobility);
     const robot_real pressed = ROBOT_FMAX(force - slip, ROBOT_R(0.0))/region->stiffness;
-    const robot_real gap = ROBOT_FMAX(s->depth + pressed - r, ROBOT_R(0.0));
-    const robot_real skin = is_hertz ? ROBOT_R(0.8)*force*s->depth : robot_law_twice_work(region, force);
+    const robot_real gap = ROBOT_FMAX(depth + pressed - r, ROBOT_R(0.0));
+    const robot_real skin = is_hertz ? ROBOT_R(0.8)*force*depth : robot_law_twice_work(region, force);
     const robot_real needed = force*force/impact->hold + skin;
     return twice*phase->reach <= share*(needed*phase->reach + gap*gap);
 }

@@ -26,6 +26,15 @@ typedef struct {
     robot_real depth; /* of the skin at the largest force so far */
 } robot_state;
 
+/* Sees a step that was taken; says whether the rest of the impact does not matter. */
+struct robot_watch {
+    bool (*pass)(const robot_state *s, robot_watch *watch);
+    robot_real matters; /* force that may still come, N */
+    robot_real depth; /* of the skin under it, m */
+    robot_real late; /* what it looks for: the largest force from some time on, N */
+    robot_real before, last; /* forces of the steps before, N */
+};
+
 /* A step on trial. */
 typedef struct {
     robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
@@ -50,9 +59,9 @@ void robot_take(const robot_trial *t, robot_state *s);
 void robot_release(robot_state *s);
 
 /*
- * Whether no later force exceeds the largest so far: proven, but for a share by which the energy may
- * exceed what that takes.
+ * Whether no later force exceeds one, the present one being less, under which the skin is so deep: proven,
+ * but for a share by which the energy may exceed what that takes.
  */
-bool robot_is_settled(const robot_state *s, robot_real force, robot_real share);
+bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share);
 
 #endif
