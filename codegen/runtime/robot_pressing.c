@@ -2,13 +2,10 @@
 /* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
 #include "robot_state.h"
 
-/* When the quasi-static limit takes over from the transient one, and until when it is looked, s. */
-#define LATE ROBOT_R(0.5)
+/* Until when it is looked, s. */
 #define PRESSED_UNTIL ROBOT_R(0.6)
 /* Share of a limit up to which it counts as kept, as for peaks. */
 #define PRESSED_KEPT ROBOT_R(0.995)
-/* Steps after which it is looked whether the rest matters. */
-#define LOOKS_LATE 2
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
 #define LEAST_SPEED ROBOT_R(1e-6) /* of a contact point that does not rest, m/s */
@@ -22,35 +19,13 @@ typedef struct {
     bool bounded; /* some force is a bound */
 } robot_pressing;
 
-/* Notes the largest force from LATE on: nodes, tops between them, and the force at LATE itself. */
-static bool pass(const robot_state *s, robot_watch *watch)
-{
-    if (s->time >= LATE) {
-        const robot_real share = ROBOT_FMIN((s->time - LATE)/s->h, ROBOT_R(1.0));
-        const robot_real then = share*watch->last + (ROBOT_R(1.0) - share)*s->f;
-        const robot_real up = watch->last - watch->before;
-        const robot_real down = watch->last - s->f;
-        watch->late = ROBOT_FMAX(watch->late, ROBOT_FMAX(then, s->f));
-        if (s->past > 1 && up >= ROBOT_R(0.0) && down > ROBOT_R(0.0)) {
-            const robot_real bend = (up/s->h_before + down/s->h)/(s->h + s->h_before);
-            const robot_real slope = up/s->h_before - bend*s->h_before;
-            watch->late = ROBOT_FMAX(watch->late, watch->last + ROBOT_R(0.25)*slope*slope/bend);
-        }
-    }
-    watch->before = watch->last;
-    watch->last = s->f;
-    return s->f < watch->matters && s->past % LOOKS_LATE == 0
-        && robot_is_settled(s, watch->matters, watch->depth, ROBOT_R(1.0));
-}
-
 /*
- * Largest force from LATE on; less than `matters`, or nothing, if it is proven that none exceeds that. The
+ * Largest force from 0.5 s on; less than `matters`, or nothing, if it is proven that none exceeds that. The
  * largest of numbers where that is not known.
  */
 static robot_real pressed_by(robot_pressing *k, robot_real speed, robot_real matters)
 {
     robot_peak peak;
-    k->watch.pass = pass;
     k->watch.matters = matters;
     k->watch.depth = robot_law_depth(k->impact.region, matters);
     k->watch.late = ROBOT_R(0.0);

@@ -160,7 +160,7 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
         if (taken && s->phase->damped) {
             robot_damp(s->phase, s->speed, ROBOT_R(0.5)*s->h, s->rate);
         }
-        if (taken && budget->watch != NULL && budget->watch->pass(s, budget->watch)) {
+        if (taken && budget->watch != NULL && robot_pass(s, budget->watch)) {
             peak->ended = true;
             return true;
         }

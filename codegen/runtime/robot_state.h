@@ -26,14 +26,16 @@ typedef struct {
     robot_real depth; /* of the skin at the largest force so far */
 } robot_state;
 
-/* Sees a step that was taken; says whether the rest of the impact does not matter. */
+/* What is looked for in the steps of an impact that goes on after its peak. */
 struct robot_watch {
-    bool (*pass)(const robot_state *s, robot_watch *watch);
     robot_real matters; /* force that may still come, N */
     robot_real depth; /* of the skin under it, m */
-    robot_real late; /* what it looks for: the largest force from some time on, N */
-    robot_real before, last; /* forces of the steps before, N */
+    robot_real late; /* the largest force from 0.5 s on, N */
+    robot_real before, last; /* forces of the last steps, N */
 };
+
+/* Notes a step that was taken: the late force; says whether none that matters can come. */
+bool robot_pass(const robot_state *s, robot_watch *watch);
 
 /* A step on trial. */
 typedef struct {
