@@ -13,7 +13,7 @@ from . import options as o
 
 if TYPE_CHECKING:
     from softimpact.codegen import Manifest, Payload
-    from softimpact.symbolic import Robot
+    from softimpact.symbolic import Contact, Robot
 
 RealOption = Annotated[str, typer.Option(metavar="TYPE", help="Number type: float or double.")]
 NameOption = Annotated[
@@ -96,6 +96,14 @@ def generate(
             "may be repeated.",
         ),
     ] = None,
+    contact: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=BODY[+COVER]",
+            help="Body to build in beside the standard's regions: a region, area, device or body "
+            "file, behind a pad or cover file; may be repeated.",
+        ),
+    ] = None,
     json: o.JsonOption = False,
 ) -> None:
     """Write a C99 package; the drives given are the defaults of its parameters."""
@@ -138,6 +146,7 @@ def generate(
         freeze=[] if freeze is None else [name.strip() for name in freeze.split(",")],
         poses=pose_table(poses, robot) if poses else None,
         points=_points(point or []),
+        contacts=_contacts(contact or []),
         compiler=_compiler(),
     )
     if robot.n >= MANY_JOINTS:
@@ -193,6 +202,24 @@ def _points(given: list[str]) -> dict[str, str]:
             raise InvalidValue("point", f"needs NAME=FRAME, each name once, not '{text}'")
         points[name] = frame
     return points
+
+
+def _contacts(given: list[str]) -> dict[str, Contact]:
+    """Read NAME=BODY[+COVER]; a name given twice is one too many."""
+    from softimpact.symbolic import Contact, InvalidValue, body_region
+    from softimpact.symbolic.body.bodies import BODIES
+    from softimpact.symbolic.body.body_file import load_body, load_cover
+
+    contacts: dict[str, Contact] = {}
+    for text in given:
+        name, equals, what = text.partition("=")
+        body, plus, cover = what.partition("+")
+        if not equals or not body or (plus and not cover) or name in contacts:
+            raise InvalidValue("contact", f"needs NAME=BODY[+COVER], each name once, not '{text}'")
+        is_file = body not in BODIES and Path(body).suffix
+        region = load_body(body) if is_file else body_region(body)
+        contacts[name] = Contact(region, cover=load_cover(cover) if cover else None)
+    return contacts
 
 
 def _left_out(robot: Robot) -> list[str]:

@@ -5,27 +5,6 @@
 /* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
 #define BLURS ROBOT_R(1.6e-2)
 
-/* Largest stiffness of the skin up to a force. */
-static robot_real skin_stiffness(const robot_region *region, robot_real force)
-{
-    const robot_real third = ROBOT_R(1.0)/ROBOT_R(3.0);
-    return ROBOT_R(1.5)*ROBOT_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
-}
-
-robot_real robot_two_body_force(const robot_region *region, robot_real mobility, robot_real speed)
-{
-    const robot_real spring = speed*ROBOT_SQRT(region->stiffness/mobility);
-    const robot_real energy = ROBOT_R(1.25)*speed*speed/mobility;
-    const robot_real skin = ROBOT_POW(energy, ROBOT_R(0.6))*ROBOT_POW(region->hertz_stiffness, ROBOT_R(0.4));
-    return ROBOT_R(1.0)/(ROBOT_R(1.0)/spring + ROBOT_R(1.0)/skin);
-}
-
-robot_real robot_two_body_speed(const robot_region *region, robot_real mobility, robot_real force)
-{
-    const robot_real depth = ROBOT_POW(force/region->hertz_stiffness, ROBOT_R(2.0)/ROBOT_R(3.0));
-    return ROBOT_SQRT(mobility*force*(force/region->stiffness + ROBOT_R(0.8)*depth));
-}
-
 void robot_impact_forget(robot_impact *impact)
 {
     impact->phase[ROBOT_LED].known = false;
@@ -170,7 +149,7 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
     impact->smooth = ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped);
-    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    impact->skin_rate = robot_law_stiffness(region, size)*impact->mobility;
     const robot_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!robot_all_finite(numbers, 3) || robot_check_positive(numbers, 3) != ROBOT_OK) {
         return ROBOT_SINGULAR;

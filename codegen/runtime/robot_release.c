@@ -123,6 +123,7 @@ void robot_release(robot_state *s)
     }
     s->level = s->level + AFTER < ROBOT_LEVELS ? s->level + AFTER : ROBOT_LEVELS - 1;
     s->past = s->past > 1 ? 1 : s->past;
+    s->even = 0;
     s->ticks = next->steps*(1 << (ROBOT_LEVELS - 1));
 }
 
