@@ -84,6 +84,16 @@ class ImpactSource:
         return [self.robot.actuated[i] for i in self.independent]
 
     @property
+    def damping(self) -> list[float]:
+        """Damping of these joints' own [N·m·s/rad]."""
+        return [float(self.robot.damping[i]) for i in self.independent]
+
+    @property
+    def damped(self) -> bool:
+        """Whether any of these joints has damping of its own."""
+        return any(self.damping)
+
+    @property
     def elastic(self) -> bool:
         """Whether every joint has a spring behind its motor."""
         return is_elastic(self.robot)

@@ -157,6 +157,7 @@ def reference_arrival(
         rotors=parameter("rotor_inertia"),
         gains=(parameter("position_gain") * held, parameter("damping_gain") * held),
         motors=motors,
+        damping=robot.damping[independent],
     )
 
 

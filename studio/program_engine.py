@@ -54,8 +54,6 @@ def why_not_in_c(
     robot = model.robot
     if robot.loops or not is_elastic(robot):
         return "closed chains, passive joints and springs of the model file"
-    if robot.damping.any():
-        return "the joints' damping"
     if model.drives.computed_torque_gain is not None:
         return "computed-torque gains"
     if any(end.reaction == "stop" for end in ends.values()):

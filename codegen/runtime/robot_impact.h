@@ -17,6 +17,7 @@
 #else
 #define ROBOT_SYSTEM ROBOT_N
 #endif
+#define ROBOT_DAMPERS (ROBOT_DAMPED ? ROBOT_SYSTEM : ROBOT_N) /* of the last ones of these */
 #define ROBOT_MODES (ROBOT_SYSTEM + 1) /* one for a body that gives way */
 #define ROBOT_LEVELS 7 /* lengths of steps, each half the one before */
 
@@ -76,8 +77,8 @@ typedef struct {
     robot_real compliance; /* of those that stand, m/N */
     robot_real reach; /* of all that vibrate, m/N */
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
-    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
-    robot_real damping[ROBOT_N];
+    bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
+    robot_real damping[ROBOT_DAMPERS];
     int steps; /* of the longest level until the time is over */
     robot_level level[ROBOT_LEVELS];
 } robot_phase;

@@ -45,7 +45,7 @@ typedef struct {
     robot_real u, depth, root;
 } robot_trial;
 
-/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+/* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate);
 
 /* Moves all modes by a step without forces. */
