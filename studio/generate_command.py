@@ -116,7 +116,7 @@ def generate(
     )
     from .values import one_of
 
-    number: Real = one_of("number type", real, RealOption)
+    number: Real = one_of("number type", real, Real)
     if floating and hold_base:
         raise InvalidValue("hold_base", "excludes floating; give one of them")
     typed = TypedArm(model, tip, end=end, lock=lock, hold_base=hold_base)

@@ -12,7 +12,7 @@ class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class PointRecord(_Part):
+class Point(_Part):
     """A design on a front."""
 
     bound: float = Field(description="on the deflection, with which it was sought [m]")
@@ -28,7 +28,7 @@ class PointRecord(_Part):
     springs: list[float] = Field(description="joint stiffness [N·m/rad]")
 
 
-class CheckedRecord(_Part):
+class Checked(_Part):
     """A force by independent simulation [N]."""
 
     nlp: float
@@ -36,12 +36,12 @@ class CheckedRecord(_Part):
     full: float
 
 
-class CheckedPointRecord(PointRecord):
+class CheckedPoint(Point):
     """A design on a front, simulated."""
 
     meets_limit: bool
     safe_speed: float = Field(description="at which the force is the limit [m/s]")
-    check: CheckedRecord
+    check: Checked
     knee: bool = Field(description="whether the front bends there")
 
 
@@ -54,7 +54,7 @@ class Unsolved(_Part):
     violation: float
 
 
-class ReferenceRecord(_Part):
+class Reference(_Part):
     """The design to improve on."""
 
     name: str
@@ -68,9 +68,9 @@ class ReferenceRecord(_Part):
 class Fronts(_Part):
     """Fronts, the most accurate design first; none of a front beats another in both."""
 
-    free: list[CheckedPointRecord]
-    given: list[CheckedPointRecord]
-    task: list[CheckedPointRecord]
+    free: list[CheckedPoint]
+    given: list[CheckedPoint]
+    task: list[CheckedPoint]
 
 
 class Solver(_Part):
@@ -95,7 +95,7 @@ class ParetoResults(_Part):
     accuracy: str
     solver: Solver
     levels: list[float] = Field(description="bounds on the deflection [m]")
-    reference: ReferenceRecord
+    reference: Reference
     fronts: Fronts
-    held: dict[str, list[PointRecord]] = Field(description="front of each given pose")
+    held: dict[str, list[Point]] = Field(description="front of each given pose")
     unsolved: dict[str, list[Unsolved]]
