@@ -10,7 +10,7 @@ from typing import Any
 from softimpact.optimize import Front, ParetoPoint
 
 from .design_report import inputs, limit_kind, versions
-from .pareto_report import FRONTS, CheckedPoint, ParetoReport
+from .pareto_report import FRONTS, CheckedFrontPoint, ParetoReport
 
 GENERATOR = "softimpact pareto"
 """Marks a folder of results as one that may be replaced."""
@@ -75,7 +75,7 @@ def _point(point: ParetoPoint) -> dict[str, Any]:
     }
 
 
-def _checked(checked: CheckedPoint, report: ParetoReport) -> dict[str, Any]:
+def _checked(checked: CheckedFrontPoint, report: ParetoReport) -> dict[str, Any]:
     return {
         **_point(checked.point),
         "meets_limit": checked.point.force <= report.limit,
@@ -113,7 +113,7 @@ def write_table(report: ParetoReport, path: Path) -> None:
                 table.writerow([name, *_row(checked, report, is_knee)])
 
 
-def _row(checked: CheckedPoint, report: ParetoReport, is_knee: str) -> list[object]:
+def _row(checked: CheckedFrontPoint, report: ParetoReport, is_knee: str) -> list[object]:
     point, outcome = checked.point, checked.point.outcome
     return [
         *(point.bound, point.deflection, point.force, checked.safe_speed),

@@ -36,7 +36,7 @@ DATA = {
     "HORIZON": ("", "How long forces count by default [s]."),
     "Fidelity": ("", "Names of the models of a robot, from the simplest to the most faithful."),
     "PeakDefinition": ("", "Names of what a peak may be."),
-    "ControllerReference": ("", "Names of the motion that the papers' controller wants after first touch."),
+    "ControllerReference": ("", "What motion the papers' controller wants after first touch."),
     "Mode": ("", "``table``: the posture is given and k_s is sought; ``free``: both are sought."),
     "MODES": ("", "Both modes of a design."),
 }
