@@ -12,11 +12,11 @@ from .evaluation import largest_deflection
 from .solve import Outcome
 from .study import Study
 
-WORTH = 1e-4
+LEAST_SAVING = 1e-4
 """Share of the force that a less accurate design must save to be kept: what forces are known to."""
 
 
-FLAT = 1e-6
+LEAST_BEND = 1e-6
 """Share of a front's height below the straight line from which it counts as bent."""
 
 
@@ -71,11 +71,11 @@ def front(study: Study, levels: Sequence[float], outcomes: Sequence[Outcome | No
 def undominated(points: Iterable[ParetoPoint]) -> tuple[ParetoPoint, ...]:
     """Return the points that no other beats, the most accurate first.
 
-    A less accurate point must save ``WORTH`` of the force.
+    A less accurate point must save ``LEAST_SAVING`` of the force.
     """
     kept: list[ParetoPoint] = []
     for point in sorted(points, key=lambda point: (point.deflection, point.force)):
-        if not kept or point.force < kept[-1].force * (1 - WORTH):
+        if not kept or point.force < kept[-1].force * (1 - LEAST_SAVING):
             kept.append(point)
     return tuple(kept)
 
@@ -94,4 +94,4 @@ def knee(points: Sequence[ParetoPoint]) -> int | None:
     x, y = (x - x[0]) / (x[-1] - x[0]), (y - y[-1]) / (y[0] - y[-1])
     below = 1 - x - y
     best = int(np.argmax(below))
-    return best if below[best] > FLAT else None
+    return best if below[best] > LEAST_BEND else None

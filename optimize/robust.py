@@ -33,7 +33,7 @@ from .problem import sought_parts, study_program
 from .reach import require_reachable
 from .repair import accurate_springs
 from .scenarios import Scenarios
-from .screening import PIECE, Screened
+from .screening import SCENARIOS_IN_A_JOB, Screened
 from .solve import Outcome
 from .study import Study, transient_limit
 from .timing import Timing, scenario_timing
@@ -44,10 +44,10 @@ from .workers import Progress, as_completed, cores, workers, works_elsewhere
 ROUNDS = 40
 """Most exchanges."""
 
-ADDED = 4
+ADDED_IN_AN_EXCHANGE = 4
 """Scenarios added in an exchange: the worst, each of another pose, point or direction."""
 
-CLOSED = 1e-4
+MOST_EXCESS = 1e-4
 """Share by which a scenario may exceed what the NLP says: forces are no better known."""
 
 MOST_AT_ONCE = 300
@@ -143,7 +143,7 @@ def robust_design(
         )
         for point in scenarios.points
     )
-    with workers(min(max(2, len(scenarios) // PIECE), cores()), executor) as pool:
+    with workers(min(max(2, len(scenarios) // SCENARIOS_IN_A_JOB), cores()), executor) as pool:
         setting = Setting(
             study,
             scenarios,
@@ -247,7 +247,7 @@ def _exchange(
         shares = setting.shares_of_bounds(at)
         too_far = int(np.argmax(shares))
         allowed = max(state.bound, 1.0) if factors is not None else state.bound
-        worse = [s for s in found if s.share > allowed * (1 + CLOSED)]
+        worse = [s for s in found if s.share > allowed * (1 + MOST_EXCESS)]
         fresh = [] if everything else _fresh(setting, worse, set(active))
         if shares[too_far] > 1 + KEEPS and too_far not in poses:
             poses = [*poses, too_far]
@@ -270,7 +270,7 @@ def _fresh(setting: Setting, screened: Sequence[Screened], known: set[int]) -> l
     fresh: list[int] = []
     for each in screened:
         kind = setting.scenarios[each.index][:3]
-        if each.index not in known and kind not in kinds and len(fresh) < ADDED:
+        if each.index not in known and kind not in kinds and len(fresh) < ADDED_IN_AN_EXCHANGE:
             kinds.add(kind)
             fresh.append(each.index)
     return fresh
