@@ -10,6 +10,7 @@ import numpy as np
 
 import softimpact
 from softimpact.symbolic import STANDARD_GRAVITY, Drives, InvalidValue, Robot
+from softimpact.symbolic.former_names import renamed
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 
 from .accuracy import Inputs, accuracy, golden_results, is_regular
@@ -50,6 +51,7 @@ def unseen(what: str, done: int, of: int) -> None:
     """Let steps pass without a word."""
 
 
+@renamed(drives_="drives")
 def generate_package(
     robot: Robot,
     out: str | Path,

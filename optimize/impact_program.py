@@ -21,19 +21,17 @@ from softimpact.symbolic import (
     ImpactModel,
     Matrix,
     Motors,
-    contact_point_jacobian,
-    direction_jacobian,
-    least_velocity,
 )
 from softimpact.symbolic.matrices import Factorisation
 from softimpact.symbolic.robot.rigid import Array
 from softimpact.toolchain import c_compiler, cache_folder
 
 from .compiled import compiled_functions
-from .hardware import Hardware, Machine
+from .coordinates import at_coordinates, congruent, is_plain, of_springs, rigid, sprung
+from .hardware import Hardware, Machine, least_motion
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .motor_laws import MotorLaws
-from .peaks import peaks_in_windows
+from .peaks import WINDOWS, peaks_in_windows
 
 SIZES = {"direction": 3, "speed": 1, "contact": 4, "motors": 5, "payload": 1, "step": 1}
 """Numbers of an impact, in order."""
@@ -48,10 +46,14 @@ Parts = tuple[str, ...]
 
 SPRINGS: Parts = ("springs",)
 
+QUARTERS = 4
+"""Lengths of time among which a derivative has the shortest that will do."""
 
-def part_sizes(parts: Parts, n: int) -> list[int]:
+
+def part_sizes(parts: Parts, model: ImpactModel) -> list[int]:
     """Return how many numbers each part has."""
-    return [1 if part in ("cover", "speed") else n for part in parts]
+    sizes = {"springs": len(sprung(model)), "cover": 1, "speed": 1}
+    return [sizes.get(part, model.robot.n) for part in parts]
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ class ImpactProgram:
         functions: names and serialised functions, none where there is a library that all workers
             share, since every job carries them: ``forces`` (x, p) -> all nodes [N]; ``peaks``
             (x, p, boundary) -> one for each window [N]; ``slopes``, the same and its derivative
-            by x.
+            by x; ``slope`` (x, p, weights) -> that of a weighted sum of all nodes.
         library: their compiled form, None to run in CasADi's virtual machine.
         n: number of joints.
         nodes: times at which the force is taken.
@@ -157,35 +159,87 @@ def impact_program(
     return ImpactProgram(carried, library, model.robot.n, nodes, parts, compiles=elsewhere)
 
 
+def forces_alone(
+    model: ImpactModel, nodes: int, substeps: int, point: str | None = None
+) -> ca.Function:
+    """Return a program's ``forces`` without derivatives, compiled if there is a compiler.
+
+    Args:
+        model: robot, its end and its drives; the springs are variables.
+        nodes: times at which the force is taken.
+        substeps: time steps from node to node.
+        point: frame that hits; default the model's tip.
+    """
+    posture = _posture(model, point or model.tip, SPRINGS)
+    x, p = posture.mx_in()
+    forces = _forces(model, posture(x, p), p, nodes, substeps, SPRINGS)
+    function = ca.Function("forces", [x, p], [forces])
+    library = compiled_functions([function], c_compiler())
+    return function if library is None else ca.external("forces", str(library))
+
+
 def impact_functions(
     model: ImpactModel, nodes: int, substeps: int, point: str, parts: Parts = SPRINGS
 ) -> tuple[ca.Function, ...]:
     """Return the functions of ``ImpactProgram``.
 
-    The derivative goes backwards through the impact, once for each window, to what the posture
-    gives (masses, Jacobian, springs), and from there forwards to posture and hardware: three to
-    four times the price of the forces, whatever the number of joints.
+    A derivative goes backwards through the impact, from the last force that counts to first touch,
+    to what the posture gives (masses, Jacobian, springs), and from there forwards to posture and
+    hardware. It costs as much as the forces where these peak early, three times as much at most,
+    whatever the number of joints.
     """
     n = model.robot.n
-    x, p = ca.MX.sym("x", n + sum(part_sizes(parts, n))), ca.MX.sym("p", NUMBERS)
-    boundary = ca.MX.sym("boundary")
-    posture, slope = _posture(model, point, parts)
+    x, p = ca.MX.sym("x", n + sum(part_sizes(parts, model))), ca.MX.sym("p", NUMBERS)
+    boundary, weights = ca.MX.sym("boundary"), ca.MX.sym("weights", nodes)
+    posture = _posture(model, point, parts)
+    slope = _with_slope(posture)
     given = ca.MX.sym("given", posture.numel_out(0))
     forces = _forces(model, given, p, nodes, substeps, parts)
-    peaks = peaks_in_windows(forces, boundary)
-    arguments = [given, p, boundary]
-    backwards = ca.Function(
-        "backwards", arguments, [peaks, ca.jacobian(peaks, given)], FEW_DIRECTIONS
-    )
     forwards = ca.Function("forwards", [given, p], [forces], FEW_DIRECTIONS)
+    pull = _pull(model, given, nodes, substeps, parts)
     at, along = slope(x, p)
-    found, by_given = backwards(at, p, boundary)
+    peaks, by_forces = _peaks(nodes)(forwards(at, p), boundary)
+    rows = [pull(at, p, by_forces[w, :].T) for w in range(WINDOWS)]
     pressed = forwards(posture(x, p), p)
     return (
         ca.Function("forces", [x, p], [pressed]),
         ca.Function("peaks", [x, p, boundary], [peaks_in_windows(pressed, boundary)]),
-        ca.Function("slopes", [x, p, boundary], [found, ca.mtimes(by_given, along)]),
+        ca.Function("slopes", [x, p, boundary], [peaks, ca.mtimes(ca.vertcat(*rows), along)]),
+        ca.Function("slope", [x, p, weights], [ca.mtimes(pull(at, p, weights), along)]),
     )
+
+
+def _peaks(nodes: int) -> ca.Function:
+    """Return (forces, boundary) -> the peak in each window and its derivative by the forces."""
+    forces, boundary = ca.MX.sym("forces", nodes), ca.MX.sym("boundary")
+    peaks = peaks_in_windows(forces, boundary)
+    unit = ca.DM.eye(WINDOWS)
+    rows = [ca.jtimes(peaks, forces, unit[:, w], True).T for w in range(WINDOWS)]
+    return ca.Function("windows", [forces, boundary], [peaks, ca.vertcat(*rows)])
+
+
+def _pull(
+    model: ImpactModel, given: Matrix, nodes: int, substeps: int, parts: Parts
+) -> ca.Function:
+    """Return (given, p, weights) -> derivative by given of a weighted sum of the forces.
+
+    Nothing is computed behind the last force whose weight is not zero, in quarters of the time.
+    """
+    p, weights = ca.MX.sym("p", NUMBERS), ca.MX.sym("weights", nodes)
+    ends = [-(-nodes * k // QUARTERS) for k in range(QUARTERS + 1)]
+    cases = []
+    for end in ends:
+        row = ca.MX(1, given.numel())
+        if end:
+            some = _forces(model, given, p, end, substeps, parts)
+            row = ca.jtimes(some, given, weights[:end], True).T
+        cases.append(
+            ca.Function(f"to_{end}", [given, p, weights], [ca.densify(row)], FEW_DIRECTIONS)
+        )
+    chosen = ca.Function.conditional("pull_some", cases[:-1], cases[-1])
+    last = ca.mmax((weights != 0) * ca.DM(range(1, nodes + 1)))
+    case = sum(last > end for end in ends[:-1])
+    return ca.Function("pull", [given, p, weights], [chosen(case, given, p, weights)])
 
 
 def hardware_of(model: ImpactModel, parts: Parts, logarithms: Sequence[Matrix]) -> Hardware:
@@ -195,35 +249,62 @@ def hardware_of(model: ImpactModel, parts: Parts, logarithms: Sequence[Matrix]) 
     return replace(own, **values)
 
 
-def _posture(model: ImpactModel, point: str, parts: Parts) -> tuple[ca.Function, ca.Function]:
-    """Return what an impact needs of a posture, in one column, and its derivative by x."""
+def _posture(model: ImpactModel, point: str, parts: Parts) -> ca.Function:
+    """Return (x, p) -> what an impact needs of a posture, in one column."""
     n = model.robot.n
-    sizes = part_sizes(parts, n)
+    sizes = part_sizes(parts, model)
     x, p = ca.SX.sym("x", n + sum(sizes)), ca.SX.sym("p", NUMBERS)
     q, *logarithms = ca.vertsplit(x, np.cumsum([0, n, *sizes]).tolist())
     numbers = _split(p)
     machine = Machine.of(model, hardware_of(model, parts, logarithms))
-    end = machine.jacobian(q)
+    end, at = machine.jacobian(q), replace(model, tip=point)
     loaded = machine.mass_matrix(q) + numbers["payload"] * ca.mtimes(end.T, end)
-    J = contact_point_jacobian(model.robot, point, q)
+    damping = congruent(model, q, ca.sparsify(ca.diag(ca.DM(model.robot.damping))))
+    loaded = loaded + numbers["step"] / 2 * damping
+    turning = _turning_with_links(machine, q)
+    if turning is not None:
+        loaded = loaded + turning
+    mobility = Factorisation(loaded).solve(ca.SX.eye(len(model.independent)))
+    R = list(rigid(model))
     speed = numbers["speed"]
     if "speed" in parts:
         speed = speed * 10 ** logarithms[parts.index("speed")]
     given = [
-        ca.vec(Factorisation(loaded).solve(ca.SX.eye(n))),
-        direction_jacobian(model.robot, point, q, numbers["direction"]).T,
-        least_velocity(J, numbers["direction"]) * speed,
-        machine.hardware.springs,
+        ca.vec(mobility),
+        at.direction_row(q, numbers["direction"]).T,
+        least_motion(model, at.jacobian(q), numbers["direction"]) * speed,
+        ca.mtimes(of_springs(model), machine.hardware.springs),
         ca.vec(ca.densify(ca.SX(machine.model.position_gains(q)))),
     ]
+    if R:
+        inverse = Factorisation(mobility[R, R]).solve(ca.SX.eye(len(R)))
+        given.append(ca.vec(ca.mtimes(mobility[:, R], inverse)))
     if "rotors" in parts:
         given.append(machine.hardware.rotors)
     if "cover" in parts:
         given.append(machine.hardware.cover)
-    column = ca.vertcat(*given)
-    value = ca.Function("posture", [x, p], ca.cse([column]))
-    both = ca.Function("slope", [x, p], ca.cse([column, ca.densify(ca.jacobian(column, x))]))
-    return value, both
+    if model.robot.damping.any():
+        given.append(ca.vec(ca.densify(ca.SX(damping))))
+    if _has_potential(model):
+        given.append(ca.vec(machine.model.potential_stiffness(q)))
+    return ca.Function("posture", [x, p], ca.cse([ca.vertcat(*given)]))
+
+
+def _with_slope(posture: ca.Function) -> ca.Function:
+    """Return the same with its derivative by x."""
+    x, p = posture.sx_in()
+    column = posture(x, p)
+    slope = ca.densify(ca.jacobian(column, x))
+    return ca.Function("posture_slope", [x, p], ca.cse([column, slope]))
+
+
+def _turning_with_links(machine: Machine, q: Matrix) -> Matrix | None:
+    """Return what rotors add to the links: those without a spring, or of joints that follow."""
+    model = machine.model
+    if is_plain(model):
+        return None
+    behind = [float(e) for e in model.drives.elastic]
+    return congruent(model, q, ca.diag(machine.hardware.reflected_rotors * (1 - ca.DM(behind))))
 
 
 def _split(p: Matrix) -> dict[str, Matrix]:
@@ -234,20 +315,29 @@ def _split(p: Matrix) -> dict[str, Matrix]:
 def _forces(
     model: ImpactModel, given: Matrix, p: Matrix, nodes: int, substeps: int, parts: Parts
 ) -> Matrix:
-    n = model.robot.n
-    sizes = [n * n, n, n, n, n * n, n * ("rotors" in parts), int("cover" in parts)]
-    offsets = np.cumsum([0, *sizes]).tolist()
-    mobility, jacobian, velocity, springs, gains, rotors, cover = ca.vertsplit(given, offsets)
-    pattern = ca.DM(model.position_gains(ca.SX.sym("q", n)).sparsity(), 1)
+    n, R, N = len(model.independent), rigid(model), model.robot.n
+    d, v = n * bool(model.robot.damping.any()), n * _has_potential(model)
+    sizes = [n * n, n, n, n, n * n, n * len(R), N * ("rotors" in parts), int("cover" in parts)]
+    offsets = np.cumsum([0, *sizes, d * d, v * v]).tolist()
+    pieces = ca.vertsplit(given, offsets)
+    mobility, jacobian, velocity, springs, gains, carried, rotors, cover, drag, potential = pieces
+    pattern = ca.DM(model.position_gains(ca.SX.sym("q", N)).sparsity(), 1)
     damping = model.drives.damping_gains
+    if "rotors" not in parts:
+        rotors = known_rotors(model)
+    behind = ca.DM([float(model.drives.elastic[i]) for i in model.independent])
     dynamics = ImpactDynamics(
         mobility=ca.reshape(mobility, n, n),
         jacobian=jacobian.T,
         springs=springs,
-        rotors=rotors if "rotors" in parts else known_rotors(model),
+        rotor_mobility=behind / at_coordinates(model, rotors),
         gains=ca.project(ca.reshape(gains, n, n), pattern.sparsity()),
-        damping=ca.DM.zeros(n) if damping is None else damping,
+        damping=ca.DM.zeros(n) if damping is None else at_coordinates(model, damping),
         velocity=velocity,
+        rigid=R,
+        carried=ca.reshape(carried, n if R else 0, len(R)),
+        joint_damping=_joint_damping(model, drag) if d else None,
+        potential=ca.reshape(potential, v, v) if v else None,
     )
     numbers = _split(p)
     contact = ContactParameters(*ca.vertsplit(numbers["contact"]))
@@ -255,6 +345,18 @@ def _forces(
         contact = contact._replace(hertz_stiffness=hertz_in_series(contact.hertz_stiffness, cover))
     laws = MotorLaws(*ca.vertsplit(numbers["motors"]))
     return contact_forces(dynamics, contact, laws, numbers["step"], nodes, substeps)
+
+
+def _joint_damping(model: ImpactModel, entries: Matrix) -> Matrix:
+    """Return the joints' damping over the coordinates, diagonal without loops."""
+    n = len(model.independent)
+    drag = ca.reshape(entries, n, n)
+    return drag if model.robot.loops else ca.project(drag, ca.Sparsity.diag(n))
+
+
+def _has_potential(model: ImpactModel) -> bool:
+    """Whether the links' potential energy bends: by springs of the file, or gravity."""
+    return model.robot.has_springs or any(model.gravity)
 
 
 def hertz_in_series(first: Matrix, second: Matrix) -> Matrix:

@@ -12,7 +12,7 @@ class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class Point(_Part):
+class PointRecord(_Part):
     """A design on a front."""
 
     bound: float = Field(description="on the deflection, with which it was sought [m]")
@@ -28,7 +28,7 @@ class Point(_Part):
     springs: list[float] = Field(description="joint stiffness [N·m/rad]")
 
 
-class Checked(_Part):
+class CheckedRecord(_Part):
     """A force by independent simulation [N]."""
 
     nlp: float
@@ -36,12 +36,28 @@ class Checked(_Part):
     full: float
 
 
-class CheckedPoint(Point):
+class PriceRecord(_Part):
+    """What a bound costs: how much a little more room buys, to first order."""
+
+    bound: str
+    newtons: float | None = Field(description="force saved [N]")
+    room: str = Field(description="how much more")
+    gain: float
+    unit: str = Field(description="of gain")
+
+
+class CheckedPointRecord(PointRecord):
     """A design on a front, simulated."""
 
     meets_limit: bool
     safe_speed: float = Field(description="at which the force is the limit [m/s]")
-    check: Checked
+    check: CheckedRecord
+    prices: list[PriceRecord] = Field(
+        description="what each bound that binds costs, the dearest first"
+    )
+    indifferent: dict[str, list[float]] = Field(
+        description="range of each value that costs less than 0.5 %, the others held"
+    )
     knee: bool = Field(description="whether the front bends there")
 
 
@@ -54,7 +70,7 @@ class Unsolved(_Part):
     violation: float
 
 
-class Reference(_Part):
+class ReferenceRecord(_Part):
     """The design to improve on."""
 
     name: str
@@ -68,9 +84,9 @@ class Reference(_Part):
 class Fronts(_Part):
     """Fronts, the most accurate design first; none of a front beats another in both."""
 
-    free: list[CheckedPoint]
-    given: list[CheckedPoint]
-    task: list[CheckedPoint]
+    free: list[CheckedPointRecord]
+    given: list[CheckedPointRecord]
+    task: list[CheckedPointRecord]
 
 
 class Solver(_Part):
@@ -92,10 +108,11 @@ class ParetoResults(_Part):
     limit: float = Field(description="force that reaches a limit of the region [N]")
     limit_kind: str
     peak_definition: str
+    warnings: list[str] = Field(description="what was ignored, and what limits are worth")
     accuracy: str
     solver: Solver
     levels: list[float] = Field(description="bounds on the deflection [m]")
-    reference: Reference
+    reference: ReferenceRecord
     fronts: Fronts
-    held: dict[str, list[Point]] = Field(description="front of each given pose")
+    held: dict[str, list[PointRecord]] = Field(description="front of each given pose")
     unsolved: dict[str, list[Unsolved]]

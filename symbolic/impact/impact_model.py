@@ -15,6 +15,7 @@ from ..dynamics.equations_of_motion import Gravity, mass_matrix, stiffness_of_po
 from ..dynamics.kinematics import contact_point_jacobian, direction_jacobian
 from ..errors import InvalidValue, WrongLength
 from ..factors.contact_mobility import ContactMobility, contact_mobility
+from ..former_names import renamed
 from ..loops.loops import closed_chain, constrained_stiffness, loop_tangent
 from ..matrices import Kind, Matrix, Numbers, symmetric
 from ..robot.rigid import Array, three_numbers
@@ -128,7 +129,7 @@ class ImpactModel(ByContent):
 
     def contact_jacobian(self, q: Matrix, direction: Matrix) -> Matrix:
         """Return J_c over motors and deflections, 1×N (MSM Eq. 4)."""
-        return elastic_jacobian(self._direction_row(q, direction), self.elastic)
+        return elastic_jacobian(self.direction_row(q, direction), self.elastic)
 
     def linear(self, q: Matrix, direction: Matrix, law: MotorLaw | None = None) -> LinearModel:
         """Return M0, K0, D and J_c at q, hit along the unit vector ``direction``.
@@ -167,7 +168,7 @@ class ImpactModel(ByContent):
         """Return m_c [kg] (MSM Eq. 36); rotors behind springs do not count."""
         mass = self.generalised_mass(q)
         if isinstance(mass, ElasticMass):
-            return reflected_mass(mass.links, self._direction_row(q, direction))
+            return reflected_mass(mass.links, self.direction_row(q, direction))
         return reflected_mass(mass.matrix, self.contact_jacobian(q, direction))
 
     def reduced(self, q: Matrix, direction: Matrix) -> ReducedModel:
@@ -229,7 +230,8 @@ class ImpactModel(ByContent):
             return constrained_stiffness(self.robot, q, self.gravity)
         return stiffness_of_potential(self.robot, q, self.gravity)
 
-    def _direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+    def direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+        """Return nᵀJ over the links, 1×n."""
         row = direction_jacobian(self.robot, self.tip, q, direction)
         return ca.mtimes(row, loop_tangent(self.robot, q)) if self.robot.loops else row
 
@@ -242,6 +244,7 @@ class ImpactModel(ByContent):
         return symmetric(lambda i, j: product[i, j], product.shape[0])
 
 
+@renamed(drives_="drives")
 def impact_model(
     robot: Robot,
     tip: str | None = None,
