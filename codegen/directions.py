@@ -34,7 +34,7 @@ def directions_of_motion(model: ImpactModel) -> Array | None:
 
 
 def some_configurations(robot: Robot, seed: int) -> list[Array]:
-    """Return ``CONFIGURATIONS`` configurations at which to look at a robot; its loops are closed there."""
+    """Return ``CONFIGURATIONS`` configurations to look at a robot at; loops are closed there."""
     if robot.loops:
         return closed_configurations(robot, random.Random(seed), CONFIGURATIONS)
     return list(np.random.default_rng(seed).uniform(-1, 1, (CONFIGURATIONS, robot.n)))
