@@ -26,6 +26,7 @@ class RobotSection(Section):
     model: str
     tip: str | None = None
     hold_base: bool = False
+    floating: bool = False
     lock: dict[str, Finite] = Field(default_factory=dict)
     rotor_inertia: str | Finite | list[Finite] | None = None
     position_gain: Finite | list[Finite] | None = None
@@ -91,6 +92,7 @@ class ScenarioSection(Section):
 class StiffnessSection(Section):
     """Bounds on the joint stiffness and the design to improve on [N·m/rad]."""
 
+    rigid: list[str] = Field(default_factory=list)
     lower: Positive | list[Positive]
     upper: Positive | list[Positive]
     nominal: Positive | list[Positive]

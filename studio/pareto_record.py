@@ -106,10 +106,10 @@ def _unsolved(front: Front, report: ParetoReport) -> list[dict[str, Any]]:
 
 def write_table(report: ParetoReport, path: Path) -> None:
     """Write the fronts as CSV, a row a point, in SI units."""
-    joints = report.study.robot.joint_names
+    joints, springs = report.study.robot.joint_names, report.study.spring_names
     header = ["front", "bound_m", "deflection_m", "force_N", "safe_speed_m_per_s", "meets_limit"]
     header += ["knee", "a_tenth_more_buys_N", "linearised_N", "full_N", "status", "mode", "start"]
-    header += [f"k_s_{joint}" for joint in joints] + [f"q_{joint}" for joint in joints]
+    header += [f"k_s_{joint}" for joint in springs] + [f"q_{joint}" for joint in joints]
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(header)

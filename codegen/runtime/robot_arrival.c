@@ -4,6 +4,8 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE ROBOT_R(1e-6)
+/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+#define ASTRAY ROBOT_R(1e-3)
 #define MOST_STEPS 1000000
 
 int robot_check_impact(const robot_region *region, const robot_params *p)
@@ -77,6 +79,7 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
     robot_forward(ROBOT_REACH, square, share);
     robot_backward(ROBOT_REACH, square, share);
     robot_real fast = ROBOT_R(0.0);
+    robot_real along = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_N; ++i) {
         robot_real rate = ROBOT_R(0.0);
         for (int k = 0; k < ROBOT_REACH; ++k) {
@@ -84,8 +87,9 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
+        along += rate*arrival->row[i];
     }
-    return fast < ROBOT_FASTEST ? ROBOT_OK : ROBOT_SINGULAR;
+    return fast < ROBOT_FASTEST && ROBOT_FABS(along - ROBOT_R(1.0)) < ASTRAY ? ROBOT_OK : ROBOT_SINGULAR;
 }
 
 void robot_kinds_of_motors(const robot_params *p, int *first, int *last)

@@ -17,7 +17,7 @@
  * through the damper, by more than this share of the force.
  */
 #define FELT ROBOT_R(2e-4)
-/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+/* Nor may it swing as motors are released so that spring and damper feel more than this share of it. */
 #define LEFT ROBOT_R(5e-5)
 /* Steps counted; more than any budget has. */
 #define MOST ROBOT_R(1e6)
@@ -62,9 +62,11 @@ static void let_stand(const robot_impact *impact, robot_real contact, bool relea
         const bool body = impact->gives_way && i == modes->count - 1;
         const robot_real weight = modes->row[i]*modes->row[i];
         const robot_real along = modes->row[i]*modes->start[i];
+        const robot_real held = region->stiffness
+            + region->damping*ROBOT_SQRT(ROBOT_FMAX(modes->squared[i], ROBOT_R(0.0)));
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
-            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && (!released || weight*held < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
         if (i >= modes->rigid && !body) {
             phase->settles = phase->settles && modes->squared[i] > ROBOT_R(0.0);
