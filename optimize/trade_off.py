@@ -168,6 +168,13 @@ def trade_off_front(
 
 def _require_known_ends(study: Study, axes: Axes) -> None:
     held = {axis.kind for axis in axes.held}
+    for end in ("lower", "upper"):
+        if getattr(study.levels, end) is not None:
+            raise InvalidValue(
+                f"{study.source}: pareto.{end}",
+                "is for fronts of postures; a front over objectives takes its levels from "
+                "pareto.ends, such as ends = { deflection = [0.0005, 0.002] }",
+            )
     for kind in study.levels.ends:
         if kind not in held:
             raise InvalidValue(
