@@ -15,7 +15,7 @@ from .bounds import STEEPNESS, Bound
 from .ipopt import Found, Instance, VariableBounds
 from .nlp import Program
 from .study import Study
-from .tip_pose import POSE
+from .units import figure_in_words
 
 INDIFFERENT = 0.005
 """Share of the force that counts as no loss."""
@@ -80,8 +80,8 @@ def indifferent_ranges(
 
 
 def by_name(study: Study, rows: Array) -> dict[str, list[float]]:
-    """Return a row for each joint, and for each other value of the hardware, by its name."""
-    joints = zip(study.robot.joint_names, study.groups, strict=True)
+    """Return a row for each spring, and for each other value of the hardware, by its name."""
+    joints = zip(study.spring_names, study.groups, strict=True)
     springs = max(study.groups) + 1
     found = {name: rows[group].tolist() for name, group in joints}
     return found | dict(zip(study.range.names[springs:], rows[springs:].tolist(), strict=True))
@@ -116,7 +116,7 @@ def prices_of(
         return Price(bound, gain * one if unit == "N" else None, room, gain * one, unit)
 
     tasks = found.multipliers[: instance.shape.postures * program.rows]
-    by_row = tasks.reshape(-1, program.rows)[:, POSE:].sum(axis=0)
+    by_row = tasks.reshape(-1, program.rows)[:, program.held :].sum(axis=0)
     pieces = np.split(by_row, np.cumsum(program.bound_rows)[:-1])
     prices = [
         price(bound.name, STEEPNESS[bound.sense] * float(piece.sum()) * ROOM, _room(bound))
@@ -137,10 +137,8 @@ def prices_of(
 
 def _room(bound: Bound) -> str:
     """Return a tenth of a limit in words."""
-    room, unit = ROOM * bound.limit, bound.unit
-    if unit == "m":
-        room, unit = 1e3 * room, "mm"
-    return f"{room:g} {unit} {'more' if bound.sense == 'most' else 'less'}"
+    more = "more" if bound.sense == "most" else "less"
+    return f"{figure_in_words(ROOM * bound.limit, bound.unit, 3)} {more}"
 
 
 def worth_of(study: Study, force: float) -> tuple[float, str]:

@@ -24,7 +24,7 @@ from .poses import Candidate
 from .solver_options import quiet
 from .stiffest import Stiffest
 from .study import Study
-from .tip_pose import POSE, tip_pose
+from .tip_pose import posture_equations, tip_pose
 
 WITHIN = 1e-5
 """Excess of a bound's row up to which it counts as kept: Ipopt's tolerance."""
@@ -68,7 +68,7 @@ def reach(
     asked = replace(study, other_bounds=tuple(b for b in bounds if b != study.deflection))
     with_deflection = any(b == study.deflection for b in bounds)
     task, rows = task_function(asked)
-    limits = VariableBounds.of(study)
+    limits, rows_held = VariableBounds.of(study), posture_equations(study.model)
     n, V, K = study.robot.n, limits.lower.size, len(postures)
     chosen = [with_deflection, *(True for _ in asked.other_bounds)]
     soft = [sought is None or bound in sought for bound in asked.bounds]
@@ -77,8 +77,8 @@ def reach(
     held, poses = [], []
     for q, given in zip(qs, postures, strict=True):
         found = task(ca.vertcat(q, v), task_numbers(asked, *tip_pose(study.model, given)))[0]
-        poses.append(found[:POSE])
-        pieces = ca.vertsplit(found[POSE:], np.cumsum([0, *rows]).tolist())
+        poses.append(found[:rows_held])
+        pieces = ca.vertsplit(found[rows_held:], np.cumsum([0, *rows]).tolist())
         for piece, is_chosen, is_soft in zip(pieces, chosen, soft, strict=True):
             if is_chosen:
                 held.append(piece - t if is_soft else piece)
@@ -91,7 +91,7 @@ def reach(
     solver = ca.nlpsol("reach", "ipopt", problem, quiet(IPOPT))
     loose = 0.0 if free else np.inf
     flat = np.concatenate(list(postures))
-    lower, upper = study.robot.limits
+    lower, upper = limits.q_lower, limits.q_upper
     least = np.concatenate([limits.lower, np.tile(lower, K) if free else flat, [-np.inf]])
     most = np.concatenate([limits.upper, np.tile(upper, K) if free else flat, [np.inf]])
     best: Reach | None = None

@@ -26,17 +26,16 @@ from .certificate import KEEPS, Hardening, Setting, Worst
 from .evaluation import equipped, largest_share
 from .failure import SolverFailure
 from .hardware import Hardware
-from .impact_program import impact_program
 from .ipopt import FEASIBLE, IN_TURN, Found, Instance, VariableBounds, minimise
 from .nlp import NlpShape, Program, task_numbers
-from .problem import sought_parts, study_program
 from .reach import require_reachable
 from .repair import accurate_springs
 from .scenarios import Scenarios
 from .screening import PIECE, Screened
+from .setting import setting_of
 from .solve import Outcome
-from .study import Study, transient_limit
-from .timing import Timing, scenario_timing
+from .study import Study
+from .timing import Timing
 from .tip_pose import tip_pose
 from .variables.cover import Cover
 from .workers import Progress, as_completed, cores, workers, works_elsewhere
@@ -128,35 +127,15 @@ def robust_design(
             f"'{study.objective.kind}' looks at every impact at once, and {len(scenarios)} are "
             f"more than {MOST_AT_ONCE}; choose 'worst_force' or fewer scenarios",
         )
-    _require_lengths(study, scenarios)
+    require_lengths(study, scenarios)
     require_reachable(study, scenarios.poses, free=free)
-    timing, parts = scenario_timing(study, scenarios), sought_parts(study)
-    impacts = tuple(
-        impact_program(
-            study.model,
-            timing.nodes,
-            timing.substeps,
-            point,
-            parts,
-            compiled=True,
-            elsewhere=works_elsewhere(executor),
-        )
-        for point in scenarios.points
-    )
     with workers(min(max(2, len(scenarios) // PIECE), cores()), executor) as pool:
-        setting = Setting(
-            study,
-            scenarios,
-            study_program(study, impacts),
-            timing,
-            VariableBounds.of(study),
-            pool,
-            on_progress or (lambda *_: None),
-        )
+        elsewhere = works_elsewhere(executor)
+        setting = setting_of(study, scenarios, pool, on_progress, elsewhere=elsewhere)
         return _exchanged(setting, free)
 
 
-def _require_lengths(study: Study, scenarios: Scenarios) -> None:
+def require_lengths(study: Study, scenarios: Scenarios) -> None:
     """Raise InvalidValue if the objective does not fit the scenarios, before anything is built."""
     if study.objective.all_scenarios:
         numbers = np.arange(len(scenarios)) // len(scenarios.motors)
@@ -165,7 +144,7 @@ def _require_lengths(study: Study, scenarios: Scenarios) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class _State:
+class State:
     """Where an exchange stands."""
 
     best: Found
@@ -186,16 +165,18 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     study, given, limits = setting.study, setting.given, setting.limits
     nominal = Hardening(limits.vector(study.nominal), given)
     before, found = setting.worst(nominal)
-    equal = _equal_springs(setting, given)
+    equal = equal_springs(setting, given)
     equal_worst, more = setting.worst(Hardening(limits.vector(equal), given))
-    state = _exchange(setting, free, [*more[:1], *found], equal, equal_worst.share)
+    starts = [(each, None) for each in (equal, study.upper, study.lower)]
+    first = worst_few(setting, [*more[:1], *found], set())
+    state = exchange(setting, first, starts, given, equal_worst.share, free=free)
     choice = None
     if study.catalogue:
         choice, state = _bought(setting, state)
     springs, others = limits.parted(state.at.v)
     if choice is not None:  # their logarithms lose a digit
         springs = choice.springs
-    _require_thick_cover(setting, state.worst, equipped(study, ca.DM(springs), others))
+    require_thick_cover(setting, state.worst, equipped(study, ca.DM(springs), others))
     worth = worth_of(study, state.worst.force / state.worst.share * state.unit)
     return RobustDesign(
         study=study,
@@ -209,7 +190,7 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
         bound=state.bound,
         active=state.active,
         rounds=state.rounds,
-        indifferent=_indifferent(setting, state),
+        indifferent=indifferent(setting, state),
         prices=prices_of(study, state.instance, state.best, worth, setting.program),
         timing=setting.timing,
         compiled=setting.program.library,
@@ -217,23 +198,37 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     )
 
 
-def _exchange(
-    setting: Setting, free: bool, first: Sequence[Screened], equal: Array, unit: float
-) -> _State:
+def exchange(
+    setting: Setting,
+    first: Sequence[int],
+    starts: Sequence[tuple[Array, Array | None]],
+    postures: Array,
+    unit: float,
+    *,
+    free: bool,
+) -> State:
+    """Add the worst scenarios to an NLP until it holds all that decide.
+
+    Args:
+        setting: the problem.
+        first: scenarios to begin with.
+        starts: springs and other values from which the first NLP is solved.
+        postures: of each pose, P×n [rad].
+        unit: share of a limit that counts as one.
+        free: whether the postures are sought as well.
+    """
     study, given, limits = setting.study, setting.given, setting.limits
     if study.objective.scales_speed:
         unit = 1.0  # the limits themselves
     everything = study.objective.all_scenarios
-    active = list(range(len(setting.scenarios))) if everything else _fresh(setting, first, set())
+    active = list(range(len(setting.scenarios))) if everything else list(first)
     bends = setting.shares_of_bounds(Hardening(limits.vector(study.nominal), given))
-    poses, postures = [int(np.argmax(bends))], given
+    poses = [int(np.argmax(bends))]
     best: Found | None = None
     for rounds in range(1, ROUNDS + 1):
         places = [setting.scenarios[i] for i in active]
         poses = list(dict.fromkeys([*poses, *(place.pose for place in places)]))
         instance = _instance(setting, active, poses, unit)
-        starts: list[tuple[Array, Array | None]]
-        starts = [(each, None) for each in (equal, study.upper, study.lower)]
         if best:
             starts = [(best.springs, best.others)]
         best = _searched(setting, instance, postures[poses], starts, free)
@@ -243,12 +238,12 @@ def _exchange(
         at = Hardening(limits.vector(best.springs, best.others), postures, factors)
         worst, found = setting.worst(at)
         setting.say("exchange", rounds, ROUNDS)
-        state = _State(best, instance, at, worst, tuple(active), rounds, unit)
+        state = State(best, instance, at, worst, tuple(active), rounds, unit)
         shares = setting.shares_of_bounds(at)
         too_far = int(np.argmax(shares))
         allowed = max(state.bound, 1.0) if factors is not None else state.bound
         worse = [s for s in found if s.share > allowed * (1 + CLOSED)]
-        fresh = [] if everything else _fresh(setting, worse, set(active))
+        fresh = [] if everything else worst_few(setting, worse, set(active))
         if shares[too_far] > 1 + KEEPS and too_far not in poses:
             poses = [*poses, too_far]
         elif not fresh:
@@ -264,7 +259,7 @@ def _factors(setting: Setting, best: Found) -> Array | None:
     return np.asarray(10**best.own)
 
 
-def _fresh(setting: Setting, screened: Sequence[Screened], known: set[int]) -> list[int]:
+def worst_few(setting: Setting, screened: Sequence[Screened], known: set[int]) -> list[int]:
     """Return the worst few that are not known, each of another pose, point or direction."""
     kinds: set[tuple[int, ...]] = set()
     fresh: list[int] = []
@@ -337,20 +332,20 @@ def _as_outcome(found: Found, setting: Setting) -> Outcome:
     )
 
 
-def _equal_springs(setting: Setting, postures: Array) -> Array:
+def equal_springs(setting: Setting, postures: Array) -> Array:
     """Return springs in the nominal proportions that are just accurate in every pose."""
     study = setting.study
     softest = [accurate_springs(study, q, study.nominal) for q in postures]
     return np.asarray(np.max(softest, axis=0))
 
 
-def _require_thick_cover(setting: Setting, worst: Worst, hardware: Hardware) -> None:
+def require_thick_cover(setting: Setting, worst: Worst, hardware: Hardware) -> None:
     """Refuse a cover that some impact presses through: its law does not hold then."""
     thickness = [v.thickness for v in setting.study.other_variables if isinstance(v, Cover)]
     if not thickness or thickness[0] is None or hardware.cover is None:
         return
     # a scenario of a lower share may have the larger force
-    most = worst.share * max(transient_limit(contact) for contact in setting.scenarios.contacts)
+    most = worst.share * float(setting.scenarios.limits.max())
     depth = (most / float(hardware.cover)) ** (2 / 3)
     if depth > thickness[0]:
         raise InvalidValue(
@@ -360,14 +355,15 @@ def _require_thick_cover(setting: Setting, worst: Worst, hardware: Hardware) -> 
         )
 
 
-def _decisive(setting: Setting, state: _State) -> Setting:
+def _decisive(setting: Setting, state: State) -> Setting:
     """Return the setting with the scenarios alone that decided."""
     places = np.array([setting.scenarios[i] for i in state.active])
     rows = np.unique(places[:, :6], axis=0)
     return replace(setting, scenarios=replace(setting.scenarios, rows=rows))
 
 
-def _indifferent(setting: Setting, state: _State) -> Array:
+def indifferent(setting: Setting, state: State) -> Array:
+    """Return the range of each value that costs less than 0.5 %, the others held."""
     study = setting.study
     decisive = setting if study.objective.all_scenarios else _decisive(setting, state)
 
@@ -382,7 +378,7 @@ def _indifferent(setting: Setting, state: _State) -> Array:
     return indifferent_ranges(setting.limits, state.at.v, cost, keeps)
 
 
-def _bought(setting: Setting, state: _State) -> tuple[Bought, _State]:
+def _bought(setting: Setting, state: State) -> tuple[Bought, State]:
     """Take springs of the catalogue instead; the postures stay."""
     choice = bought(setting, _decisive(setting, state), state.at, state.worst)
     return choice, replace(state, at=choice.at, worst=choice.worst)

@@ -12,7 +12,6 @@ from softimpact.symbolic.robot.rigid import Array, Indices
 from .impact_program import NUMBERS
 from .nlp import Program
 from .scenarios import Scenario, Scenarios
-from .study import transient_limit
 
 CHUNK = 128
 """Most impacts simulated in one call."""
@@ -63,8 +62,7 @@ def screen(
     """
     places = scenarios.at(begin, end)
     force = forces_at(program, scenarios, postures, y, speeds, step, begin, end)
-    limits = np.array([transient_limit(contact) for contact in scenarios.contacts])
-    share = force / limits[places[:, 3]]
+    share = force / scenarios.limits[places[:, 3]]
     kept: dict[tuple[int, ...], Screened] = {}
     for i in np.argsort(-share):
         kind = tuple(places[i, :3])

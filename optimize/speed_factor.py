@@ -77,8 +77,8 @@ def speed_factor(
         compiled: whether to compile it, if there is a compiler.
 
     Raises:
-        InvalidValue: joints that are rigid, damped or coupled, a body that does not follow Hertz's
-            law, or motors that are held.
+        InvalidValue: joints that are rigid, sprung by the file or coupled, a body that does not
+            follow Hertz's law, or motors that are held.
     """
     _check(model, motors)
     n = model.robot.n
@@ -109,20 +109,24 @@ def _check(model: ImpactModel, motors: Sequence[Motors]) -> None:
         raise InvalidValue("motors", "names none")
     if robot.loops or robot.has_springs or not all(model.drives.elastic):
         raise InvalidValue("joint_stiffness", "is needed for all joints, and no closed chain")
-    if robot.damping.any():
-        raise InvalidValue("damping", "of joints is not known here; set it to zero")
 
 
 def _arrival(model: ImpactModel, point: str) -> ca.Function:
-    """Return (q, q̇) -> M⁻¹ and the row of J along the point's velocity."""
+    """Return (q, q̇) -> ``ImpactDynamics.mobility`` and the row of J along the point's way."""
     n = model.robot.n
     q, rate = ca.SX.sym("q", n), ca.SX.sym("dq", n)
     J = contact_point_jacobian(model.robot, model.robot.frame(point).name, q)
     velocity = ca.mtimes(J, rate)
     direction = velocity / ca.sqrt(ca.dot(velocity, velocity) + SLOW**2)
-    mobility = Factorisation(mass_matrix(model.robot, q)).solve(ca.SX.eye(n))
+    mass = mass_matrix(model.robot, q) + STEP / 2 * _joint_damping(model)
+    mobility = Factorisation(mass).solve(ca.SX.eye(n))
     row = ca.SX(ca.densify(ca.mtimes(direction.T, J)))
     return ca.Function("arrival", [q, rate], [ca.SX(ca.densify(mobility)), row])
+
+
+def _joint_damping(model: ImpactModel) -> ca.DM:
+    """Return the joints' own damping, n×n [N·m·s/rad]."""
+    return ca.sparsify(ca.diag(ca.DM(model.robot.damping)))
 
 
 def _forces(
@@ -140,10 +144,11 @@ def _forces(
         mobility=mobility,
         jacobian=jacobian,
         springs=ca.MX(ca.DM(drives.springs)),
-        rotors=ca.MX(known_rotors(model)),
+        rotor_mobility=ca.MX(1 / known_rotors(model)),
         gains=ca.MX(gains),
         damping=ca.MX(ca.DM.zeros(n) if drives.damping_gains is None else drives.damping_gains),
         velocity=rate,
+        joint_damping=_joint_damping(model),
     )
     nodes = ceil(horizon / STEP)
     laws = MotorLaws.of(motors)

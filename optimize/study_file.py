@@ -26,6 +26,7 @@ class RobotSection(Section):
     model: str
     tip: str | None = None
     hold_base: bool = False
+    floating: bool = False
     lock: dict[str, Finite] = Field(default_factory=dict)
     rotor_inertia: str | Finite | list[Finite] | None = None
     position_gain: Finite | list[Finite] | None = None
@@ -91,6 +92,7 @@ class ScenarioSection(Section):
 class StiffnessSection(Section):
     """Bounds on the joint stiffness and the design to improve on [N·m/rad]."""
 
+    rigid: list[str] = Field(default_factory=list)
     lower: Positive | list[Positive]
     upper: Positive | list[Positive]
     nominal: Positive | list[Positive]
@@ -108,11 +110,18 @@ class AccuracySection(Section):
 
 
 class ParetoSection(Section):
-    """Between which bounds on the deflection [m], and at how many, a Pareto front is sought."""
+    """What a Pareto front trades, at how many levels of each, and between which ends.
+
+    ``lower`` and ``upper`` are those of the deflection [m].
+    """
 
     points: Annotated[int, Field(ge=2, le=100)] = 11
     lower: Positive | None = None
     upper: Positive | None = None
+    objectives: list[str] | None = None
+    ends: dict[str, Annotated[list[Positive], Field(min_length=2, max_length=2)]] = Field(
+        default_factory=dict
+    )
 
     @model_validator(mode="after")
     def _lower_is_below(self) -> ParetoSection:

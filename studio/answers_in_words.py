@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from softimpact.optimize import Study
 from softimpact.optimize.answers import Price, by_name
+from softimpact.optimize.units import figure_in_words
 from softimpact.symbolic.robot.rigid import Array
 
 
@@ -18,10 +19,15 @@ def answers_in_words(study: Study, ranges: Array, prices: Sequence[Price]) -> It
         ranges: of each value of the hardware.
         prices: of bounds.
     """
-    joints, named = study.robot.joint_names, by_name(study, ranges)
+    joints, named = study.spring_names, by_name(study, ranges)
     springs = ", ".join(f"{name} {named[name][0]:.0f}–{named[name][1]:.0f}" for name in joints)
     yield f"costs less than 0.5 %, one at a time: {springs} N·m/rad"
-    others = [f"{k} {low:.4g}–{high:.4g}" for k, (low, high) in named.items() if k not in joints]
+    units = dict(zip(study.range.names, study.units, strict=True))
+    others = [
+        f"{name} {low:.4g}–{figure_in_words(high, units[name])}"
+        for name, (low, high) in named.items()
+        if name not in joints
+    ]
     if others:
         yield f"the same of the rest: {', '.join(others)}"
     for price in prices:

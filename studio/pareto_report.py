@@ -68,6 +68,12 @@ class ParetoReport:
         return kept[-1] if kept else None
 
 
+def price_of_deflection(point: ParetoPoint) -> float:
+    """Return what a tenth more of the bound on the deflection buys [N]; zero where none binds."""
+    prices = () if point.meaning is None else point.meaning.prices
+    return sum(p.gain for p in prices if p.bound == "accuracy.max_deflection")
+
+
 def pareto_report(pareto: Pareto, on_progress: Progress) -> ParetoReport:
     """Simulate the fronts' points and find the speeds that meet the limit."""
     fronts: dict[str, Front] = {

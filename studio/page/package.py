@@ -62,7 +62,8 @@ class PlacedContact(ImpactModel):
         """Return J of the point in the base's axes, whatever axes are asked for."""
         return placed_point_jacobian(self.robot, q, self.contact, self.moved_by)
 
-    def _direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+    def direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+        """Return nᵀJ over the links, 1×n."""
         return ca.mtimes(ca.reshape(direction, 1, 3), self.jacobian(q))
 
 

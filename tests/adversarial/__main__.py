@@ -61,7 +61,11 @@ def prepare(root: Path, made: Mapping[str, Generated]) -> None:
 
 def digest(package: Generated) -> str:
     """Return what changes with the package or with the search."""
-    files = [*package.folder.glob("src/*"), *package.folder.glob("include/*"), *HERE.glob("*.[cp]*")]
+    files = [
+        *package.folder.glob("src/*"),
+        *package.folder.glob("include/*"),
+        *HERE.glob("*.[cp]*"),
+    ]
     texts = (path.read_bytes() for path in sorted(files) if path.is_file())
     return hashlib.sha256(b"\0".join(texts)).hexdigest()[:16]
 

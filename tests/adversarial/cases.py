@@ -55,7 +55,9 @@ class Draw:
     @cached_property
     def pool(self) -> Array:
         """Configurations of a closed chain."""
-        return np.array(closed_configurations(self.robot.package.robot, plain_random.Random(5), POOL))
+        return np.array(
+            closed_configurations(self.robot.package.robot, plain_random.Random(5), POOL)
+        )
 
     def uniform(self, low: Any, high: Any, count: int) -> Array:
         """Return numbers between two."""
@@ -182,9 +184,7 @@ class Draw:
         length = np.linalg.norm(cases.n, axis=1, keepdims=True)
         n = (cases.n / length + 0.5 * scale * random.normal(size=(count, 3))) @ self.plane
         wide = self.wide
-        body = {
-            name: turned_one(getattr(cases, name)) for name in ("stiffness", "mass", "skin")
-        }
+        body = {name: turned_one(getattr(cases, name)) for name in ("stiffness", "mass", "skin")}
         return replace(
             cases,
             q=q,

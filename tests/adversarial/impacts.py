@@ -94,9 +94,7 @@ class Robot:
         beside = ca.SX.zeros(robot.n) if self.elastic else rotors
         zero = ca.DM.zeros(robot.n)
         known = Drives(beside, zero, (False,) * robot.n, zero)
-        model = impact_model(
-            robot, package.tip, drives=known, gravity=package.manifest.gravity
-        )
+        model = impact_model(robot, package.tip, drives=known, gravity=package.manifest.gravity)
         self.independent = list(closed_chain(robot).independent)
         self.actuated = np.array(model.actuated, dtype=bool)
         self.n = len(self.actuated)
