@@ -15,7 +15,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price
 from .branches import branches
-from .evaluation import largest_deflection
+from .evaluation import largest_deflection, largest_share
 from .failure import SolverFailure
 from .ipopt import IN_TURN, minimise
 from .meaning import meaning
@@ -142,7 +142,7 @@ class Design(Record):
 
     def rows(self) -> list[Row]:
         """Return a line for each search: the pose it began with, posture, springs and force."""
-        names = self.study.robot.joint_names
+        names, springs = self.study.robot.joint_names, self.study.spring_names
         return [
             {
                 "pose": found.name,
@@ -152,7 +152,7 @@ class Design(Record):
                 "deflection": largest_deflection(self.study, found.q, found.springs),
                 "solved": found.solved,
                 **{f"q_{name}": float(x) for name, x in zip(names, found.q, strict=True)},
-                **{f"k_{name}": float(k) for name, k in zip(names, found.springs, strict=True)},
+                **{f"k_{name}": float(k) for name, k in zip(springs, found.springs, strict=True)},
             }
             for pose in self.poses
             for mode, found in (("table", pose.table), ("free", pose.free))
@@ -241,7 +241,7 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
     meant = meaning(problem, winner, instance, again)
     task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
     accurate = study.nominal
-    if task.deflection_before > study.max_deflection * KEEPS:
+    if largest_share(study, task.candidate.q, study.nominal) > KEEPS:
         accurate = accurate_springs(study, task.candidate.q, study.nominal)
     at = task.candidate.q
     return Answers(

@@ -19,7 +19,7 @@ def answers_in_words(study: Study, ranges: Array, prices: Sequence[Price]) -> It
         ranges: of each value of the hardware.
         prices: of bounds.
     """
-    joints, named = study.robot.joint_names, by_name(study, ranges)
+    joints, named = study.spring_names, by_name(study, ranges)
     springs = ", ".join(f"{name} {named[name][0]:.0f}–{named[name][1]:.0f}" for name in joints)
     yield f"costs less than 0.5 %, one at a time: {springs} N·m/rad"
     units = dict(zip(study.range.names, study.units, strict=True))

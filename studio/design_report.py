@@ -203,6 +203,7 @@ def inputs(study: Study) -> dict[str, Any]:
         "robot": study.robot.name,
         "robot_digest": study.robot.digest(),
         "joints": study.robot.joint_names,
+        "joints_with_springs": study.spring_names,
         "tip": study.model.tip,
         "rotor_inertia": np.array(study.model.drives.rotors).ravel(),
         "direction": study.direction,

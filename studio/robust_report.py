@@ -59,13 +59,12 @@ def designed_model(design: Designed) -> ImpactModel:
     """Return the robot with the hardware that was found."""
     study = design.study
     hardware = equipped(study, ca.DM(design.springs), design.others)
-    drives = replace(
-        study.model.drives, springs=hardware.springs, rotors=ca.DM(hardware.reflected_rotors)
-    )
-    robot = study.robot
+    model = study.with_springs(design.springs)
+    drives = replace(model.drives, rotors=ca.DM(hardware.reflected_rotors))
+    robot = model.robot
     if hardware.masses is not None:
         robot = _scaled(robot, np.array(ca.DM(hardware.masses)).ravel())
-    return impact_model(robot, study.model.tip, drives=drives)
+    return impact_model(robot, model.tip, drives=drives)
 
 
 def _scaled(robot: Robot, masses: Array) -> Robot:

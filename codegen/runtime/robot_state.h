@@ -24,6 +24,7 @@ typedef struct {
     robot_real now, root; /* depth of the skin, and its root where it is Hertz's */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
+    robot_real swings; /* most that modes that stand add to the force as they swing, N */
 } robot_state;
 
 /* What is looked for in the steps of an impact that goes on after its peak. */

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from softimpact.optimize import Study
+from softimpact.optimize.coordinates import sprung
 from softimpact.optimize.study_scenarios import contacts_of
 from softimpact.symbolic.robot.rigid import Array
 
@@ -54,8 +55,8 @@ def impact_in_words(study: Study) -> str:
 def joints(
     study: Study, springs: Array | None = None, ranges: Array | None = None
 ) -> TableOfNumbers:
-    """Return the joints' numbers, with springs that were found and what is indifferent."""
-    rotors = np.array(study.model.drives.rotors, dtype=float).ravel()
+    """Return the numbers of joints with springs, with those found and what is indifferent."""
+    rotors = np.array(study.model.drives.rotors, dtype=float).ravel()[list(sprung(study.model))]
     columns = [study.lower, study.nominal, study.upper, rotors]
     heads = ["joint", "k_s from N·m/rad", "nominal", "to", "rotor kg m²"]
     if springs is not None:
@@ -65,7 +66,7 @@ def joints(
         columns += [ranges[:, 0], ranges[:, 1]]
         heads += ["costs < 0.5 % from", "to"]
     numbers = np.transpose(columns).tolist()
-    rows = [(name, *row) for name, row in zip(study.robot.joint_names, numbers, strict=True)]
+    rows = [(name, *row) for name, row in zip(study.spring_names, numbers, strict=True)]
     return TableOfNumbers("Joint stiffness", heads, rows)
 
 

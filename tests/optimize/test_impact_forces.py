@@ -322,7 +322,7 @@ def test_a_single_mass_on_a_damped_body() -> None:
         mobility=ca.MX(0.5),
         jacobian=ca.MX(1.0),
         springs=ca.MX(1e-9),
-        rotors=ca.MX(1.0),
+        rotor_mobility=ca.MX(1.0),
         gains=ca.MX(1, 1),
         damping=ca.MX(0.0),
         velocity=ca.MX(1.0),
