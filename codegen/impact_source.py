@@ -22,13 +22,13 @@ from .source import CSource
 GOLDEN_IMPACTS = 12
 """Impacts in a package's own test."""
 
-ACCURACY = 2e-3
+PEAK_ERROR = 2e-3
 """Bound stated of the error of peak forces, in double and in float."""
 
 HORIZON = QUASI_STATIC_FROM
 """Default time in which forces count [s]: what a transient limit is stated for."""
 
-STEPS = 800
+DEFAULT_BUDGET = 800
 """Default budget of steps of a call."""
 
 
@@ -129,10 +129,10 @@ def impact_source(
     record = ImpactRecord(
         points=tuple(points),
         flops=links.flops,
-        accuracy=ACCURACY,
+        accuracy=PEAK_ERROR,
         horizon=HORIZON,
         reaction_time=REACTION_TIME,
-        steps=STEPS,
+        steps=DEFAULT_BUDGET,
         searched=SEARCHED,
     )
     return ImpactSource(

@@ -41,8 +41,8 @@ static void see(const robot_state *s, robot_real f, robot_real h, robot_peak *pe
         force = s->f - ROBOT_R(0.25)*slope*slope/bend;
         time = s->time - ROBOT_R(0.5)*slope/bend;
     }
-    if (force > peak->force) {
-        peak->force = force;
+    if (force + s->swings > peak->force) {
+        peak->force = force + s->swings;
         peak->time = time;
         peak->contact = peak->contacts;
     }
@@ -137,6 +137,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->root = zero;
     s->rest = zero;
     s->depth = zero;
+    s->swings = zero;
 }
 
 /* Steps through a phase; false if the steps do not do. */
@@ -160,7 +161,7 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
         const bool falls = taken && s->f < peak->force;
         const bool looks = falls && (s->past % LOOKS == 0 || !s->touching);
         if ((falls && peak->force > budget->stop_above)
-            || (looks && robot_is_settled(s, peak->force, share))) {
+            || (looks && robot_is_settled(s, peak->force - s->swings, share))) {
             peak->ended = true;
             return true;
         }

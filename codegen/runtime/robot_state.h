@@ -23,6 +23,7 @@ typedef struct {
     robot_real u, u_before, root; /* deformation of the skin; root of its depth */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
+    robot_real swings; /* most that modes that stand add to the force as they swing, N */
 } robot_state;
 
 /* A step on trial. */

@@ -19,6 +19,12 @@
 #define FELT ROBOT_R(2e-4)
 /* Nor may it swing as motors are released so that spring and damper feel more than this share of it. */
 #define LEFT ROBOT_R(5e-5)
+/*
+ * Where the damper's jump at first touch is more than this share of the force, squared, the longest
+ * step is at most so many times as long as the skin takes for it, c over its stiffness.
+ */
+#define JUMPS ROBOT_R(0.1)
+#define JUMP_STEP ROBOT_R(24.0)
 /* Steps counted; more than any budget has. */
 #define MOST ROBOT_R(1e6)
 
@@ -161,7 +167,10 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
     }
     const robot_real share = ROBOT_FMIN(moving/impact->mobility, ROBOT_R(1.0));
     rate2 = ROBOT_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
-    const robot_real slowest = ROBOT_R(1.0)/time;
+    const robot_real jump = region->damping*impact->mobility;
+    const robot_real rise = jump*region->damping > JUMPS*region->stiffness
+        ? impact->skin_rate/(JUMP_STEP*jump) : ROBOT_R(0.0);
+    const robot_real slowest = ROBOT_FMAX(ROBOT_R(1.0)/time, rise);
     const robot_real rate = ROBOT_FMAX(slowest, ROBOT_FMAX(ROBOT_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const robot_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
