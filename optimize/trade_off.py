@@ -114,7 +114,7 @@ class TradeOff(Record):
     def rows(self) -> list[Row]:
         """Return a line for each point: its objectives and its hardware."""
         names = [axis.kind for axis in self.axes.all]
-        joints = self.study.robot.joint_names
+        joints = self.study.spring_names
         others = self.study.range.names[max(self.study.groups) + 1 :]
         return [
             {

@@ -28,8 +28,7 @@ typedef struct {
     robot_real rates[ROBOT_N]; /* joint velocities for an approach of 1 m/s */
 } robot_arrival;
 
-/* Matrices over the links alone, and of up to ROBOT_SYSTEM rows. */
-typedef robot_real robot_square[ROBOT_N][ROBOT_N];
+/* Matrices of up to ROBOT_SYSTEM rows. */
 typedef robot_real robot_matrix[ROBOT_SYSTEM][ROBOT_SYSTEM];
 
 /*
@@ -229,7 +228,7 @@ void robot_backward(int size, robot_matrix L, robot_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool robot_diagonalise(int size, robot_matrix A, robot_matrix X, robot_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
-bool robot_spectrum(robot_square A, robot_real values[ROBOT_N], robot_square vectors);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
+bool robot_spectrum(int size, robot_matrix A, robot_real *values, robot_matrix vectors);
 
 #endif

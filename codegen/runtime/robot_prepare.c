@@ -151,7 +151,7 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
     }
     const robot_real size =
         force > ROBOT_R(0.0) ? force : robot_two_body_force(region, impact->mobility, -force);
-    impact->scale = ROBOT_R(0.2)*size;
+    impact->scale = ROBOT_R(0.5)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
     impact->smooth = ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped);

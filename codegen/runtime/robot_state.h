@@ -5,12 +5,22 @@
 
 #include "robot_impact.h"
 
+/* What the next step takes of those before it, and of its own length. */
+typedef struct {
+    robot_real ratio; /* of its length to the last one's */
+    robot_real share, more, before; /* of the bend, see robot_press */
+    robot_real u, u_before; /* in u', 1/s */
+    robot_real hold, soft, yields; /* depth hold + soft f = what presses; x gives way by yields f */
+} robot_pace;
+
 typedef struct {
     robot_impact *impact;
     const robot_phase *phase;
     robot_real speed;
     robot_real scale; /* of forces, N */
     int level;
+    int even; /* steps in a row of this length */
+    robot_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     robot_real time;
     robot_real drifted; /* by the motors, m */
@@ -53,7 +63,7 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
 void robot_glide(const robot_state *s, robot_trial *t);
 
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
-void robot_press(const robot_state *s, robot_trial *t);
+void robot_press(robot_state *s, robot_trial *t);
 
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void robot_take(const robot_trial *t, robot_state *s);
