@@ -3,7 +3,7 @@
 #include "robot_state.h"
 
 /* Levels by which the first step is shorter than the last: the bend of the force jumps. */
-#define AFTER 2
+#define AFTER 4
 
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const robot_state *s, int size, robot_real *place, robot_real *rate)
