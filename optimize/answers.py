@@ -129,6 +129,8 @@ def prices_of(
         if spring and not up:
             more = "softer"
         name = f"stiffness.{end} of {names[i]}" if spring else f"hardware: {end} of {names[i]}"
+        if study.range.lower[i] == study.range.upper[i]:
+            name = f"{name}, which is held"
         gain = abs(float(multiplier)) * float(np.log10(1 + PRICED_SHARE))
         prices.append(price(name, gain, f"10 % {more}"))
     kept = [each for each in prices if each.gain > LEAST_GAIN_NAMED * one]

@@ -22,7 +22,6 @@ from softimpact.symbolic.robot.rigid import Array, Inertia
 
 from .coordinates import (
     along,
-    congruent,
     is_plain,
     moved_by_motors,
     of_springs,
@@ -133,14 +132,14 @@ class Machine:
     def mass_matrix(self, q: Matrix) -> Matrix:
         """Return the links' M(q) over the coordinates, m×m, without rotors."""
         return scaled_by_mass(
-            lambda robot: congruent(self.model, q, mass_matrix(robot, q)),
+            lambda robot: self.model.congruent(q, mass_matrix(robot, q)),
             self.robot,
             self.hardware.masses,
         )
 
     def rotor_matrix(self, q: Matrix) -> Matrix:
         """Return what the rotors add to M(q) where joints are rigid, m×m."""
-        return congruent(self.model, q, ca.diag(self.hardware.reflected_rotors))
+        return self.model.congruent(q, ca.diag(self.hardware.reflected_rotors))
 
     def gravity_torques(self, q: Matrix) -> Matrix:
         """Return the torques that hold the links against gravity, length m [N·m]."""

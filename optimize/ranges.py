@@ -126,7 +126,8 @@ def _between(
     if isinstance(axis, ObjectiveAxis):
         span = asked or axis.objective.span
         assert span is not None
-        return np.geomspace(tight, min(span) if axis.more_is_better else max(span), count)
+        loose = min(span) if axis.more_is_better else max(span)
+        return np.geomspace(tight, loose, count if loose != tight else 1)
     reached = [axis.value(state.worst, 0.0) for state in found.values()]
     loose = min(reached) if axis.more_is_better else max(reached)
     if asked is not None:

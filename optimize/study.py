@@ -53,7 +53,7 @@ from .study_robot import (
     require_within_limits,
     sprung_joints,
 )
-from .variables import JointStiffness, Range, Variable, joint_groups
+from .variables import JointStiffness, Range, Variable, joint_groups, require_common_stiffness
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,6 +267,7 @@ def build_study(file: StudyFile, source: Path) -> Study:
         motors = study_motors(file.motors, model)
     with _naming(source, "hardware", "joint_stiffness"):
         groups = joint_groups(model, file.hardware.joint_stiffness)
+        require_common_stiffness(model, groups, lower, upper)
     with _naming(source, "impact", "direction"):
         direction = unit_direction(file.impact.direction)
     with _naming(source, "impact", "region"):

@@ -210,8 +210,8 @@ def read_toml(source: Path) -> dict[str, Any]:
 
 def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
     """Return the fault that tells most: a name that is not known, before one that is missing."""
-    faults = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
-    place, reason = fault_in_words(dict(faults[0]))
+    faults = faults_of(error)
+    place, reason = faults[0]
     field = ".".join(str(part) for part in place)
     where = f"{source}: {field}" if field else str(source)
     more = f" (and {len(faults) - 1} more; softimpact check lists all)" if faults[1:] else ""
@@ -222,10 +222,38 @@ Fault = tuple[tuple[str | int, ...], str]
 """Where in a study something is wrong, and what."""
 
 
+OTHER_FORM = re.compile(r"_type$|literal_error")
+"""Kinds of faults of a field that has not the form that was tried, which may be one of several."""
+
+
+def faults_of(error: ValidationError) -> list[Fault]:
+    """Return what is wrong, names that are not known first.
+
+    Of a field that may have several forms only what is wrong with the nearest is told.
+    """
+    found = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+    placed = [(_place_of(fault["loc"]), fault) for fault in found]
+    told: dict[tuple[str | int, ...], str] = {}
+    for place, fault in placed:
+        reason = fault_in_words(dict(fault))
+        nearer = any(
+            other[: len(place)] == place
+            and (len(other) > len(place) or not OTHER_FORM.search(each["type"]))
+            for other, each in placed
+        )
+        if not (OTHER_FORM.search(fault["type"]) and nearer):
+            told.setdefault(*reason)
+    return list(told.items())
+
+
+def _place_of(parts: Sequence[str | int]) -> tuple[str | int, ...]:
+    """Return a place without the forms that pydantic names on the way."""
+    return tuple(part for part in parts if not re.search(r"Section|\[", str(part)))
+
+
 def fault_in_words(fault: Mapping[str, Any]) -> Fault:
     """Words for a field of the wrong form, with the name that may have been meant."""
-    # of a table that may have two forms, pydantic names the form, too
-    place = tuple(part for part in fault["loc"] if not re.search(r"Section|\[", str(part)))
+    place = _place_of(fault["loc"])
     reason = str(fault["msg"]).removeprefix("Value error, ")
     if not place:  # a check of the whole, which names its field itself
         field, _, words = reason.partition(": ")
@@ -234,6 +262,11 @@ def fault_in_words(fault: Mapping[str, Any]) -> Fault:
         reason = f"unknown{did_you_mean(str(place[-1]), _fields_of(place[:-1]))}"
     elif fault["type"] == "missing":
         reason = "is missing"
+    elif fault["type"] == "too_short":
+        least, found = fault["ctx"]["min_length"], fault["ctx"]["actual_length"]
+        reason = f"needs {least}, not {found}"
+        if not found:
+            reason = "is empty; name one at least, or leave the field out"
     return place, reason
 
 

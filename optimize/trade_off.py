@@ -114,7 +114,7 @@ class TradeOff(Record):
     def rows(self) -> list[Row]:
         """Return a line for each point: its objectives and its hardware."""
         names = [axis.kind for axis in self.axes.all]
-        joints = self.study.robot.joint_names
+        joints = self.study.spring_names
         others = self.study.range.names[max(self.study.groups) + 1 :]
         return [
             {
@@ -168,6 +168,13 @@ def trade_off_front(
 
 def _require_known_ends(study: Study, axes: Axes) -> None:
     held = {axis.kind for axis in axes.held}
+    for end in ("lower", "upper"):
+        if getattr(study.levels, end) is not None:
+            raise InvalidValue(
+                f"{study.source}: pareto.{end}",
+                "is for fronts of postures; a front over objectives takes its levels from "
+                "pareto.ends, such as ends = { deflection = [0.0005, 0.002] }",
+            )
     for kind in study.levels.ends:
         if kind not in held:
             raise InvalidValue(

@@ -25,9 +25,6 @@ SHIM = Path(__file__).parent / "shim"
 HEADER = "robot_page.h"
 """Of the shim: what it adds to the package's header."""
 
-STEPS = f"src/{PREFIX}_run.c", f"src/{PREFIX}_run_steps.h"
-"""The runtime's steps, and the name under which the shim includes them."""
-
 OPTIONAL = ("reduced_model", "giaf")
 """Functions that some robots' packages do not have."""
 
@@ -64,8 +61,6 @@ def sources_of(package: Package) -> dict[str, str]:
     """Return the package's sources with the shim's among them, by path."""
     rendered, _ = render(package)
     files = {p: text for p, text in rendered.items() if p.startswith(("src/", "include/"))}
-    run, steps = STEPS
-    files[steps] = files.pop(run)
     for path in sorted(SHIM.iterdir()):
         if path.name != HEADER:
             files[f"src/{_named(path.name)}"] = _named(path.read_text(encoding="utf-8"))
