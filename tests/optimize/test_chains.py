@@ -11,13 +11,14 @@ import casadi as ca
 import numpy as np
 import pytest
 from mechanisms import FOUR_BAR
+from robot_files import many_joints
 from studies import InProcess, written
 
 from softimpact.optimize import Study, design, load_study
 from softimpact.optimize.bounds.natural_frequency import NaturalFrequency
 from softimpact.optimize.coordinates import closure
 from softimpact.optimize.evaluation import figures, largest_share
-from softimpact.optimize.impact_program import impact_program
+from softimpact.optimize.impact_program import _posture, _pulled_back, impact_program
 from softimpact.optimize.poses import leaves_a_choice
 from softimpact.optimize.problem import peak_force, prepare
 from softimpact.optimize.timing import Timing
@@ -246,6 +247,28 @@ def test_a_coupled_arm_is_designed_as_the_arm_that_it_is(tmp_path: Path) -> None
     assert simulated(replace(study, poses=(replace(study.poses[0], q=tied.q),)), tied.springs) == (
         pytest.approx(tied.force, rel=3e-3)
     )
+
+
+@pytest.mark.slow
+def test_fourteen_joints_have_derivatives_that_compile(tmp_path: Path) -> None:
+    """A row of derivatives takes few operations; all rows at once took 208,000, and minutes."""
+    (tmp_path / "arm.urdf").write_text(many_joints(14))
+    content = {
+        **LEG,
+        "robot": {"model": "arm.urdf", "tip": "tool", "rotor_inertia": 0.3},
+        "poses": [{"name": "impact", "q": [0.3] * 14}],
+    }
+    study = study_of(tmp_path, content)
+    posture = _posture(study.model, study.model.tip, ("springs",))
+    back = _pulled_back(posture)
+    assert posture.n_instructions() < 12_000
+    assert back.n_instructions() < 4 * posture.n_instructions()
+    x, p, rows = np.random.default_rng(0).uniform(0.3, 0.6, (3, 1000))
+    x, p, row = x[: back.numel_in(0)], p[: back.numel_in(1)], rows[: back.numel_in(2)]
+    step = 1e-6 * np.cos(np.arange(x.size))
+    ahead, behind = (np.array(posture(x + s * step, p)).ravel() for s in (1, -1))
+    slope = float(np.array(back(x, p, row)).ravel() @ step)
+    assert slope == pytest.approx(float(row @ (ahead - behind)) / 2, rel=1e-6)
 
 
 def test_motors_are_known_by_the_joints_they_drive(tmp_path: Path) -> None:
