@@ -175,7 +175,7 @@ def test_what_a_floating_robot_cannot_have(
     ("q", "reason"),
     [
         ([0.0] * 6, "loop 'end_point' does not close"),
-        ([0.1, 0.2, 0.3], "has 3 values, but 6 are needed"),
+        ([0.1, 0.2, 0.3], "has 3 values, but 6 are needed, or 2 of the motors alone (q11, q21)"),
         ([3.1416, 0.0], "loop 'end_point' does not close"),
     ],
 )
