@@ -2,8 +2,8 @@
 /* What is left of an impact of robot_ when its motors are let go, in modes of loose motors. */
 #include "robot_state.h"
 
-/* Levels by which the first step is shorter than the last: the bend of the force jumps. */
-#define AFTER 2
+/* Levels by which the first step is shorter than the last: other modes stand. */
+#define AFTER 1
 
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const robot_state *s, int size, robot_real *place, robot_real *rate)
@@ -131,6 +131,10 @@ void robot_release(robot_state *s)
         s->rate[i] = b[i];
     }
     const robot_real h = s->phase->level[s->level].h;
+    const robot_real more = next->compliance - s->phase->compliance; /* of modes that stand from now on */
+    s->x += more*s->f;
+    s->u += more*s->f;
+    s->u_before += more*(s->f - s->rise);
     s->phase = next;
     s->drifted = ROBOT_R(0.0);
     s->level = 0;
@@ -139,6 +143,7 @@ void robot_release(robot_state *s)
     }
     s->level = s->level + AFTER < ROBOT_LEVELS ? s->level + AFTER : ROBOT_LEVELS - 1;
     s->past = s->past > 1 ? 1 : s->past;
+    s->even = 0;
     s->ticks = next->steps*(1 << (ROBOT_LEVELS - 1));
 }
 

@@ -5,7 +5,7 @@
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
 #define CONTACT_STEP ROBOT_R(1.0)
 #define MODE_STEP ROBOT_R(5.6)
-/* Most damping of a servo in the longest step, as a share of what it acts on. */
+/* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP ROBOT_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
@@ -124,14 +124,14 @@ static void mode_steps(robot_phase *phase, int i)
     }
 }
 
-/* Most that a servo's gains damp a mode, 1/s. */
+/* Most that joints and a servo's gains damp a mode, 1/s. */
 static robot_real damping_rate(const robot_phase *phase)
 {
     robot_real rate = ROBOT_R(0.0);
-    for (int i = 0; i < ROBOT_N && phase->damped; ++i) {
+    for (int i = 0; i < ROBOT_DAMPERS && phase->damped; ++i) {
         robot_real of_motor = ROBOT_R(0.0);
         for (int k = 0; k < phase->modes.count; ++k) {
-            const robot_real shape = phase->modes.shape[k][ROBOT_SYSTEM - ROBOT_N + i];
+            const robot_real shape = phase->modes.shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS + i];
             of_motor += shape*shape;
         }
         rate = ROBOT_FMAX(rate, phase->damping[i]*of_motor);
