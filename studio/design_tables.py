@@ -155,19 +155,24 @@ def _winner(report: DesignReport) -> list[str]:
     ]
 
 
+UNBENT = 1e-9
+"""Deflection [m] that counts as none."""
+
+
 def _meaning(report: DesignReport) -> list[str]:
     """What binds, which numbers matter, and whether the nominal springs are a fair reference."""
     study, answers = report.study, report.design.answers
     bound, reference = study.max_deflection, answers.reference
+    bent = "" if answers.deflection > UNBENT else " (no force of the study bends a spring)"
     lines = [
-        f"deflection {1e3 * answers.deflection:.4g} mm of {1e3 * bound:.4g} mm; motors "
+        f"deflection {1e3 * answers.deflection:.4g} mm of {1e3 * bound:.4g} mm{bent}; motors "
         f"{answers.worst_motors.kind} are the worst",
         *answers_in_words(study, answers.indifferent, answers.prices),
     ]
     if not np.array_equal(reference.springs, study.nominal):
         saved = 100 * (1 - report.design.winner.force / reference.force)
         lines.append(
-            f"nominal springs break the bound on the deflection in {study.task_pose.name}; just "
+            f"nominal springs break a bound in {study.task_pose.name}; just "
             f"stiff enough (k_s = {_stiffness(reference.springs)} kN·m/rad) they give "
             f"{reference.force:.1f} N, of which the design saves {saved:.1f} %"
         )
