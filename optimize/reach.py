@@ -15,6 +15,7 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+from .answers import limit_name
 from .bounds import Bound
 from .evaluation import figures, largest_deflection, largest_share
 from .failure import Infeasible
@@ -178,15 +179,13 @@ HOLDS = 1e-4
 
 def _holding(study: Study, found: Sequence[Reach], *, free: bool) -> tuple[str, ...]:
     """Return which limits of the hardware, and of the joints, keep designs from coming nearer."""
-    names, kinds = study.range.names, []
-    springs, V = max(study.groups) + 1, len(names)
-    for i, name in enumerate(names):
-        ends = {"upper" if each.holding[i] > 0 else "lower" for each in found
-                if abs(each.holding[i]) > HOLDS}  # fmt: skip
-        kind, _, of = name.partition(" of ")
-        table = "stiffness" if i < springs else f"hardware.{kind}"
-        whose = name if i < springs else of or kind
-        kinds += [(f"{table}.{end}", whose) for end in sorted(ends)]
+    V = study.range.lower.size
+    kinds = [
+        limit_name(study, i, end)
+        for i in range(V)
+        for end, sign in (("lower", -1), ("upper", 1))
+        if any(sign * each.holding[i] > HOLDS for each in found)
+    ]
     held = {which: [w for k, w in kinds if k == which] for which, _ in kinds}
     at = [f"{which} of {', '.join(whose)}" for which, whose in held.items()]
     if free:
