@@ -16,11 +16,11 @@ from softimpact.robots import built_in_studies
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.errors import did_you_mean
-from softimpact.symbolic.file_section import Finite, NotNegative, Positive, Section, Vector3
+from softimpact.symbolic.file_section import FileSection, Finite, NotNegative, Positive, Vector3
 from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, MotorKind, Reaction
 
 
-class RobotSection(Section):
+class RobotSection(FileSection):
     """Which robot, and its drives."""
 
     model: str
@@ -33,7 +33,7 @@ class RobotSection(Section):
     computed_torque_gain: Finite | None = None
 
 
-class ImpactSection(Section):
+class ImpactSection(FileSection):
     """What is hit, how fast and from where."""
 
     region: str
@@ -42,7 +42,7 @@ class ImpactSection(Section):
     speed: Positive
 
 
-class MotorsSection(Section):
+class MotorsSection(FileSection):
     """What the motors do during an impact; without a kind the worse end of {free, driven}."""
 
     kind: MotorKind | None = None
@@ -54,7 +54,7 @@ class MotorsSection(Section):
     horizon: Positive = QUASI_STATIC_FROM
 
 
-class HardwareSection(Section):
+class HardwareSection(FileSection):
     """Which variables of the hardware are sought: joint stiffness, each, equal or in groups.
 
     Other fields are tables of the variables in ``optimize/variables``.
@@ -66,7 +66,7 @@ class HardwareSection(Section):
     catalogue: Annotated[list[Positive], Field(min_length=1)] | None = None
 
 
-class ScenariosSection(Section):
+class ScenariosSection(FileSection):
     """The product of what may happen; what is left out is the study's own."""
 
     poses: Literal["all"] | Annotated[list[str], Field(min_length=1)] = "all"
@@ -78,7 +78,7 @@ class ScenariosSection(Section):
     speeds: Annotated[list[Positive], Field(min_length=1)] | None = None
 
 
-class ScenarioSection(Section):
+class ScenarioSection(FileSection):
     """One of a list of scenarios; what is left out is the study's own."""
 
     pose: str | None = None
@@ -89,7 +89,7 @@ class ScenarioSection(Section):
     speed: Positive | None = None
 
 
-class StiffnessSection(Section):
+class StiffnessSection(FileSection):
     """Bounds on the joint stiffness and the design to improve on [N·m/rad]."""
 
     rigid: list[str] = Field(default_factory=list)
@@ -98,7 +98,7 @@ class StiffnessSection(Section):
     nominal: Positive | list[Positive]
 
 
-class AccuracySection(Section):
+class AccuracySection(FileSection):
     """Loads on the tip [N, N·m, kg] and how far [m] the springs may give way under each."""
 
     forces: Annotated[list[Vector3], Field(min_length=1)]
@@ -109,7 +109,7 @@ class AccuracySection(Section):
     margin: Annotated[float, Field(ge=0, lt=1)] = 0.0
 
 
-class ParetoSection(Section):
+class ParetoSection(FileSection):
     """What a Pareto front trades, at how many levels of each, and between which ends.
 
     ``lower`` and ``upper`` are those of the deflection [m].
@@ -130,14 +130,14 @@ class ParetoSection(Section):
         return self
 
 
-class TaskSection(Section):
+class TaskSection(FileSection):
     """Where the tip is held: where one of the poses has it."""
 
     pose_of: str
     exact: bool = True
 
 
-class PoseSection(Section):
+class PoseSection(FileSection):
     """A candidate configuration."""
 
     name: str
@@ -145,7 +145,7 @@ class PoseSection(Section):
     recovered: bool = False
 
 
-class StudyFile(Section):
+class StudyFile(FileSection):
     """A study file, as written."""
 
     title: str = ""
