@@ -44,7 +44,7 @@ KINDS: tuple[CMotorKind, ...] = ("free_or_driven", "free", "driven", "servo")
 REACTION_TIMES = (1 / 64, 1 / 32, 1.0)
 """When they are released [s]; the last is never."""
 
-LOOKED_AT = 3 / 32
+GOLDEN_HORIZON = 3 / 32
 """For how long [s]."""
 
 
@@ -67,7 +67,7 @@ class Impact:
     speed: float
     motors: CMotorKind = "free"
     reaction_time: float = REACTION_TIMES[0]
-    horizon: float = LOOKED_AT
+    horizon: float = GOLDEN_HORIZON
     built_in: int | None = None
 
     @property
@@ -157,6 +157,7 @@ def reference_arrival(
         rotors=parameter("rotor_inertia"),
         gains=(parameter("position_gain") * held, parameter("damping_gain") * held),
         motors=motors,
+        damping=robot.damping[independent],
     )
 
 

@@ -293,7 +293,7 @@ def _manifest(package: Package, costs: Costs | None, hashes: dict[str, str]) -> 
         version=softimpact.__version__,
         model=package.robot.name,
         tip=package.tip,
-        digest=package.robot.digest(),
+        digest=package.robot.digest(floating=package.floating),
         real=package.real,
         joints=package.robot.joint_names,
         coordinates=package.coordinates,

@@ -53,6 +53,7 @@ class ReferenceArrival:
         rotors: B behind the springs.
         gains: K_p and K_d of a servo.
         motors: which coordinates have one.
+        damping: of the joints' own, against the motion before.
     """
 
     mass: Array
@@ -63,6 +64,7 @@ class ReferenceArrival:
     rotors: Array
     gains: tuple[Array, Array]
     motors: NDArray[np.bool_]
+    damping: Array
 
 
 @dataclass(frozen=True)
@@ -110,15 +112,15 @@ def _system(arrival: ReferenceArrival, kind: ReferenceKind) -> _System:
         held = arrival.motors.astype(float)
         K = P + np.diag(K_p * held)
         grid = np.ix_(at, at)
-        D = np.diag(K_d * held)
+        D = np.diag(K_d * held + arrival.damping)
         return _System(arrival.mass[grid], D[grid], K[grid], arrival.row[at], pull[at])
     k = np.diag(arrival.springs)
     if kind == "driven":
-        return _System(arrival.mass, np.zeros((n, n)), k + P, arrival.row, pull)
+        return _System(arrival.mass, np.diag(arrival.damping), k + P, arrival.row, pull)
     zero, none = np.zeros((n, n)), np.zeros(n)
     return _System(
         np.block([[arrival.mass, zero], [zero, np.diag(arrival.rotors)]]),
-        np.block([[zero, zero], [zero, np.diag(K_d)]]),
+        np.block([[np.diag(arrival.damping), zero], [zero, np.diag(K_d)]]),
         np.block([[k + P, -k], [-k, k + np.diag(K_p)]]),
         np.concatenate([arrival.row, none]),
         np.concatenate([pull, none]),

@@ -17,16 +17,16 @@ from .nlp import Program
 from .study import Study
 from .units import figure_in_words
 
-INDIFFERENT = 0.005
+NO_LOSS = 0.005
 """Share of the force that counts as no loss."""
 
 HALVINGS = 7
 """Bisections of the logarithm of a range: its ends are then right to 5 % or better."""
 
-WORTHLESS = 3e-6
+LEAST_GAIN_NAMED = 3e-6
 """Share of the objective below which a bound is not named: a thousandth of a newton or so."""
 
-ROOM = 0.1
+PRICED_SHARE = 0.1
 """Share of a limit whose price is told."""
 
 
@@ -65,7 +65,7 @@ def indifferent_ranges(
         cost: what is minimised, of v; greater than zero.
         keeps: whether all bounds are kept, of v.
     """
-    least = cost(v) * (1 + INDIFFERENT)
+    least = cost(v) * (1 + NO_LOSS)
     ranges = np.empty((v.size, 2))
 
     def good(place: int, value: float) -> bool:
@@ -77,6 +77,21 @@ def indifferent_ranges(
         for side, ends in enumerate((bounds.lower, bounds.upper)):
             ranges[i, side] = 10 ** _farthest(partial(good, i), float(own), float(ends[i]))
     return ranges
+
+
+def limit_name(study: Study, i: int, end: str) -> tuple[str, str]:
+    """Return the field of a study file that limits a value of the hardware, and whose value it is.
+
+    Args:
+        study: whose hardware it is.
+        i: number of the value in ``study.range``.
+        end: "lower" or "upper".
+    """
+    name = study.range.names[i]
+    if i <= max(study.groups):
+        return f"stiffness.{end}", name
+    kind, _, whose = name.partition(" of ")
+    return f"hardware.{kind}.{end}", whose or kind
 
 
 def by_name(study: Study, rows: Array) -> dict[str, list[float]]:
@@ -119,26 +134,27 @@ def prices_of(
     by_row = tasks.reshape(-1, program.rows)[:, program.held :].sum(axis=0)
     pieces = np.split(by_row, np.cumsum(program.bound_rows)[:-1])
     prices = [
-        price(bound.name, STEEPNESS[bound.sense] * float(piece.sum()) * ROOM, _room(bound))
+        price(bound.name, STEEPNESS[bound.sense] * float(piece.sum()) * PRICED_SHARE, _room(bound))
         for bound, piece in zip(study.bounds, pieces, strict=True)
     ]
-    names = study.range.names
     for i, multiplier in enumerate(found.range_multipliers):
         up, spring = multiplier > 0, i <= max(study.groups)
         end, more = ("upper", "stiffer" if spring else "more") if up else ("lower", "less")
         if spring and not up:
             more = "softer"
-        name = f"stiffness.{end} of {names[i]}" if spring else f"hardware: {end} of {names[i]}"
-        gain = abs(float(multiplier)) * float(np.log10(1 + ROOM))
+        name = " of ".join(limit_name(study, i, end))
+        if study.range.lower[i] == study.range.upper[i]:
+            name = f"{name}, which is held"
+        gain = abs(float(multiplier)) * float(np.log10(1 + PRICED_SHARE))
         prices.append(price(name, gain, f"10 % {more}"))
-    kept = [each for each in prices if each.gain > WORTHLESS * one]
+    kept = [each for each in prices if each.gain > LEAST_GAIN_NAMED * one]
     return tuple(sorted(kept, key=lambda each: -each.gain))
 
 
 def _room(bound: Bound) -> str:
     """Return a tenth of a limit in words."""
     more = "more" if bound.sense == "most" else "less"
-    return f"{figure_in_words(ROOM * bound.limit, bound.unit, 3)} {more}"
+    return f"{figure_in_words(PRICED_SHARE * bound.limit, bound.unit, 3)} {more}"
 
 
 def worth_of(study: Study, force: float) -> tuple[float, str]:

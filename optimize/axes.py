@@ -35,7 +35,7 @@ LOOSE = 1e3
 """Times the figure of a machine as it is that no design comes near."""
 
 
-Asked = tuple[Study, Scenarios]
+AskedAxis = tuple[Study, Scenarios]
 """A problem."""
 
 
@@ -54,7 +54,7 @@ class Axis(Protocol):
     def more_is_better(self) -> bool:
         """Whether values are to be large."""
 
-    def held(self, study: Study, scenarios: Scenarios, value: float) -> Asked:
+    def held(self, study: Study, scenarios: Scenarios, value: float) -> AskedAxis:
         """Return the problem in which designs are no worse than a value here."""
 
     def value(self, worst: Worst, held: float) -> float:
@@ -91,7 +91,7 @@ class BoundAxis:
         """Whether figures are to be large."""
         return self.bound.sense == "least"
 
-    def held(self, study: Study, scenarios: Scenarios, value: float) -> Asked:
+    def held(self, study: Study, scenarios: Scenarios, value: float) -> AskedAxis:
         """Return the problem with another limit."""
         if self.kind == Deflection.kind:
             return replace(study, max_deflection=value), scenarios
@@ -132,7 +132,7 @@ class ObjectiveAxis:
         """Whether values are to be large."""
         return self.objective.more_is_better
 
-    def held(self, study: Study, scenarios: Scenarios, value: float) -> Asked:
+    def held(self, study: Study, scenarios: Scenarios, value: float) -> AskedAxis:
         """Return the problem in which this objective has a value."""
         return study, self.objective.held(scenarios, value)
 

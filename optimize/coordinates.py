@@ -75,6 +75,16 @@ def with_springs(model: ImpactModel, springs: Array) -> ImpactModel:
     return replace(model, robot=robot, drives=replace(model.drives, springs=ca.DM(drives)))
 
 
+def without_sought(model: ImpactModel) -> ImpactModel:
+    """Return a model without the springs of passive joints that a design seeks, for all others."""
+    robot, passive = model.robot, [i for i in sprung(model) if not model.robot.actuated[i]]
+    if not passive:
+        return model
+    joints = [replace(j, stiffness=0.0) if i in passive else j for i, j in enumerate(robot.joints)]
+    names = tuple(robot.joint_names[i] for i in model.independent) if robot.loops else ()
+    return replace(model, robot=replace(robot, joints=tuple(joints), independent=names))
+
+
 def of_springs(model: ImpactModel) -> ca.DM:
     """Return the matrix that puts numbers of springs at their coordinates, zeros elsewhere."""
     places = {joint: place for place, joint in enumerate(model.independent)}

@@ -9,13 +9,13 @@ from itertools import product
 
 from .failure import SolverFailure
 from .ranges import Levels
-from .robust import State
+from .robust import ExchangeState
 from .trade import Trade
 
 WORTH = 1e-4
 """Share of an objective that counts as a difference: what forces are known to."""
 
-Node = tuple[int, ...]
+GridNode = tuple[int, ...]
 """Places of levels, one of each objective that is held; 0 is the tightest."""
 
 
@@ -29,9 +29,9 @@ class Grid:
         unsolved: Ipopt's statuses at levels within reach where it failed.
     """
 
-    found: dict[Node, State] = field(default_factory=dict)
-    beyond: set[Node] = field(default_factory=set)
-    unsolved: dict[Node, str] = field(default_factory=dict)
+    found: dict[GridNode, ExchangeState] = field(default_factory=dict)
+    beyond: set[GridNode] = field(default_factory=set)
+    unsolved: dict[GridNode, str] = field(default_factory=dict)
 
 
 def fill(trade: Trade, levels: Levels) -> Grid:
@@ -55,19 +55,19 @@ def fill(trade: Trade, levels: Levels) -> Grid:
     return grid
 
 
-def values_at(levels: Levels, node: Node) -> tuple[float, ...]:
+def values_at(levels: Levels, node: GridNode) -> tuple[float, ...]:
     """Return the values at which the objectives are held at a node."""
     return tuple(float(values[i]) for values, i in zip(levels.values, node, strict=True))
 
 
-def _beside(levels: Levels, node: Node, step: int) -> Iterator[Node]:
+def _beside(levels: Levels, node: GridNode, step: int) -> Iterator[GridNode]:
     """Yield the next looser (step 1) or tighter (-1) levels."""
     for k, values in enumerate(levels.values):
         if 0 <= node[k] + step < values.size:
             yield (*node[:k], node[k] + step, *node[k + 1 :])
 
 
-def _first_time(trade: Trade, levels: Levels, grid: Grid, node: Node) -> None:
+def _first_time(trade: Trade, levels: Levels, grid: Grid, node: GridNode) -> None:
     looser = list(_beside(levels, node, 1))
     if any(each in grid.beyond for each in looser):
         grid.beyond.add(node)
@@ -83,7 +83,7 @@ def _first_time(trade: Trade, levels: Levels, grid: Grid, node: Node) -> None:
         grid.beyond.add(node)
 
 
-def _again(trade: Trade, levels: Levels, grid: Grid, node: Node) -> None:
+def _again(trade: Trade, levels: Levels, grid: Grid, node: GridNode) -> None:
     tighter = [grid.found[each] for each in _beside(levels, node, -1) if each in grid.found]
     own = grid.found.get(node)
     if own is not None:
@@ -94,7 +94,11 @@ def _again(trade: Trade, levels: Levels, grid: Grid, node: Node) -> None:
 
 
 def _search(
-    trade: Trade, grid: Grid, node: Node, values: Sequence[float], neighbours: Sequence[State]
+    trade: Trade,
+    grid: Grid,
+    node: GridNode,
+    values: Sequence[float],
+    neighbours: Sequence[ExchangeState],
 ) -> str | None:
     """Put the better of what is known and what is found now into the grid.
 

@@ -40,7 +40,7 @@ IPOPT: dict[str, Any] = {
 EXCHANGES = 3
 """How often an NLP is solved at most, its windows of time set anew in between."""
 
-WORTH_AGAIN = 1e-3
+LEAST_GAIN_OF_WINDOWS = 1e-3
 """Share of the force by which setting the windows anew must help to be done once more."""
 
 
@@ -109,7 +109,7 @@ class VariableBounds:
         return values[: self.springs][list(self.groups)], values[self.springs :]
 
 
-NONE = np.empty(0)
+NO_OTHERS = np.empty(0)
 """Values of no other variables."""
 
 
@@ -205,7 +205,7 @@ def minimise(
         gained = (found.cost - again[0].cost) / abs(found.cost)
         if _order(again[0]) < _order(found):
             best = again
-        if gained < WORTH_AGAIN:
+        if gained < LEAST_GAIN_OF_WINDOWS:
             break
     return replace(best[0], iterations=iterations)
 

@@ -22,7 +22,7 @@ from .evaluation import largest_deflection
 from .failure import SolverFailure
 from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
-from .levels import ROOM, even_bounds, level_range
+from .levels import LEAST_ROOM, even_bounds, level_range
 from .meaning import meaning
 from .problem import Problem, prepare
 from .robust import search
@@ -174,7 +174,7 @@ def _levels(
     lower, upper = level_range(study, accurate[1].deflection, ideal)
     bounds = np.unique(np.geomspace(lower, upper, study.levels.points))
     bounds = even_bounds(bounds, first_forces(searches, placed(bounds), accurate, soft))
-    more = (study.max_deflection, ROOM * task.deflection)
+    more = (study.max_deflection, LEAST_ROOM * task.deflection)
     return placed(np.union1d(bounds, [bound for bound in more if lower < bound < upper]))
 
 

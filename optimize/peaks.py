@@ -16,13 +16,13 @@ from softimpact.symbolic.robot.rigid import Array
 WINDOWS = 2
 """Windows of time, each with its peak."""
 
-ALIKE = 0.98
+NEARLY_AS_LARGE = 0.98
 """Share of the largest peak from which another within the same window deserves its own."""
 
-PARTED = 0.01
+LEAST_DIP = 0.01
 """Share of the largest peak by which the force falls between two that are not one."""
 
-FLAT = 1e-9
+LEAST_CURVATURE = 1e-9
 """Curvature [N] below which three forces lie on a line."""
 
 
@@ -42,7 +42,7 @@ def _vertices(forces: Matrix) -> Matrix:
     """Return the forces; at local maxima those of the parabola through three of them."""
     before, after = ca.vertcat(0, forces[:-1]), ca.vertcat(forces[1:], forces[-1])
     is_top = (forces >= before) * (forces >= after)
-    curvature = ca.fmax(2 * forces - before - after, FLAT)
+    curvature = ca.fmax(2 * forces - before - after, LEAST_CURVATURE)
     return forces + is_top * (after - before) ** 2 / (8 * curvature)
 
 
@@ -62,7 +62,7 @@ def hides_a_peak(forces: Array, boundary: int) -> bool:
     for part in (forces[:boundary], forces[boundary:]):
         split = valley(part)
         lower = _lower_peak(part)[split] if split else 0.0
-        if lower > ALIKE * largest and lower - part[split] > PARTED * largest:
+        if lower > NEARLY_AS_LARGE * largest and lower - part[split] > LEAST_DIP * largest:
             return True
     return False
 

@@ -16,7 +16,7 @@ from .repair import held_elsewhere, posture_at_pose
 from .study import Pose, Study
 from .tip_pose import POSE, posture_error, tip_pose, tip_poses
 
-TURNED = 0.1
+LEAST_TURN = 0.1
 """Angle [rad] about the base from which a pose counts as another one, turned."""
 
 
@@ -72,7 +72,7 @@ def candidates(study: Study) -> list[Candidate]:
     turns = np.zeros(len(given))
     if first.kind is JointKind.HINGE and turns_with_first(study.model):
         turns = _best_turns(study, given, task)
-        turns[abs(turns) <= TURNED] = 0.0
+        turns[abs(turns) <= LEAST_TURN] = 0.0
     back = given.copy()
     back[:, 0] = [
         _within_limits(first, q - turn) for q, turn in zip(given[:, 0], turns, strict=True)

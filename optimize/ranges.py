@@ -13,9 +13,9 @@ from softimpact.symbolic.robot.rigid import Array
 from .axes import BoundAxis, ObjectiveAxis
 from .evaluation import figures
 from .failure import SolverFailure
-from .levels import ROOM, TINY
+from .levels import LEAST_ROOM, SAME_FORCE_SHARE
 from .reach import reach
-from .robust import State
+from .robust import ExchangeState
 from .trade import Trade
 
 NO_CHOICE = 1.02
@@ -39,8 +39,8 @@ class Levels:
     """
 
     values: tuple[Array, ...]
-    ends: tuple[State, ...]
-    known: dict[tuple[int, ...], State]
+    ends: tuple[ExchangeState, ...]
+    known: dict[tuple[int, ...], ExchangeState]
 
 
 Place = tuple[float, ...]
@@ -92,7 +92,7 @@ def _tightest(trade: Trade, i: int) -> float:
     best = best_figure(trade, i)
     wanted = None if ends is None else (max(ends) if axis.more_is_better else min(ends))
     if wanted is None:
-        return best / ROOM if axis.more_is_better else best * ROOM
+        return best / LEAST_ROOM if axis.more_is_better else best * LEAST_ROOM
     if (wanted > best) if axis.more_is_better else (wanted < best):
         side, change = ("largest", "lower") if axis.more_is_better else ("least", "raise")
         raise InvalidValue(
@@ -117,14 +117,17 @@ def best_figure(trade: Trade, i: int) -> float:
     return float(each.min() if axis.more_is_better else each.max())
 
 
-def _between(trade: Trade, i: int, tight: float, found: dict[Place, State], count: int) -> Array:
+def _between(
+    trade: Trade, i: int, tight: float, found: dict[Place, ExchangeState], count: int
+) -> Array:
     """Return an objective's levels, the tightest first; what is found on the way is added."""
     axis, study = trade.axes.held[i], trade.setting.study
     asked = study.levels.ends.get(axis.kind)
     if isinstance(axis, ObjectiveAxis):
         span = asked or axis.objective.span
         assert span is not None
-        return np.geomspace(tight, min(span) if axis.more_is_better else max(span), count)
+        loose = min(span) if axis.more_is_better else max(span)
+        return np.geomspace(tight, loose, count if loose != tight else 1)
     reached = [axis.value(state.worst, 0.0) for state in found.values()]
     loose = min(reached) if axis.more_is_better else max(reached)
     if asked is not None:
@@ -145,7 +148,7 @@ def _between(trade: Trade, i: int, tight: float, found: dict[Place, State], coun
 
 
 def _evenly(
-    trade: Trade, i: int, tight: float, loose: float, found: dict[Place, State], count: int
+    trade: Trade, i: int, tight: float, loose: float, found: dict[Place, ExchangeState], count: int
 ) -> Array:
     """Halve the longest piece of the front between the ends again and again.
 
@@ -153,7 +156,7 @@ def _evenly(
     """
     levels, held = [tight, loose], [tight, trade.loosest[i]]
     costs = [trade.cost(found[_moved(trade, i, value)]) for value in held]
-    height = max(abs(costs[0] - costs[1]), TINY * abs(costs[0]))
+    height = max(abs(costs[0] - costs[1]), SAME_FORCE_SHARE * abs(costs[0]))
     width = abs(np.log(tight / loose))
     while len(levels) < count:
         pieces = np.hypot(np.diff(np.log(levels)) / width, np.diff(costs) / height)

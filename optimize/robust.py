@@ -31,7 +31,7 @@ from .nlp import NlpShape, Program, task_numbers
 from .reach import require_reachable
 from .repair import accurate_springs
 from .scenarios import Scenarios
-from .screening import PIECE, Screened
+from .screening import SCENARIOS_IN_A_JOB, Screened
 from .setting import setting_of
 from .solve import Outcome
 from .study import Study
@@ -43,10 +43,10 @@ from .workers import Progress, as_completed, cores, workers, works_elsewhere
 ROUNDS = 40
 """Most exchanges."""
 
-ADDED = 4
+ADDED_IN_AN_EXCHANGE = 4
 """Scenarios added in an exchange: the worst, each of another pose, point or direction."""
 
-CLOSED = 1e-4
+MOST_EXCESS = 1e-4
 """Share by which a scenario may exceed what the NLP says: forces are no better known."""
 
 MOST_AT_ONCE = 300
@@ -129,7 +129,7 @@ def robust_design(
         )
     require_lengths(study, scenarios)
     require_reachable(study, scenarios.poses, free=free)
-    with workers(min(max(2, len(scenarios) // PIECE), cores()), executor) as pool:
+    with workers(min(max(2, len(scenarios) // SCENARIOS_IN_A_JOB), cores()), executor) as pool:
         elsewhere = works_elsewhere(executor)
         setting = setting_of(study, scenarios, pool, on_progress, elsewhere=elsewhere)
         return _exchanged(setting, free)
@@ -144,7 +144,7 @@ def require_lengths(study: Study, scenarios: Scenarios) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class ExchangeState:
     """Where an exchange stands."""
 
     best: Found
@@ -206,7 +206,7 @@ def exchange(
     unit: float,
     *,
     free: bool,
-) -> State:
+) -> ExchangeState:
     """Add the worst scenarios to an NLP until it holds all that decide.
 
     Args:
@@ -238,11 +238,11 @@ def exchange(
         at = Hardening(limits.vector(best.springs, best.others), postures, factors)
         worst, found = setting.worst(at)
         setting.say("exchange", rounds, ROUNDS)
-        state = State(best, instance, at, worst, tuple(active), rounds, unit)
+        state = ExchangeState(best, instance, at, worst, tuple(active), rounds, unit)
         shares = setting.shares_of_bounds(at)
         too_far = int(np.argmax(shares))
         allowed = max(state.bound, 1.0) if factors is not None else state.bound
-        worse = [s for s in found if s.share > allowed * (1 + CLOSED)]
+        worse = [s for s in found if s.share > allowed * (1 + MOST_EXCESS)]
         fresh = [] if everything else worst_few(setting, worse, set(active))
         if shares[too_far] > 1 + KEEPS and too_far not in poses:
             poses = [*poses, too_far]
@@ -265,7 +265,7 @@ def worst_few(setting: Setting, screened: Sequence[Screened], known: set[int]) -
     fresh: list[int] = []
     for each in screened:
         kind = setting.scenarios[each.index][:3]
-        if each.index not in known and kind not in kinds and len(fresh) < ADDED:
+        if each.index not in known and kind not in kinds and len(fresh) < ADDED_IN_AN_EXCHANGE:
             kinds.add(kind)
             fresh.append(each.index)
     return fresh
@@ -355,14 +355,14 @@ def require_thick_cover(setting: Setting, worst: Worst, hardware: Hardware) -> N
         )
 
 
-def _decisive(setting: Setting, state: State) -> Setting:
+def _decisive(setting: Setting, state: ExchangeState) -> Setting:
     """Return the setting with the scenarios alone that decided."""
     places = np.array([setting.scenarios[i] for i in state.active])
     rows = np.unique(places[:, :6], axis=0)
     return replace(setting, scenarios=replace(setting.scenarios, rows=rows))
 
 
-def indifferent(setting: Setting, state: State) -> Array:
+def indifferent(setting: Setting, state: ExchangeState) -> Array:
     """Return the range of each value that costs less than 0.5 %, the others held."""
     study = setting.study
     decisive = setting if study.objective.all_scenarios else _decisive(setting, state)
@@ -378,7 +378,7 @@ def indifferent(setting: Setting, state: State) -> Array:
     return indifferent_ranges(setting.limits, state.at.v, cost, keeps)
 
 
-def _bought(setting: Setting, state: State) -> tuple[Bought, State]:
+def _bought(setting: Setting, state: ExchangeState) -> tuple[Bought, ExchangeState]:
     """Take springs of the catalogue instead; the postures stay."""
     choice = bought(setting, _decisive(setting, state), state.at, state.worst)
     return choice, replace(state, at=choice.at, worst=choice.worst)

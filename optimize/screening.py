@@ -13,13 +13,13 @@ from .impact_program import NUMBERS
 from .nlp import Program
 from .scenarios import Scenario, Scenarios
 
-CHUNK = 128
+IMPACTS_IN_A_CALL = 128
 """Most impacts simulated in one call."""
 
-PIECE = 1000
+SCENARIOS_IN_A_JOB = 1000
 """Scenarios in one job."""
 
-KEPT = 8
+SCENARIOS_REPORTED = 8
 """Scenarios of a piece that are reported: the worst, each of another pose, point or direction."""
 
 
@@ -38,62 +38,54 @@ class Screened:
     force: float
 
 
-def screen(
-    program: Program,
-    scenarios: Scenarios,
-    postures: Array,
-    y: Array,
-    speeds: Array | None,
-    step: float,
-    begin: int,
-    end: int,
-) -> list[Screened]:
-    """Return the worst of some scenarios, worst first.
+@dataclass(frozen=True, eq=False)
+class Screening:
+    """A machine and the scenarios in which it is looked at, piece by piece.
 
-    Args:
+    Attributes:
         program: functions of the impacts, one for each contact point.
         scenarios: all of them.
         postures: of each pose, P×n [rad].
         y: log10 of what impacts feel of the hardware.
         speeds: factor on the speed of all, or of each scenario; None where speeds stay.
         step: time step of the impacts [s].
-        begin: number of the first scenario.
-        end: number after that of the last.
     """
-    places = scenarios.at(begin, end)
-    force = forces_at(program, scenarios, postures, y, speeds, step, begin, end)
-    share = force / scenarios.limits[places[:, 3]]
+
+    program: Program
+    scenarios: Scenarios
+    postures: Array
+    y: Array
+    speeds: Array | None
+    step: float
+
+
+def screen(every: Screening, begin: int, end: int) -> list[Screened]:
+    """Return the worst of the scenarios from one number up to before another, worst first."""
+    places = every.scenarios.at(begin, end)
+    force = forces_at(every, begin, end)
+    share = force / every.scenarios.limits[places[:, 3]]
     kept: dict[tuple[int, ...], Screened] = {}
     for i in np.argsort(-share):
         kind = tuple(places[i, :3])
         if kind not in kept:
             kept[kind] = Screened(begin + int(i), float(share[i]), float(force[i]))
-        if len(kept) == KEPT:
+        if len(kept) == SCENARIOS_REPORTED:
             break
     return list(kept.values())
 
 
-def forces_at(
-    program: Program,
-    scenarios: Scenarios,
-    postures: Array,
-    y: Array,
-    speeds: Array | None,
-    step: float,
-    begin: int,
-    end: int,
-) -> Array:
-    """Return the largest peak of each of some scenarios [N]; arguments as ``screen``."""
-    places = scenarios.at(begin, end)
-    x = np.column_stack([postures[places[:, 0]], np.tile(y, (len(places), 1))])
-    if speeds is not None:
-        which = np.arange(begin, end) // len(scenarios.motors) if speeds.size > 1 else 0
-        x = np.column_stack([x, np.broadcast_to(np.log10(speeds[which]), len(places))])
-    numbers = impact_numbers(scenarios, places, step)
+def forces_at(every: Screening, begin: int, end: int) -> Array:
+    """Return the largest peak of each of these scenarios [N]."""
+    places = every.scenarios.at(begin, end)
+    x = np.column_stack([every.postures[places[:, 0]], np.tile(every.y, (len(places), 1))])
+    if every.speeds is not None:
+        which = np.arange(begin, end) // len(every.scenarios.motors) if every.speeds.size > 1 else 0
+        x = np.column_stack([x, np.broadcast_to(np.log10(every.speeds[which]), len(places))])
+    numbers = impact_numbers(every.scenarios, places, every.step)
     force = np.empty(len(places))
     for point in np.unique(places[:, 1]):
         at = np.flatnonzero(places[:, 1] == point)
-        force[at] = largest_forces(program, int(point), x[at], numbers[at])
+        force[at] = largest_forces(every.program, int(point), x[at], numbers[at])
     return force
 
 
@@ -119,7 +111,9 @@ def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Ar
         numbers: of the impacts, m×``NUMBERS``.
     """
     count = len(x)
-    chunk = min(CHUNK, 1 << (count - 1).bit_length())  # few sizes, so that maps are made once
+    chunk = min(
+        IMPACTS_IN_A_CALL, 1 << (count - 1).bit_length()
+    )  # few sizes, so that maps are made once
     padding = (-count) % chunk
     x, numbers = (np.pad(a, ((0, padding), (0, 0)), mode="edge") for a in (x, numbers))
     peaks = program.impacts[point]["peaks"].map(chunk)

@@ -30,13 +30,13 @@ from .motor_laws import MotorLaws
 STEP = 2e-4
 """Time between two forces [s]: a fifth of the shortest peaks' width at half their height."""
 
-KEPT = 0.01
+SHARE_KEPT_FREE = 0.01
 """Share of a limit that is kept free: for peaks between two forces, and the leapfrog's error."""
 
 SHARP = 600.0
 """Sharpness of the largest force: n alike ones count log(n)/SHARP of the limit too much."""
 
-SLOW = 1e-3
+FADING_SPEED = 1e-3
 """Speed [m/s] below which a point's direction fades out, so that it has one at rest, too."""
 
 
@@ -93,7 +93,12 @@ def speed_factor(
                 shares.append(force * _one_over(limits, force.numel()))
     share = ca.logsumexp(SHARP * ca.vertcat(*shares)) / SHARP
     factor = ca.Function(
-        "speed_factor", [q, rate], [(1 - KEPT) / share], ["q", "dq"], ["factor"], FEW_DIRECTIONS
+        "speed_factor",
+        [q, rate],
+        [(1 - SHARE_KEPT_FREE) / share],
+        ["q", "dq"],
+        ["factor"],
+        FEW_DIRECTIONS,
     )
     if not compiled:
         return factor
@@ -117,7 +122,7 @@ def _arrival(model: ImpactModel, point: str) -> ca.Function:
     q, rate = ca.SX.sym("q", n), ca.SX.sym("dq", n)
     J = contact_point_jacobian(model.robot, model.robot.frame(point).name, q)
     velocity = ca.mtimes(J, rate)
-    direction = velocity / ca.sqrt(ca.dot(velocity, velocity) + SLOW**2)
+    direction = velocity / ca.sqrt(ca.dot(velocity, velocity) + FADING_SPEED**2)
     mass = mass_matrix(model.robot, q) + STEP / 2 * _joint_damping(model)
     mobility = Factorisation(mass).solve(ca.SX.eye(n))
     row = ca.SX(ca.densify(ca.mtimes(direction.T, J)))

@@ -11,10 +11,10 @@ from softimpact.symbolic.robot.rigid import Array
 from .axes import Axes
 from .certificate import Hardening, Setting, Worst
 from .failure import SolverFailure
-from .reach import WITHIN, Reach, reach
-from .robust import State, exchange, worst_few
+from .reach import ROW_TOLERANCE, Reach, reach
+from .robust import ExchangeState, exchange, worst_few
 
-Start = tuple[Array, Array | None]
+TradeStart = tuple[Array, Array | None]
 """Springs and other values that a search begins with."""
 
 
@@ -48,12 +48,14 @@ class Trade:
             asked = axis.held(*asked, value)
         return replace(self.setting, study=asked[0], scenarios=asked[1])
 
-    def first(self, values: Sequence[float]) -> State:
+    def first(self, values: Sequence[float]) -> ExchangeState:
         """Search without a neighbour to begin with; raises SolverFailure."""
         setting = self.at(values)
         study, limits = setting.study, setting.limits
-        starts: list[Start] = [(each, None) for each in (study.nominal, study.upper, study.lower)]
-        found: list[State] = []
+        starts: list[TradeStart] = [
+            (each, None) for each in (study.nominal, study.upper, study.lower)
+        ]
+        found: list[ExchangeState] = []
         failed: SolverFailure | None = None
         for postures in self.postures:
             _, screened = setting.worst(Hardening(limits.vector(study.nominal), postures))
@@ -69,7 +71,7 @@ class Trade:
             raise failed
         return min(found, key=self.cost)
 
-    def near(self, values: Sequence[float], neighbours: Sequence[State]) -> State:
+    def near(self, values: Sequence[float], neighbours: Sequence[ExchangeState]) -> ExchangeState:
         """Search from what neighbours found; raises SolverFailure."""
         setting = self.at(values)
         parted = [setting.limits.parted(state.at.v) for state in neighbours]
@@ -77,12 +79,12 @@ class Trade:
         postures = min(neighbours, key=self.cost).at.postures
         return exchange(setting, active, parted, postures, self.unit, free=self.free)
 
-    def cost(self, state: State) -> float:
+    def cost(self, state: ExchangeState) -> float:
         """Return what the objective that is sought makes small."""
         value = state.worst.value
         return -value if self.axes.sought.more_is_better else value
 
-    def values(self, state: State, held: Sequence[float]) -> tuple[float, ...]:
+    def values(self, state: ExchangeState, held: Sequence[float]) -> tuple[float, ...]:
         """Return the objectives of a design that was found with the others held; sought first."""
         others = zip(self.axes.held, held, strict=True)
         return (state.worst.value, *(axis.value(state.worst, value) for axis, value in others))
@@ -94,4 +96,4 @@ class Trade:
 
     def within_reach(self, values: Sequence[float]) -> bool:
         """Return whether some hardware keeps all bounds at some values."""
-        return self.reached(values).excess <= WITHIN
+        return self.reached(values).excess <= ROW_TOLERANCE

@@ -23,7 +23,7 @@ from .bounds import Deflection
 from .certificate import Hardening, Worst
 from .dominance import knee, undominated
 from .evaluation import equipped
-from .grid import WORTH, Grid, Node, fill, values_at
+from .grid import WORTH, Grid, GridNode, fill, values_at
 from .poses import candidates, leaves_a_choice
 from .ranges import Levels, levels_of
 from .reach import require_reachable
@@ -114,7 +114,7 @@ class TradeOff(Record):
     def rows(self) -> list[Row]:
         """Return a line for each point: its objectives and its hardware."""
         names = [axis.kind for axis in self.axes.all]
-        joints = self.study.robot.joint_names
+        joints = self.study.spring_names
         others = self.study.range.names[max(self.study.groups) + 1 :]
         return [
             {
@@ -168,6 +168,13 @@ def trade_off_front(
 
 def _require_known_ends(study: Study, axes: Axes) -> None:
     held = {axis.kind for axis in axes.held}
+    for end in ("lower", "upper"):
+        if getattr(study.levels, end) is not None:
+            raise InvalidValue(
+                f"{study.source}: pareto.{end}",
+                "is for fronts of postures; a front over objectives takes its levels from "
+                "pareto.ends, such as ends = { deflection = [0.0005, 0.002] }",
+            )
     for kind in study.levels.ends:
         if kind not in held:
             raise InvalidValue(
@@ -265,7 +272,7 @@ def _result(trade: Trade, levels: Levels, grid: Grid) -> TradeOff:
     )
 
 
-def _point(trade: Trade, levels: Levels, grid: Grid, node: Node, values: Array) -> TradePoint:
+def _point(trade: Trade, levels: Levels, grid: Grid, node: GridNode, values: Array) -> TradePoint:
     setting, state = trade.at(values_at(levels, node)), grid.found[node]
     study = setting.study
     springs, others = setting.limits.parted(state.at.v)

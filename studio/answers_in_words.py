@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from softimpact.optimize import Study
 from softimpact.optimize.answers import Price, by_name
 from softimpact.optimize.units import figure_in_words
@@ -20,8 +22,10 @@ def answers_in_words(study: Study, ranges: Array, prices: Sequence[Price]) -> It
         prices: of bounds.
     """
     joints, named = study.spring_names, by_name(study, ranges)
-    springs = ", ".join(f"{name} {named[name][0]:.0f}–{named[name][1]:.0f}" for name in joints)
-    yield f"costs less than 0.5 %, one at a time: {springs} N·m/rad"
+    sought = [joints[i] for i in np.flatnonzero(study.lower < study.upper)]
+    springs = ", ".join(f"{name} {named[name][0]:.0f}–{named[name][1]:.0f}" for name in sought)
+    if springs:
+        yield f"costs less than 0.5 %, one at a time: {springs} N·m/rad"
     units = dict(zip(study.range.names, study.units, strict=True))
     others = [
         f"{name} {low:.4g}–{figure_in_words(high, units[name])}"
@@ -29,6 +33,7 @@ def answers_in_words(study: Study, ranges: Array, prices: Sequence[Price]) -> It
         if name not in joints
     ]
     if others:
-        yield f"the same of the rest: {', '.join(others)}"
+        words = "the same of the rest" if springs else "costs less than 0.5 %, one at a time"
+        yield f"{words}: {', '.join(others)}"
     for price in prices:
         yield f"{price.bound}: {price.room} buys {price.gain:.2g} {price.unit}"

@@ -65,7 +65,7 @@ def pareto(
     )
     from .values import given
 
-    named = None if objectives is None else [name.strip() for name in objectives.split(",")]
+    named = None if objectives is None else [n for n in map(str.strip, objectives.split(",")) if n]
     changed = {
         "impact": given(region=region, speed=speed),
         "pareto": given(points=points, objectives=named),

@@ -12,7 +12,7 @@ from softimpact.optimize.answers import by_name
 
 from .cautions import study_warnings
 from .design_report import inputs, limit_kind, versions
-from .pareto_report import FRONTS, CheckedPoint, ParetoReport, price_of_deflection
+from .pareto_report import FRONTS, CheckedFrontPoint, ParetoReport, price_of_deflection
 
 GENERATOR = "softimpact pareto"
 """Marks a folder of results as one that may be replaced."""
@@ -78,7 +78,7 @@ def _point(point: ParetoPoint) -> dict[str, Any]:
     }
 
 
-def _checked(checked: CheckedPoint, report: ParetoReport) -> dict[str, Any]:
+def _checked(checked: CheckedFrontPoint, report: ParetoReport) -> dict[str, Any]:
     meaning = checked.point.meaning
     return {
         **_point(checked.point),
@@ -119,7 +119,7 @@ def write_table(report: ParetoReport, path: Path) -> None:
                 table.writerow([name, *_row(checked, report, is_knee)])
 
 
-def _row(checked: CheckedPoint, report: ParetoReport, is_knee: str) -> list[object]:
+def _row(checked: CheckedFrontPoint, report: ParetoReport, is_knee: str) -> list[object]:
     point, outcome = checked.point, checked.point.outcome
     return [
         *(point.bound, point.deflection, point.force, checked.safe_speed),

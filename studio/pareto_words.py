@@ -13,7 +13,7 @@ from softimpact.optimize.poses import leaves_a_choice
 from .answers_in_words import answers_in_words
 from .design_report import limit_kind, peak_in_words
 from .output import Cell, shown
-from .pareto_report import CheckedPoint, ParetoReport, price_of_deflection
+from .pareto_report import CheckedFrontPoint, ParetoReport, price_of_deflection
 
 MM = 1e3
 """Millimetres in a metre."""
@@ -76,11 +76,11 @@ def _row(report: ParetoReport, level: float) -> list[Cell]:
     ]
 
 
-def _force(checked: CheckedPoint | None) -> str | None:
+def _force(checked: CheckedFrontPoint | None) -> str | None:
     return None if checked is None else f"{checked.point.force:.1f}"
 
 
-def _start(checked: CheckedPoint | None) -> str | None:
+def _start(checked: CheckedFrontPoint | None) -> str | None:
     """The pose that the search began with; a held one that no other beats says so."""
     if checked is None:
         return None

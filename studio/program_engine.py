@@ -9,7 +9,7 @@ and a point outside of its zones are left to Python, sample by sample.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import casadi as ca
@@ -23,7 +23,7 @@ from softimpact.simulate.history import PRESSED_UNTIL
 from softimpact.simulate.program import STILL, formula_speed
 from softimpact.simulate.trajectory import Passes
 from softimpact.simulate.zones import Somebody
-from softimpact.symbolic import Contact, Drives, ImpactModel, InvalidValue, Motors
+from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors
 from softimpact.symbolic.robot.rigid import Array
 
 from .motion_source import moving_points
@@ -52,10 +52,10 @@ def why_not_in_c(
 ) -> str | None:
     """Return what of a question C knows nothing of, None if it can answer."""
     robot = model.robot
-    if robot.loops or not is_elastic(robot):
-        return "closed chains, passive joints and springs of the model file"
-    if robot.damping.any():
-        return "the joints' damping"
+    if not is_elastic(robot) and any(model.drives.elastic):
+        return "springs behind motors where loops, passive joints or springs are part of the robot"
+    if not is_elastic(robot) and robot.damping.any():
+        return "the joints' damping where loops, passive joints or springs are part of the robot"
     if model.drives.computed_torque_gain is not None:
         return "computed-torque gains"
     if any(end.reaction == "stop" for end in ends.values()):
@@ -167,7 +167,8 @@ class CompiledEngine:
         return _Moved(place, velocity, np.linalg.norm(velocity, axis=2))
 
     def _allowed(self, force: float) -> float:
-        return force if all(self.model.drives.elastic) else force * (1 - FOR_STIFF)
+        as_it_is = all(self.model.drives.elastic) or not is_elastic(self.model.robot)
+        return force if as_it_is else force * (1 - FOR_STIFF)
 
     def _call(
         self,
@@ -234,15 +235,16 @@ def compiled_engine(
     if unknown is not None:
         return f"the generated C knows nothing of {unknown}"
     robot, first = model.robot, points[0]
-    springs = np.array(model.drives.springs, dtype=float).ravel()
-    rotors = np.maximum(np.array(model.drives.rotors, dtype=float).ravel(), LIGHT)
-    known = Drives(
-        ca.DM(rotors),
-        ca.DM(np.where(model.drives.elastic, springs, STIFF)),
-        (True,) * robot.n,
-        model.drives.gains,
-        damping_gains=model.drives.damping_gains,
-    )
+    known = replace(model.drives, torque_limits=None)
+    if is_elastic(robot):
+        springs = np.array(model.drives.springs, dtype=float).ravel()
+        rotors = np.maximum(np.array(model.drives.rotors, dtype=float).ravel(), LIGHT)
+        known = replace(
+            known,
+            rotors=ca.DM(rotors),
+            springs=ca.DM(np.where(model.drives.elastic, springs, STIFF)),
+            elastic=(True,) * robot.n,
+        )
     others = {f"p{i}": point for i, point in enumerate(points) if i > 0}
     try:
         package = compiled_arm(robot, known, tip=first, points=others, gravity=model.gravity)

@@ -100,7 +100,7 @@ def write_points(report: TradeOffReport, path: Path) -> None:
     units = [axis.unit for axis in report.found.axes.all]
     header = [f"{v.kind} [{unit}]" for v, unit in zip(report.views, units, strict=True)]
     header += ["knee", "worst_force_N", "worst_share", "linearised_N", "meets_limit", "status"]
-    header += [f"k_s_{joint}" for joint in joints] + list(others)
+    header += [f"k_s_{joint}" for joint in study.spring_names] + list(others)
     header += [f"q_{joint} in {pose}" for pose in poses for joint in joints]
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")

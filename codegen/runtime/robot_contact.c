@@ -21,19 +21,19 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
     for (int round = 0; round < 2; ++round) {
         const robot_real span = round == 0 ? ROBOT_R(0.5)*time : time;
         const robot_real *const from = round == 0 ? rate : halfway;
-        robot_real torque[ROBOT_N];
-        for (int j = 0; j < ROBOT_N; ++j) {
-            const int motor = ROBOT_SYSTEM - ROBOT_N + j;
+        robot_real torque[ROBOT_DAMPERS];
+        for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+            const int place = ROBOT_SYSTEM - ROBOT_DAMPERS + j;
             robot_real turned = ROBOT_R(0.0);
             for (int i = 0; i < phase->active; ++i) {
-                turned += phase->modes.shape[i][motor]*(from[i] - speed*phase->modes.start[i]);
+                turned += phase->modes.shape[i][place]*(from[i] - speed*phase->modes.start[i]);
             }
             torque[j] = span*phase->damping[j]*turned;
         }
         for (int i = 0; i < phase->active; ++i) {
             robot_real change = ROBOT_R(0.0);
-            for (int j = 0; j < ROBOT_N; ++j) {
-                change += phase->modes.shape[i][ROBOT_SYSTEM - ROBOT_N + j]*torque[j];
+            for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+                change += phase->modes.shape[i][ROBOT_SYSTEM - ROBOT_DAMPERS + j]*torque[j];
             }
             if (round == 0) {
                 halfway[i] = rate[i] - change;

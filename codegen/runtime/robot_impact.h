@@ -17,6 +17,7 @@
 #else
 #define ROBOT_SYSTEM ROBOT_N
 #endif
+#define ROBOT_DAMPERS (ROBOT_DAMPED ? ROBOT_SYSTEM : ROBOT_N) /* of the last ones of these */
 #define ROBOT_MODES (ROBOT_SYSTEM + 1) /* one for a body that gives way */
 #define ROBOT_LEVELS 7 /* lengths of steps, each half the one before */
 
@@ -75,8 +76,8 @@ typedef struct {
     robot_real compliance; /* of those that stand, m/N */
     robot_real reach; /* of all that vibrate, m/N */
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
-    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
-    robot_real damping[ROBOT_N];
+    bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
+    robot_real damping[ROBOT_DAMPERS];
     int steps; /* of the longest level until the time is over */
     robot_level level[ROBOT_LEVELS];
 } robot_phase;
@@ -188,6 +189,16 @@ robot_real robot_two_body_speed(const robot_region *region, robot_real mobility,
  */
 int robot_find_speed(const robot_region *region, const robot_params *p, robot_real limit,
     robot_real cap, robot_impact *impact, robot_safe_speed_t *found);
+
+/* Largest force of an arrival by any of the motors that p stands for: OK, BOUNDED or another status. */
+int robot_find_peak(const robot_region *region, const robot_params *p, robot_real speed,
+    robot_impact *impact, robot_peak_force_t *out);
+
+#if ROBOT_FRAMES > 0
+/* Links, with the motion of a place in a frame in place of that of the package's own point. */
+int robot_links_on(const robot_real q[ROBOT_JOINTS], int frame, const robot_real place[3],
+    const robot_params *p, robot_links_t *links);
+#endif
 
 /* Largest force over all contacts of an impact at a speed. */
 void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budget,

@@ -35,8 +35,9 @@ static int led_modes(robot_impact *impact, robot_phase *phase)
         return robot_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < ROBOT_N; ++i) {
-        phase->damping[i] = ROBOT_DAMPING_GAIN(impact->p, i);
-        phase->damped = phase->damped || phase->damping[i] > ROBOT_R(0.0);
+        const robot_real gain = ROBOT_DAMPING_GAIN(impact->p, i);
+        phase->damping[ROBOT_DAMPERS - ROBOT_N + i] += gain;
+        phase->damped = phase->damped || gain > ROBOT_R(0.0);
     }
     return robot_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
@@ -51,11 +52,16 @@ static int modes_of(robot_impact *impact, int which)
     }
     phase->has_body = false;
     phase->drift = ROBOT_R(0.0);
-    phase->damped = false;
+    phase->damped = ROBOT_DAMPED != 0;
     phase->modes.noise = ROBOT_R(0.0);
-    for (int i = 0; i < ROBOT_N; ++i) {
+    for (int i = 0; i < ROBOT_DAMPERS; ++i) {
         phase->damping[i] = ROBOT_R(0.0);
     }
+#if ROBOT_DAMPED
+    for (int i = 0; i < ROBOT_N; ++i) {
+        phase->damping[i] = robot_joint_damping[i];
+    }
+#endif
     const int status = which == ROBOT_LED ? led_modes(impact, phase)
         : robot_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     phase->known = status == ROBOT_OK;

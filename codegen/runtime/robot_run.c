@@ -64,9 +64,9 @@ static void see(robot_state *s, const robot_trial *t, robot_peak *peak)
             force += twist*since*(since + s->h)*(since - h);
         }
     }
-    if (force > peak->force) {
+    if (force + s->swings > peak->force) {
         s->depth = t->f > peak->force ? t->depth : s->depth;
-        peak->force = force;
+        peak->force = force + s->swings;
         peak->time = time;
         peak->contact = peak->contacts;
     }
@@ -190,6 +190,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->root = zero;
     s->rest = zero;
     s->depth = zero;
+    s->swings = zero;
     begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
 }
 
@@ -218,7 +219,7 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
         const bool falls = taken && s->f < peak->force;
         const bool looks = falls && budget->watch == NULL && (s->past % LOOKS == 0 || !s->touching);
         if ((falls && peak->force > budget->stop_above) || (budget->rough && taken && !s->touching)
-            || (looks && robot_is_settled(s, peak->force, s->depth, share))) {
+            || (looks && robot_is_settled(s, peak->force - s->swings, s->depth, share))) {
             peak->ended = true;
             return true;
         }

@@ -34,6 +34,7 @@ typedef struct {
     robot_real now, root; /* depth of the skin, and its root where it is Hertz's */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
+    robot_real swings; /* most that modes that stand add to the force as they swing, N */
 } robot_state;
 
 /* What is looked for in the steps of an impact that goes on after its peak. */
@@ -55,7 +56,7 @@ typedef struct {
     robot_real u, depth, root;
 } robot_trial;
 
-/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+/* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate);
 
 /* Moves all modes by a step without forces. */

@@ -14,15 +14,17 @@ bool robot_pass(const robot_state *s, robot_watch *watch)
         const robot_real then = share*watch->last + (ROBOT_R(1.0) - share)*s->f;
         const robot_real up = watch->last - watch->before;
         const robot_real down = watch->last - s->f;
-        watch->late = ROBOT_FMAX(watch->late, ROBOT_FMAX(then, s->f));
+        watch->late = ROBOT_FMAX(watch->late, ROBOT_FMAX(then, s->f) + s->swings);
         if (s->past > 1 && up >= ROBOT_R(0.0) && down > ROBOT_R(0.0)) { /* a top between nodes */
             const robot_real bend = (up/s->h_before + down/s->h)/(s->h + s->h_before);
             const robot_real slope = up/s->h_before - bend*s->h_before;
-            watch->late = ROBOT_FMAX(watch->late, watch->last + ROBOT_R(0.25)*slope*slope/bend);
+            const robot_real top = watch->last + ROBOT_R(0.25)*slope*slope/bend;
+            watch->late = ROBOT_FMAX(watch->late, top + s->swings);
         }
     }
     watch->before = watch->last;
     watch->last = s->f;
-    return s->f < watch->matters && s->past % LOOKS_LATE == 0
-        && robot_is_settled(s, watch->matters, watch->depth, ROBOT_R(1.0));
+    const robot_real matters = watch->matters - s->swings;
+    return s->f < matters && s->past % LOOKS_LATE == 0
+        && robot_is_settled(s, matters, watch->depth, ROBOT_R(1.0));
 }

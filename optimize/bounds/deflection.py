@@ -17,7 +17,7 @@ from .bound import AtMost
 ROUNDED = 1e-30
 """Square of a length [m²] that keeps the slope of a deflection of zero finite."""
 
-Load = tuple[float, float, float]
+TipLoad = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Deflection(AtMost):
     unit: ClassVar[str] = "m"
 
     most: float
-    forces: tuple[Load, ...]
-    moments: tuple[Load, ...] = ()
+    forces: tuple[TipLoad, ...]
+    moments: tuple[TipLoad, ...] = ()
     payload: float = 0.0
     sag: bool = False
 

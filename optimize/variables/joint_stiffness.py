@@ -10,6 +10,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from softimpact.symbolic import ImpactModel, InvalidValue, Matrix, UnknownName
+from softimpact.symbolic.robot.rigid import Array
 
 from ..coordinates import spring_names
 from ..hardware import Hardware
@@ -55,6 +56,23 @@ class JointStiffness(Variable):
         return replace(hardware, springs=values[list(self.groups), 0])
 
 
+def require_common_stiffness(
+    model: ImpactModel, groups: Sequence[int], lower: Array, upper: Array
+) -> None:
+    """Raise InvalidValue for joints that share a spring but no stiffness within their bounds."""
+    names = spring_names(model)
+    for group in range(max(groups) + 1):
+        joints = [i for i, g in enumerate(groups) if g == group]
+        low, high = max(joints, key=lambda i: lower[i]), min(joints, key=lambda i: upper[i])
+        if lower[low] > upper[high]:
+            raise InvalidValue(
+                "joint_stiffness",
+                f"joints '{names[low]}' and '{names[high]}' share a spring, but '{names[low]}' "
+                f"needs {lower[low]:g} at least and '{names[high]}' {upper[high]:g} at most; part "
+                "them, or change stiffness.lower or upper",
+            )
+
+
 def joint_groups(model: ImpactModel, grouping: Grouping) -> tuple[int, ...]:
     """Return the group of each spring; groups are numbered as they first occur.
 
@@ -69,6 +87,8 @@ def joint_groups(model: ImpactModel, grouping: Grouping) -> tuple[int, ...]:
         return (0,) * len(known)
     group_of: dict[str, int] = {}
     for i, names in enumerate(grouping):
+        if not names:
+            raise InvalidValue("joint_stiffness", f"group {i + 1} names no joint; leave it out")
         for name in names:
             if name not in known:
                 raise UnknownName("joint with a spring", name, known)

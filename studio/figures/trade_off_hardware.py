@@ -9,6 +9,7 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from softimpact.optimize.coordinates import sprung
 from softimpact.studio.trade_off_report import TradeOffReport
 from softimpact.symbolic import JointKind
 
@@ -70,6 +71,6 @@ def _unit(report: TradeOffReport, i: int) -> str:
     """Return the unit of a value of the hardware; springs of sliding joints have their own."""
     study = report.study
     if i <= max(study.groups):
-        joint = study.robot.joints[study.groups.index(i)]
+        joint = study.robot.joints[sprung(study.model)[study.groups.index(i)]]
         return "N/m" if joint.kind is JointKind.SLIDE else study.units[i]
     return study.units[i]

@@ -15,7 +15,7 @@ import softimpact
 from softimpact.codegen import wasm
 from softimpact.codegen.errors import NoCrossCompiler
 from softimpact.codegen.render import Package, render
-from softimpact.toolchain import cache_folder
+from softimpact.toolchain import usable_cache
 
 from .package import PREFIX
 
@@ -36,8 +36,8 @@ def module_of(package: Package) -> bytes:
     files = sources_of(package)
     content = json.dumps([softimpact.__version__, version("ziglang"), wasm.FLAGS, files])
     key = hashlib.sha256(content.encode()).hexdigest()[:32]
-    cache = cache_folder()
-    if cache is None:  # a user without a home
+    cache = usable_cache()
+    if cache is None:  # a user without a home, or one that is read only
         return _compiled(files)
     module = cache / "page" / f"{key}.wasm"
     if not module.is_file():

@@ -17,7 +17,7 @@ from softimpact.symbolic import REGIONS
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 from softimpact.symbolic.robot.rigid import Array
 
-from .impacts import SERVO, Cases, Robot
+from .impacts import Cases, Robot
 
 POOL = 400
 """Configurations of a closed chain from which one is chosen."""
@@ -46,11 +46,16 @@ class Draw:
         """Projector on the directions in which motors move the contact point."""
         robot, count = self.robot, 8
         q = self.poses(count)
-        M, K, J = robot.links_at(q, np.ones((count, robot.joints)))
+        J = robot.links_at(q, np.ones((count, robot.joints)))[2]
         moved = np.hstack(list(J * robot.actuated))
         U, sizes, _ = np.linalg.svd(moved)
         basis = U[:, : int((sizes > 1e-9 * sizes[0]).sum())]
         return np.asarray(basis @ basis.T)
+
+    @property
+    def reach(self) -> int:
+        """In how many directions that is."""
+        return round(float(np.trace(self.plane)))
 
     @cached_property
     def pool(self) -> Array:
@@ -106,7 +111,7 @@ class Draw:
         how = random.random((count, 1))
         axes = np.eye(3)[random.integers(0, 3, count)]
         J = self.robot.links_at(q, np.ones(q.shape))[2] * self.robot.actuated
-        weakest = np.linalg.svd(self.plane @ J)[0][:, :, int(round(np.trace(self.plane))) - 1]
+        weakest = np.linalg.svd(self.plane @ J)[0][:, :, self.reach - 1]
         tilted = weakest + n * 10 ** random.uniform(-4, 0, (count, 1))
         n = np.where(how < 0.2, axes, np.where(how > 0.85, tilted, n)) @ self.plane
         lost = np.linalg.norm(n, axis=1) < 1e-6
@@ -184,7 +189,9 @@ class Draw:
         length = np.linalg.norm(cases.n, axis=1, keepdims=True)
         n = (cases.n / length + 0.5 * scale * random.normal(size=(count, 3))) @ self.plane
         wide = self.wide
-        body = {name: turned_one(getattr(cases, name)) for name in ("stiffness", "mass", "skin")}
+        body: dict[str, Any] = {
+            name: turned_one(getattr(cases, name)) for name in ("stiffness", "mass", "skin")
+        }
         return replace(
             cases,
             q=q,
@@ -198,8 +205,3 @@ class Draw:
             damping=turned_one(cases.damping),
             **(body if wide else {}),
         ).rounded()
-
-
-def servos(cases: Cases) -> Array:
-    """Return which cases have servos."""
-    return np.asarray(cases.motors == SERVO)

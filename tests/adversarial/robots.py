@@ -48,7 +48,7 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
     "iiwa14": lambda: load_robot("iiwa14"),
     "xarm7": lambda: load_robot("xarm7"),
 }
-"""By name: elastic arms, a leg, links in a plane, rigid joints before passive ones, closed loops."""
+"""By name: elastic arms, a leg, two links in a plane, passive joints, closed loops."""
 
 
 def package_of(name: str, folder: Path) -> Generated:

@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from softimpact.symbolic.robot.rigid import Array
 
 from .cases import Draw
+from .forces import forces as forces_of
 from .impacts import BOUNDED, OK, Cases, Robot
 
 TURNS = 40
@@ -51,7 +53,7 @@ class Found:
     worst: float = 0.0
     below: float = 0.0
     slower: float = 0.0
-    hardest: list[Mapping[str, Any]] = field(default_factory=list)
+    hardest: Sequence[Mapping[str, Any]] = ()
 
     def joined(self, other: Found) -> Found:
         """Return both together."""
@@ -87,10 +89,10 @@ class Search:
         shares[:, 1:3] = random.uniform(0.5, 1, (len(answered), 2))
         shares[:, 3] = 10 ** random.uniform(-2, -0.3, len(answered))
         tried = speeds[answered, None] * shares
-        forces = self.robot.forces(asked, tried)
+        forces = forces_of(self.robot, asked, tried)
         near = forces.max(axis=1) > NEAR * asked.limit
         if near.any():
-            forces[near] = self.robot.forces(asked.take(near), tried[near], FINER)
+            forces[near] = forces_of(self.robot, asked.take(near), tried[near], FINER)
         over = forces / asked.limit[:, None]
         worst, below = over.max(axis=1), over[:, 1:].max(axis=1)
         out[answered] = worst
@@ -124,7 +126,7 @@ class Search:
             cases = pick(better, others, cases)
 
 
-def pick(which: Array, those: Cases, others: Cases) -> Cases:
+def pick(which: NDArray[np.bool_], those: Cases, others: Cases) -> Cases:
     """Return rows of one where a mask says so, else of the other."""
     return replace(
         others,
