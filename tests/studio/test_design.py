@@ -195,3 +195,9 @@ def test_bad_input_is_refused_before_the_search(tmp_path: Path) -> None:
     assert "stiffness" in refusal("design", bounds)
     outside = small_study(tmp_path, ("0.63, -0.10, -2.36", "1.90, -0.10, -2.36"))
     assert "outside its limits" in refusal("design", outside)
+
+
+def test_an_optimum_that_simulation_contradicts_is_said() -> None:
+    assert not doubts(100.0, 100.9, 99.0)
+    (line,) = doubts(100.0, 99.0, 101.1)
+    assert "simulation finds 101.1 N for the winner, where the optimum has 100.0 N" in line
