@@ -38,6 +38,8 @@ class FunctionCost:
         rodata: constants of that source [bytes].
         stack: deepest of it and whatever it calls in the package, on the M7 [bytes].
         digest: of what was measured, see ``cost_digests``.
+        bound: instructions on the M7 that no input exceeds, by the longest path through the
+            compiled code; None where that was not looked for.
     """
 
     name: str
@@ -47,6 +49,7 @@ class FunctionCost:
     rodata: int
     stack: int
     digest: str
+    bound: int | None = None
 
     @property
     def function(self) -> str:

@@ -71,7 +71,7 @@ def compile_one(
     """Compile one source; return the object."""
     target = out / f"{source.stem}.o"
     lenient = ["-Wno-pedantic"] if source.parent == BOARD else []
-    told = [*flags(package, real), *machine(core), "-fcallgraph-info=su", *lenient, *defines]
+    told = [*flags(package, real), *machine(core), "-g", "-fcallgraph-info=su", *lenient, *defines]
     run(GCC, *told, "-c", source, "-o", target)
     return target
 

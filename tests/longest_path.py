@@ -79,7 +79,9 @@ class Instruction:
     def returns(self) -> bool:
         """Whether it may leave the function for good."""
         found = BACK.match(self.word)
-        return bool(found) and (self.rest == "lr" if found[1] == "bx" else "pc" in self.rest)
+        if not found:
+            return False
+        return self.rest == "lr" if found[1] == "bx" else "pc" in self.rest
 
     @property
     def conditional(self) -> bool:
@@ -126,8 +128,8 @@ class LongestPath:
         """Names of functions by their addresses."""
         return {body[0].address: name for name, body in self.functions.items() if body}
 
-    def line_of(self, address: int) -> tuple[str, str]:
-        """Return the source's name and the line that begins the loop an address belongs to."""
+    def line_of(self, address: int) -> tuple[str, int, str]:
+        """Return source, number and text of the line that begins the loop an address belongs to."""
         said = run("arm-none-eabi-addr2line", "-e", self.image, hex(address)).split(" ")[0].strip()
         file, _, number = said.rpartition(":")
         assert number.isdigit(), (hex(address), said)
@@ -136,7 +138,7 @@ class LongestPath:
         indent = len(lines[at]) - len(lines[at].lstrip()) + 1
         while not (LOOP.match(lines[at]) and len(lines[at]) - len(lines[at].lstrip()) < indent):
             at -= 1
-        return Path(file).name, lines[at].strip()
+        return Path(file).name, at + 1, lines[at].strip()
 
     def of(self, name: str) -> Cost:
         """Return the bound of a function, what it calls included."""
@@ -178,13 +180,13 @@ class LongestPath:
             raise AssertionError(name, *e.args) from e
 
     def _rounds_of(self, latches: Iterable[int]) -> Rounds:
-        """Return the rounds of a loop by the jumps back to its start; of two loops with one start, both's."""
-        found = {line: self.rounds(*line) for line in map(self.line_of, sorted(latches))}
+        """Return the rounds of a loop by the jumps back to its start; of two with one, both's."""
         product = 1.0
-        for rounds in found.values():
-            if isinstance(rounds, Budget):
-                return rounds
-            product *= rounds
+        for file, _, line in sorted({self.line_of(latch) for latch in latches}):
+            found = self.rounds(file, line)
+            if isinstance(found, Budget):
+                return found
+            product *= found
         return product
 
 
@@ -199,16 +201,15 @@ class _Graph:
     ) -> None:
         self.cost, self.after, self.rounds = cost, after, rounds
 
+        self.home: dict[int, int] = {}  # what has become of an instruction
+
     def longest(self, start: int) -> Cost:
         """Return the longest path, loops taken as often as they may."""
         self._straighten(set(self.cost), {start})
         return self._paths(set(self.cost))[self.home.get(start, start)]
 
-    home: dict[int, int]
-
     def _straighten(self, nodes: set[int], entries: set[int]) -> None:
         """Collapse all loops among some nodes."""
-        self.home = getattr(self, "home", {})
         for loop in _circles(nodes, self.after):
             before = {a for a in self.cost if a not in loop and self.after[a] & loop}
             doors = {to for a in before for to in self.after[a] & loop} | (entries & loop)
@@ -220,7 +221,6 @@ class _Graph:
             doors = {self.home.get(door, door) for door in doors}
             inside = {a for a in loop if a in self.cost}
             leaving = {to for a in inside for to in self.after[a]} - inside
-            ends = {a for a in inside if self.after[a] - inside}
             paths, once, last = self._paths(inside), Cost(), Cost()
             for door in doors:
                 once, last = once.worse(paths[door]), last.worse(self._test(door, inside))
@@ -236,9 +236,8 @@ class _Graph:
             self.cost[header], self.after[header] = total, leaving - {header}
             for to in self.after.values():
                 moved = to & (loop - {header})
-                if moved:
-                    to -= moved
-                    to.add(header)
+                to.difference_update(moved)
+                to.update({header} if moved else ())
             self.after[header].discard(header)
 
     def _test(self, door: int, inside: set[int]) -> Cost:

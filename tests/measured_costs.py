@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from bound_on_time import bound_of_driven_safe_speed
 from compiled_packages import Generated, run
 from cross_compiled import BOARD, CORES, GCC, OPTIMISE, build, compile_one, link, run_image
 
@@ -101,11 +102,24 @@ def count(
     package: Generated, core: str, objects: Sequence[Path], call: Call, out: Path
 ) -> Instructions:
     """Count the instructions of a call in a float build."""
-    counter = compile_one(package, core, "float", out, BOARD / "count.c", *call.defines)
-    said = run_image(link(core, [*objects, counter], out), core)
+    said = run_image(counting(package, core, objects, call, out), core)
     numbers = re.search(r"instructions: (\d+), at most (\d+)", said)
     assert numbers, said
     return Instructions(int(numbers[1]), int(numbers[2]))
+
+
+def counting(package: Generated, core: str, objects: Sequence[Path], call: Call, out: Path) -> Path:
+    """Return the image that counts a call's instructions."""
+    counter = compile_one(package, core, "float", out, BOARD / "count.c", *call.defines)
+    return link(core, [*objects, counter], out)
+
+
+def bound(package: Generated, objects: Sequence[Path], call: Call, out: Path) -> int | None:
+    """Return how many instructions a call takes at most on an M7; None unless motors drive on."""
+    if call.case != "driven":
+        return None
+    image = counting(package, "m7", objects, call, out)
+    return bound_of_driven_safe_speed(package, image, FEW_STEPS)
 
 
 def measure(package: Generated, folder: Path, known: Sequence[FunctionCost] = ()) -> Costs:
@@ -141,6 +155,7 @@ def measure(package: Generated, folder: Path, known: Sequence[FunctionCost] = ()
             *sizes[call.function],
             stacks[call.function],
             digests[call.function],
+            bound(package, objects, call, folder / "m7"),
         )
         for call in calls(package)
     }

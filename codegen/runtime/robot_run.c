@@ -216,7 +216,7 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
             peak->ended = true;
             return true;
         }
-        const bool falls = taken && s->f < peak->force;
+        const bool falls = taken && s->f + s->swings < peak->force;
         const bool looks = falls && budget->watch == NULL && (s->past % LOOKS == 0 || !s->touching);
         if ((falls && peak->force > budget->stop_above) || (budget->rough && taken && !s->touching)
             || (looks && robot_is_settled(s, peak->force - s->swings, s->depth, share))) {

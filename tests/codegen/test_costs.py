@@ -80,13 +80,15 @@ def test_closed_forms_cost_what_the_design_allows(package: Callable[[str], Gener
 def test_a_safe_speed_is_bounded_as_the_design_asks(
     package: Callable[[str], Generated],
 ) -> None:
-    assert panda_costs(package)["safe_speed (driven)"].m7.most <= 240_000
+    driven = panda_costs(package)["safe_speed (driven)"]
+    assert driven.bound is not None
+    assert driven.m7.most <= 240_000 < driven.bound <= 450_000  # found, and proven of any input
 
 
 @pytest.mark.xfail(
     strict=True,
     reason="with all modes, all contacts and a release a safe speed of driven motors takes some "
-    "100,000 instructions: 40,000 for two eigenvalue problems, the rest for 85 steps of 8 modes",
+    "75,000 instructions: 35,000 to prepare both phases, the rest for 65 steps of 8 modes",
 )
 def test_a_safe_speed_costs_what_the_design_allows(package: Callable[[str], Generated]) -> None:
     found = panda_costs(package)
@@ -121,7 +123,9 @@ def test_no_input_exceeds_the_stated_bound_on_time(
     said = run_image(link("m7", [*objects, counter], tmp_path), "m7")
     most = re.search(r"at most (\d+)", said)
     assert most, said
-    assert 150_000 < int(most[1]) <= 240_000
+    stated = panda_costs(package)["safe_speed (driven)"].bound
+    assert stated is not None
+    assert 120_000 < int(most[1]) <= min(240_000, stated)
 
 
 HARD = """#include "panda.h"
