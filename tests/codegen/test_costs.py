@@ -148,7 +148,7 @@ def _in_c(case: Case) -> str:
     drives = ", ".join(row(x) for x in (case.springs, case.rotors, case.gains, case.damping_gains))
     motion = f"{case.reaction!r}f, {case.horizon!r}f, {case.motors}, {FEW_STEPS}"
     return (
-        f"{{ {row(case.q)}, {row(case.n)}, {case.limit!r}f, {{ {region}, {int(case.clamped)} }}, "
+        f"{{ {row(case.q)}, {row(case.n)}, {case.limit!r}f, {{ {region}, 0, 0, {int(case.clamped)} }}, "
         f"{{ PANDA_LAYOUT, {drives}, {motion} }} }}"
     )
 
