@@ -305,7 +305,7 @@ def _searched(
     good = [each for each in found if each.violation <= FEASIBLE]
     if not good:
         nearest = min(found, key=lambda each: each.violation)
-        raise SolverFailure([_as_outcome(nearest, setting)])
+        raise SolverFailure([_as_outcome(nearest, instance, setting)])
     return min(good, key=lambda each: each.cost)
 
 
@@ -323,9 +323,9 @@ def search(
         return minimise(program, instance, limits, postures, springs, others, free=free)
 
 
-def _as_outcome(found: Found, setting: Setting) -> Outcome:
+def _as_outcome(found: Found, instance: Instance, setting: Setting) -> Outcome:
     name = setting.scenarios.poses[0].pose.name
-    status, force = found.status, float(found.worst)
+    status, force = found.status, float((found.shares * instance.units).max())
     q, k = found.postures[0], found.springs
     return Outcome(
         name, "table", status, False, found.iterations, 1, 0.0, q, k, force, found.violation
