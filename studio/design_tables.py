@@ -157,12 +157,17 @@ def _winner(report: DesignReport) -> list[str]:
     ]
 
 
+UNBENT = 1e-9
+"""Deflection [m] that counts as none."""
+
+
 def _meaning(report: DesignReport) -> list[str]:
     """What binds, which numbers matter, and whether the nominal springs are a fair reference."""
     study, answers = report.study, report.design.answers
     bound, reference = study.max_deflection, answers.reference
+    bent = "" if answers.deflection > UNBENT else " (no force of the study bends a spring)"
     lines = [
-        f"deflection {1e3 * answers.deflection:.4g} mm of {1e3 * bound:.4g} mm; motors "
+        f"deflection {1e3 * answers.deflection:.4g} mm of {1e3 * bound:.4g} mm{bent}; motors "
         f"{answers.worst_motors.kind} are the worst",
         *answers_in_words(study, answers.indifferent, answers.prices),
     ]
