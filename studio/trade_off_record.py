@@ -13,7 +13,7 @@ from softimpact.optimize.trade_off import TradePoint
 from .cautions import study_warnings
 from .design_report import inputs, versions
 from .pareto_record import GENERATOR
-from .robust_report import scenario_record
+from .robust_report import ROUNDING, scenario_record
 from .trade_off_report import TradeOffReport, broken_before
 
 FORM = "objectives"
@@ -81,7 +81,7 @@ def _point(report: TradeOffReport, point: TradePoint, check: float, knee: bool) 
         "worst_force": worst.force,
         "worst_share": worst.share * point.scenarios.allowed,
         "worst_scenario": scenario_record(point, worst),
-        "meets_limit": worst.share * point.scenarios.allowed <= 1,
+        "meets_limit": worst.share * point.scenarios.allowed <= 1 + ROUNDING,
         "check": {"nlp": worst.force, "linearised": check},
         "bounds": worst.bounds,
         "indifferent": by_name(study, point.indifferent),
@@ -112,7 +112,7 @@ def write_points(report: TradeOffReport, path: Path) -> None:
                     *point.values,
                     str(i == report.found.knee).lower(),
                     *(point.worst.force, share, check),
-                    str(share <= 1).lower(),
+                    str(share <= 1 + ROUNDING).lower(),
                     point.status,
                     *point.springs.tolist(),
                     *point.others.tolist(),
