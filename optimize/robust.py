@@ -305,7 +305,7 @@ def _searched(
     good = [each for each in found if each.violation <= FEASIBLE]
     if not good:
         nearest = min(found, key=lambda each: each.violation)
-        raise SolverFailure([_as_outcome(nearest, instance, setting)])
+        raise SolverFailure([_as_outcome(nearest, instance, setting)], setting.study)
     return min(good, key=lambda each: each.cost)
 
 
