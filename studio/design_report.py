@@ -23,7 +23,7 @@ from softimpact.symbolic import Analysis, analyse
 from softimpact.symbolic.robot.rigid import Array
 
 from .cautions import study_warnings
-from .checks import Check, peak_band, peaks_by_reaction, safe_speed, simulated
+from .checks import Check, doubts, peak_band, peaks_by_reaction, safe_speed, simulated
 
 Limited = Literal["transient", "quasi_static"]
 
@@ -150,6 +150,7 @@ def design_record(report: DesignReport) -> dict[str, Any]:
     """Return a report as plain data, for ``results.json``."""
     study, design = report.study, report.design
     region = study.contact.region
+    check = report.check
     return {
         "generator": GENERATOR,
         "versions": versions(),
@@ -185,13 +186,13 @@ def design_record(report: DesignReport) -> dict[str, Any]:
             for o in design.optima
         ],
         "reference": design.answers.reference,
-        "check": vars(report.check),
+        "check": vars(check),
         "gains": None if design.gains is None else vars(design.gains),
         "safe_speed": {"before": report.speed_before, "after": report.speed_after},
         "band": report.band,
         "reactions": {"before": report.reactions_before, "after": report.reactions_after},
         "peak_definition": "peak",
-        "warnings": study_warnings(study),
+        "warnings": [*study_warnings(study), *doubts(check.nlp, check.linearised, check.full)],
         "poses": [_pose(pose) for pose in report.poses],
     }
 

@@ -11,6 +11,7 @@ from softimpact.optimize.answers import by_name
 from softimpact.optimize.trade_off import TradePoint
 
 from .cautions import study_warnings
+from .checks import doubts
 from .design_report import inputs, versions
 from .pareto_record import GENERATOR
 from .robust_report import ROUNDING, scenario_record
@@ -29,7 +30,7 @@ def trade_off_record(report: TradeOffReport) -> dict[str, Any]:
         "versions": versions(),
         "study": {**inputs(study), "pareto": study.levels.model_dump()},
         "peak_definition": "peak",
-        "warnings": study_warnings(study),
+        "warnings": [*study_warnings(study), *_doubts(report)],
         "objectives": [
             {
                 "kind": axis.kind,
@@ -62,6 +63,14 @@ def trade_off_record(report: TradeOffReport) -> dict[str, Any]:
             "impact_steps": found.timing.steps,
         },
     }
+
+
+def _doubts(report: TradeOffReport) -> list[str]:
+    """Return a line for each design whose force simulation contradicts on the unsafe side."""
+    pairs = enumerate(zip(report.points, report.checks, strict=True), 1)
+    return [
+        line for i, (p, check) in pairs for line in doubts(p.worst.force, check, of=f"design {i}")
+    ]
 
 
 def _values(report: TradeOffReport, values: tuple[float, ...]) -> dict[str, float]:

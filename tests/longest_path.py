@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A bound on the instructions of a compiled function that holds for every input, by its longest path.
+"""A bound on a function's instructions that holds for every input, by its longest path.
 
 Blocks and jumps are read from the disassembly of an image, loops are found in them, and each loop's
 number of rounds is what its line of C says. A function that steps through time has a budget of

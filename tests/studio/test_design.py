@@ -16,6 +16,7 @@ from small_arm import small_study as arm_study
 from studies import InProcess
 
 from softimpact.optimize import design
+from softimpact.studio.checks import doubts
 from softimpact.studio.design_report import (
     design_record,
     design_report,
@@ -236,3 +237,9 @@ def test_nominal_springs_that_break_a_bound_are_no_reference(tmp_path: Path) -> 
     assert "break a bound" in figure_of_gains(report, gains).get_suptitle()
     labels = [text.get_text() for text in figure_of_ranking(report).findobj(Text)]
     assert "before, but nominal springs break a bound there" in labels
+
+
+def test_an_optimum_that_simulation_contradicts_is_said() -> None:
+    assert not doubts(100.0, 100.9, 99.0)
+    (line,) = doubts(100.0, 99.0, 101.1)
+    assert "simulation finds 101.1 N for the winner, where the optimum has 100.0 N" in line
