@@ -189,6 +189,18 @@ def test_the_record_has_the_published_form(report: TradeOffReport, tmp_path: Pat
 
 
 @pytest.mark.slow
+def test_a_front_is_a_table_and_a_drawing(found: TradeOff) -> None:
+    told = found.to_dict()
+    assert json.loads(json.dumps(told, allow_nan=False)) == told
+    rows = found.rows()
+    assert [row["worst_force"] for row in rows] == [point.values[0] for point in found.points]
+    axes = found.plot()
+    assert "deflection [m]" in axes.get_xlabel()
+    marks = axes.collections[0].get_offsets()
+    np.testing.assert_allclose(marks[:, 1], [point.values[0] for point in found.points])
+
+
+@pytest.mark.slow
 def test_words_and_figures(report: TradeOffReport, tmp_path: Path) -> None:
     said = "\n".join([heading(report), *in_words(report)])
     for piece in ("worst force, deflection and natural frequency", "Before", "SUNDIALS", "Hz"):
