@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from softimpact.symbolic import Matrix
 from softimpact.symbolic.robot.rigid import Array
@@ -71,3 +72,33 @@ def _lower_peak(forces: Array) -> Array:
     """Return, for each node, the lower of the peaks before it and from it on."""
     ahead = np.maximum.accumulate(forces[::-1])[::-1]
     return np.minimum(np.maximum.accumulate(forces), ahead)
+
+
+def tops(forces: Array) -> tuple[NDArray[np.int64], Array]:
+    """Return nodes and heights of all local maxima, as ``peaks_in_windows`` has them.
+
+    Args:
+        forces: at equidistant times; where they are zero throughout, one node counts.
+    """
+    before, after = np.r_[0.0, forces[:-1]], np.r_[forces[1:], forces[-1]]
+    nodes = np.flatnonzero((forces >= before) & (forces >= after) & (forces > 0))
+    if not nodes.size:
+        return np.zeros(1, dtype=np.int64), np.zeros(1)
+    rise, curvature = after - before, np.maximum(2 * forces - before - after, FLAT)
+    return nodes, forces[nodes] + rise[nodes] ** 2 / (8 * curvature[nodes])
+
+
+def top_weights(forces: Array, node: int) -> Array:
+    """Return the derivative by the forces of the height of the local maximum at a node."""
+    last = forces.size - 1
+    before, own = forces[node - 1] if node else 0.0, forces[node]
+    after = forces[min(node + 1, last)]
+    rise, curvature = after - before, max(2 * own - before - after, FLAT)
+    by_rise = rise / (4 * curvature)
+    by_curvature = -(rise**2) / (8 * curvature**2) if curvature > FLAT else 0.0
+    weights = np.zeros(forces.size)
+    weights[node] += 1 + 2 * by_curvature
+    weights[min(node + 1, last)] += by_rise - by_curvature
+    if node:
+        weights[node - 1] += -by_rise - by_curvature
+    return weights
