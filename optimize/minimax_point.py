@@ -56,7 +56,7 @@ class Held:
             felt=felt,
             by_v=by_v,
             forces=forces,
-            tops=[tops(f) for f in forces],
+            tops=tops(forces),
         )
 
     def _forces(self, felt: Array) -> Array:

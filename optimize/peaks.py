@@ -74,18 +74,21 @@ def _lower_peak(forces: Array) -> Array:
     return np.minimum(np.maximum.accumulate(forces), ahead)
 
 
-def tops(forces: Array) -> tuple[NDArray[np.int64], Array]:
+def tops(forces: Array) -> list[tuple[NDArray[np.int64], Array]]:
     """Return nodes and heights of all local maxima, as ``peaks_in_windows`` has them.
 
     Args:
-        forces: at equidistant times; where they are zero throughout, one node counts.
+        forces: at equidistant times, a row for each impact; of one that is zero throughout, the
+            first node counts.
     """
-    before, after = np.r_[0.0, forces[:-1]], np.r_[forces[1:], forces[-1]]
-    nodes = np.flatnonzero((forces >= before) & (forces >= after) & (forces > 0))
-    if not nodes.size:
-        return np.zeros(1, dtype=np.int64), np.zeros(1)
-    rise, curvature = after - before, np.maximum(2 * forces - before - after, FLAT)
-    return nodes, forces[nodes] + rise[nodes] ** 2 / (8 * curvature[nodes])
+    before, after = np.zeros_like(forces), forces.copy()
+    before[:, 1:], after[:, :-1] = forces[:, :-1], forces[:, 1:]
+    curvature = np.maximum(2 * forces - before - after, FLAT)
+    heights = forces + (after - before) ** 2 / (8 * curvature)
+    at_top = (forces >= before) & (forces >= after) & (forces > 0)
+    at_top[~at_top.any(axis=1), 0] = True
+    nodes = [np.flatnonzero(row) for row in at_top]
+    return [(each, row[each]) for each, row in zip(nodes, heights, strict=True)]
 
 
 def top_weights(forces: Array, node: int) -> Array:

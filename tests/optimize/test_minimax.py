@@ -92,7 +92,7 @@ def test_derivatives_are_those_of_the_peaks(problem: Problem) -> None:
 
 @given(FORCES)
 def test_the_largest_top_is_the_peak(forces: list[float]) -> None:
-    _, heights = tops(np.array(forces))
+    [(_, heights)] = tops(np.array([forces]))
     peak = float(np.max(np.array(peaks_in_windows(ca.DM(forces), 0))))
     assert heights.max() == pytest.approx(peak, rel=1e-12, abs=1e-12)
 
@@ -100,13 +100,13 @@ def test_the_largest_top_is_the_peak(forces: list[float]) -> None:
 @given(FORCES)
 def test_weights_are_the_derivatives_of_a_top(forces: list[float]) -> None:
     values, step = np.array(forces) + np.linspace(0.0, 1e-3, len(forces)), 1e-7
-    nodes, heights = tops(values)
+    [(nodes, heights)] = tops(values[None, :])
     node, height = int(nodes[0]), float(heights[0])
     weights = top_weights(values, node)
     for i in np.flatnonzero(weights):
         moved = values.copy()
         moved[i] += step
-        after = dict(zip(*tops(moved), strict=True))
+        after = dict(zip(*tops(moved[None, :])[0], strict=True))
         curved = 2 * values[node] - values[[node - 1, node + 1 - len(values)]].sum()
         if node in after and node not in (0, len(values) - 1) and curved > 1e-2:
             assert weights[i] == pytest.approx((after[node] - height) / step, rel=1e-2, abs=1e-2)
