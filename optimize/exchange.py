@@ -16,6 +16,7 @@ from .ipopt import FEASIBLE, IN_TURN, Found, Instance, VariableBounds, minimise
 from .minimax import least_worst
 from .nlp import NlpShape, Program, task_numbers
 from .objectives import WorstForce
+from .samples import elsewhere, promising
 from .screening import Screened
 from .solve import Outcome
 from .tip_pose import tip_pose
@@ -26,6 +27,9 @@ ROUNDS = 40
 
 ADDED = 4
 """Scenarios added in an exchange: the worst, each of another pose, point or direction."""
+
+SAMPLED = 3
+"""Searches that begin with hardware at random."""
 
 ALIKE = 1e-3
 """Share of the cost within which optima over the first scenarios count as one."""
@@ -86,7 +90,7 @@ def exchange(
     bends = setting.shares_of_bounds(Hardening(limits.vector(study.nominal), given))
     poses = _poses(setting, [int(np.argmax(bends))], active)
     instance = _instance(setting, active, poses, unit)
-    starts = [_Start(each, None, given) for each in (equal, study.upper, study.lower)]
+    starts = [_Start(*each, given) for each in _starts(setting, instance, poses, equal, free)]
     found = _apart(_searched(setting, instance, poses, starts, free))
     for rounds in range(1, ROUNDS + 1):
         while (best := min(found, key=lambda each: each.found.cost)).instance is not instance:
@@ -106,11 +110,40 @@ def exchange(
         if shares[too_far] > 1 + KEEPS and too_far not in poses:
             poses = [*poses, too_far]
         elif not fresh:
-            break
+            found = [*found, *_hops(setting, instance, poses, best, free)]
+            if min(each.found.cost for each in found) >= best.found.cost * (1 - CLOSED):
+                break
         active = [*active, *fresh]
         poses = _poses(setting, poses, active)
         instance = _instance(setting, active, poses, unit)
     return state
+
+
+def _starts(
+    setting: Setting, instance: Instance, poses: list[int], equal: Array, free: bool
+) -> list[tuple[Array, Array | None]]:
+    """Return the springs and other values from which searches begin."""
+    if _serves(instance, free):
+        shared = setting.program, instance, setting.limits, setting.given[poses]
+        return [(equal, None), *promising(*shared, SAMPLED)]
+    return [(each, None) for each in (equal, setting.study.upper, setting.study.lower)]
+
+
+def _hops(
+    setting: Setting, instance: Instance, poses: list[int], best: _Optimum, free: bool
+) -> list[_Optimum]:
+    """Return optima that differ from the best in one value, to begin with."""
+    if not _serves(instance, free):
+        return []
+    v = setting.limits.vector(best.found.springs, best.found.others)
+    shared = setting.program, instance, setting.limits, setting.given[poses]
+    starts = [_Start(*each, setting.given) for each in elsewhere(*shared, v)]
+    return _feasible(setting, instance, poses, starts, free)[0]
+
+
+def _serves(instance: Instance, free: bool) -> bool:
+    """Return whether ``least_worst`` solves an NLP."""
+    return not free and instance.shape.objective.kind == WorstForce.kind
 
 
 def _apart(optima: Sequence[_Optimum]) -> list[_Optimum]:
@@ -169,24 +202,38 @@ def _instance(setting: Setting, active: list[int], poses: list[int], unit: float
 def _searched(
     setting: Setting, instance: Instance, poses: list[int], starts: Sequence[_Start], free: bool
 ) -> list[_Optimum]:
-    """Return what searches from some starts found that keeps the bounds."""
+    """Return what searches from some starts found that keeps the bounds.
+
+    Raises:
+        SolverFailure: nothing.
+    """
+    optima, missed = _feasible(setting, instance, poses, starts, free)
+    if not optima:
+        nearest = min(missed, key=lambda each: each.violation)
+        raise SolverFailure([_as_outcome(nearest, setting)])
+    return optima
+
+
+def _feasible(
+    setting: Setting, instance: Instance, poses: list[int], starts: Sequence[_Start], free: bool
+) -> tuple[list[_Optimum], list[Found]]:
+    """Return what searches found that keeps the bounds, and what does not."""
     shared = setting.program, instance, setting.limits
     jobs = {
         setting.pool.submit(search, *shared, s.postures[poses], s.springs, s.others, free): s
         for s in starts
     }
-    found = [(jobs[job], job.result()) for job in as_completed(jobs)]
-    optima = []
-    for start, each in found:
-        if each.violation <= FEASIBLE:
-            postures = start.postures.copy()
-            if free:
-                postures[poses] = each.postures
-            optima.append(_Optimum(each, instance, postures))
-    if not optima:
-        nearest = min((each for _, each in found), key=lambda each: each.violation)
-        raise SolverFailure([_as_outcome(nearest, setting)])
-    return optima
+    optima, missed = [], []
+    for job in as_completed(jobs):
+        start, found = jobs[job], job.result()
+        if found.violation > FEASIBLE:
+            missed.append(found)
+            continue
+        postures = start.postures.copy()
+        if free:
+            postures[poses] = found.postures
+        optima.append(_Optimum(found, instance, postures))
+    return optima, missed
 
 
 def search(
@@ -200,7 +247,7 @@ def search(
 ) -> Found:
     """Run ``least_worst`` or, where it does not serve, ``minimise`` in a worker process."""
     with IN_TURN:
-        if not free and instance.shape.objective.kind == WorstForce.kind:
+        if _serves(instance, free):
             found = least_worst(program, instance, limits, postures, springs, others)
             if found.success and found.violation <= FEASIBLE:
                 return found

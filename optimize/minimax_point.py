@@ -38,9 +38,7 @@ class Held:
         """Evaluate forces and bounds."""
         program, instance, K = self.program, self.instance, len(self.postures)
         y, by_v = (np.array(a) for a in _loaded(program.hardware)(v))
-        x = np.column_stack([self.postures, np.tile(v, (K, 1))])
-        rows, by_x = _tasks(program.task, K)(x.T, instance.tasks.T)
-        slopes = np.array(by_x).reshape(program.rows, K, -1)[POSE:, :, program.n :]
+        rows, slopes = bound_rows(program, self.postures, np.tile(v, (K, 1)), instance.tasks)
         felt = np.column_stack(
             [
                 self.postures[[k for k, _ in instance.shape.impacts]],
@@ -51,8 +49,8 @@ class Held:
         return Point(
             held=self,
             v=v,
-            rows=np.array(rows)[POSE:].T,
-            slopes=slopes.transpose(1, 0, 2),
+            rows=rows,
+            slopes=slopes,
             felt=felt,
             by_v=by_v,
             forces=forces,
@@ -149,6 +147,21 @@ class Point:
         if abs(nodes[nearest] - node) > SAME_TOP:
             return None
         return int(nodes[nearest]), float(heights[nearest])
+
+
+def bound_rows(program: Program, postures: Array, v: Array, tasks: Array) -> tuple[Array, Array]:
+    """Return the rows of the bounds, m×R, and their derivatives by v, m×R×V.
+
+    Args:
+        program: the functions.
+        postures: m×n [rad].
+        v: log10 of the hardware's values, m×V.
+        tasks: numbers of each posture's task, m×size.
+    """
+    count, x = len(postures), np.column_stack([postures, v])
+    rows, by_x = _tasks(program.task, count)(x.T, tasks.T)
+    slopes = np.array(by_x).reshape(program.rows, count, -1)[POSE:, :, program.n :]
+    return np.array(rows)[POSE:].T, slopes.transpose(1, 0, 2)
 
 
 @lru_cache(maxsize=16)
