@@ -92,6 +92,7 @@ def exchange(
     instance = _instance(setting, active, poses, unit)
     starts = [_Start(*each, given) for each in _starts(setting, instance, poses, equal, free)]
     found = _apart(_searched(setting, instance, poses, starts, free))
+    hopped = False
     for rounds in range(1, ROUNDS + 1):
         while (best := min(found, key=lambda each: each.found.cost)).instance is not instance:
             start = _Start(best.found.springs, best.found.others, best.postures)
@@ -110,9 +111,11 @@ def exchange(
         if shares[too_far] > 1 + KEEPS and too_far not in poses:
             poses = [*poses, too_far]
         elif not fresh:
-            found = [*found, *_hops(setting, instance, poses, best, free)]
+            more = [] if hopped else _hops(setting, instance, poses, best, free)
+            found, hopped = [*found, *more], True
             if min(each.found.cost for each in found) >= best.found.cost * (1 - CLOSED):
                 break
+            continue
         active = [*active, *fresh]
         poses = _poses(setting, poses, active)
         instance = _instance(setting, active, poses, unit)
