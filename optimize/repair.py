@@ -64,6 +64,8 @@ def nearest_at_pose(
     slope, q = _pose_slope(study.model), wanted.copy()
     held, moving = np.zeros(len(q), dtype=bool), np.arange(len(q))
     for _ in range(FIRST_ORDER_STEPS):
+        if not moving.size:
+            break
         poses = np.tile(pose[:, None], len(moving))
         error, jacobian = (np.array(each) for each in slope(q[moving].T, poses))
         J = jacobian.reshape(POSE, len(moving), -1).transpose(1, 0, 2)
@@ -73,8 +75,6 @@ def nearest_at_pose(
         held[moving] = still & (abs(error).max(axis=0) < HELD)
         q[moving] = np.where(held[moving, None], q[moving], nearer)
         moving = moving[~held[moving]]
-        if not moving.size:
-            break
     return q, held & ((q >= lower) & (q <= upper)).all(axis=1)
 
 
