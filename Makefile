@@ -12,8 +12,8 @@ PYTEST ?=
 ROBOTS := $(notdir $(wildcard generated/*))
 # of make fuzz, a build: some 20 minutes for a robot with seven joints
 EXECUTIONS ?= 10000000
-# of make adversarial, random cases of each robot and build
-N ?= 10000
+# of make adversarial, inputs in all
+N ?= 1000000
 # faults that make mutants puts into the sources, one at a time
 SAMPLE ?= 200
 
@@ -67,9 +67,10 @@ bench-opt: $(VENV)/installed-test
 fuzz: $(VENV)/installed-test
 	FUZZ_EXECUTIONS=$(EXECUTIONS) $(BIN)/pytest -n 2 --slow tests/codegen/test_verification.py -k fuzzer $(PYTEST)
 
-# safe speeds of five robots, float and double, against the tests' own integrator: some 20 ms a case
+# safe speeds of nine robots, float and double, against the tests' own integrator: a ms an input; goes on
+# from where it was stopped
 adversarial: $(VENV)/installed-test
-	$(BIN)/python tests/adversarial.py --count $(N)
+	PYTHONPATH=tests $(BIN)/python -m adversarial --inputs $(N)
 
 generated: $(VENV)/installed
 	for robot in $(ROBOTS); do \

@@ -6,6 +6,7 @@ from .errors import FailedOwnTest, UnsupportedOperation
 from .folder import FolderNotWritable, ForeignFolder
 from .manifest import FunctionRecord, Manifest
 from .package import generate_package, package_of
+from .region_parameters import region_parameters
 
 __all__ = [
     "FailedOwnTest",
@@ -17,4 +18,5 @@ __all__ = [
     "UnsupportedOperation",
     "generate_package",
     "package_of",
+    "region_parameters",
 ]

@@ -20,14 +20,14 @@ from .samples import Sample
 Inputs = Sequence[NDArray[np.float64]]
 """All inputs of many samples, as ``as_columns`` returns them."""
 
-USUAL = 0.999
+SHARE_STATED = 0.999
 """Share of configurations for which the stated errors hold."""
 
 MARGIN = 4.0
 """Stated float error over the one measured: for other compilers, fused multiply-adds, and the
 configurations between those measured."""
 
-AT_ONCE = 4096
+SAMPLES_AT_ONCE = 4096
 """Samples evaluated together: their values take some 100 MB for thirty joints."""
 
 DOUBLE_ERROR = 1e-12
@@ -87,10 +87,12 @@ def accuracy(function: CFunction, inputs: Inputs) -> Accuracy:
     the others. All numbers are rounded up to one digit.
     """
     samples = inputs[0].shape[1]
-    parts = [[i[:, k : k + AT_ONCE] for i in inputs] for k in range(0, samples, AT_ONCE)]
+    parts = [
+        [i[:, k : k + SAMPLES_AT_ONCE] for i in inputs] for k in range(0, samples, SAMPLES_AT_ONCE)
+    ]
     ordered = np.sort(np.concatenate([_float_errors(function, part) for part in parts]))
     epsilon = float(np.finfo(np.float32).eps)
-    usual = max(epsilon, float(ordered[int(USUAL * (ordered.size - 1))]))
+    usual = max(epsilon, float(ordered[int(SHARE_STATED * (ordered.size - 1))]))
     worst = max(epsilon, float(ordered[-1]))
     scale = float(np.finfo(np.float64).eps) / epsilon
     return Accuracy(

@@ -13,8 +13,6 @@ from functools import cached_property
 
 import numpy as np
 
-from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
-
 from . import wide_sine
 from .inputs import SCALARS
 from .interface import SIZES, CVariable, Entry, interface_of
@@ -22,9 +20,6 @@ from .render import Package, Templates
 from .source import CSource
 
 ROWS = "batch/rows.c"
-
-PRESSING = "batch/pressing.c"
-"""Has the arguments of ``speed_factor``, and tells what may press later than that looks."""
 
 
 def batch_sources(package: Package, header: str, show: Templates) -> dict[str, str]:
@@ -43,8 +38,6 @@ def batch_sources(package: Package, header: str, show: Templates) -> dict[str, s
             source = closed.get(entry.name)
             lanes = Lanes(*(getattr(source, f.name) for f in fields(CSource))) if source else None
             files[f"batch/{entry.name}.c"] = show(ROWS, lanes=lanes, **_call(name, entry))
-    if package.impact:
-        files[PRESSING] = show(PRESSING, late=QUASI_STATIC_FROM)
     return files
 
 

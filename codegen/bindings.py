@@ -105,7 +105,7 @@ def _rust(name: str, v: CVariable) -> str:
     kind = RUST.get(v.type, f"{name}_{v.type}")
     for size in reversed(v.shape):
         kind = f"[{kind}; {size}]"
-    return kind
+    return f"*const {kind}" if v.pointer else kind
 
 
 def _rust_argument(name: str, a: CVariable) -> str:

@@ -36,13 +36,13 @@ from .graph import Graph, graph_of
 NEWTON_STEPS = 12
 """Most Newton steps for one move of the motors."""
 
-MOVE = 0.125
+LONGEST_MOVE = 0.125
 """Longest move of a motor at once [rad, m]."""
 
-MOVES = 64
+MOST_MOVES = 64
 """Most moves."""
 
-FARTHEST = 1.0
+LONGEST_STEP = 1.0
 """Longest Newton step of a joint that is taken [rad, m]."""
 
 LAST_STEP = {np.float64: 1e-9, np.float32: 1e-4}
@@ -179,8 +179,8 @@ def _solve(
     q, force = np.tile(home, samples), np.zeros((configuration.forces, samples), dtype=kind)
     start, target = home[motors], goal.astype(kind)
     farthest = abs(target - start).max(axis=0, initial=0.0)
-    good = farthest <= MOVES * MOVE
-    moves = np.maximum(1, np.ceil(np.where(good, farthest, 0.0) / MOVE)).astype(int)
+    good = farthest <= MOST_MOVES * LONGEST_MOVE
+    moves = np.maximum(1, np.ceil(np.where(good, farthest, 0.0) / LONGEST_MOVE)).astype(int)
     with np.errstate(all="ignore"):  # searches that fail may run away
         for move in range(1, moves.max(initial=1) + 1):
             at = np.flatnonzero(good & (move <= moves))
@@ -206,7 +206,7 @@ def _balanced(
         state = [q[:, left], force[:, left]]
         residual, flat = evaluate_rounded(configuration.equations, state, kind)
         step = _eliminated(flat.reshape(size, size, left.size), residual)
-        near = (abs(step[:passive]) <= FARTHEST).all(axis=0)
+        near = (abs(step[:passive]) <= LONGEST_STEP).all(axis=0)
         left, step = left[near], step[:, near]
         q[np.array(configuration.passive)[:, None], left] -= step[:passive]
         force[:, left] -= step[passive:]

@@ -11,12 +11,12 @@ import numpy as np
 
 from softimpact.symbolic import NoEquilibrium
 
-from .accuracy import DOUBLE_ERROR, MARGIN, USUAL, rounded_up
+from .accuracy import DOUBLE_ERROR, MARGIN, SHARE_STATED, rounded_up
 from .configuration import (
-    FARTHEST,
     LAST_STEP,
-    MOVE,
-    MOVES,
+    LONGEST_MOVE,
+    LONGEST_STEP,
+    MOST_MOVES,
     NEWTON_STEPS,
     Configuration,
     golden_configuration,
@@ -44,9 +44,9 @@ class ConfigurationSource:
     cases: tuple[tuple[list[float], list[float]], ...]
 
     newton_steps = NEWTON_STEPS
-    move = MOVE
-    moves = MOVES
-    farthest = FARTHEST
+    move = LONGEST_MOVE
+    moves = MOST_MOVES
+    farthest = LONGEST_STEP
     last_step_double = LAST_STEP[np.float64]
     last_step_float = LAST_STEP[np.float32]
 
@@ -131,7 +131,7 @@ def configuration_source(
         flops=configuration.flops,
         sines_and_cosines=configuration.sines_and_cosines,
         double_error=DOUBLE_ERROR,
-        float_error=rounded_up(MARGIN * float(errors[int(USUAL * (errors.size - 1))])),
+        float_error=rounded_up(MARGIN * float(errors[int(SHARE_STATED * (errors.size - 1))])),
         float_error_worst=rounded_up(float(errors[-1])),
     )
     return ConfigurationSource(prefix, configuration, record, tuple(cases))

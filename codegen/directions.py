@@ -13,10 +13,10 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .closed_samples import closed_configurations
 
-SEEN = 8
+CONFIGURATIONS = 8
 """Configurations at which a robot's motions are looked at."""
 
-NOTHING = 1e-9
+LEAST_MOTION = 1e-9
 """Share of the largest motion that counts as none."""
 
 
@@ -28,16 +28,16 @@ def directions_of_motion(model: ImpactModel) -> Array | None:
     columns = [motor_jacobian(model, q) for q in some_configurations(model.robot, seed=2)]
     rank = min(int(np.linalg.matrix_rank(J, 1e-6)) for J in columns)
     directions, sizes, _ = np.linalg.svd(np.hstack(columns))
-    if rank == 0 or (rank < 3 and sizes[rank] > NOTHING * sizes[0]):
+    if rank == 0 or (rank < 3 and sizes[rank] > LEAST_MOTION * sizes[0]):
         return None
     return _along_axes(directions[:, :rank] @ directions[:, :rank].T)
 
 
 def some_configurations(robot: Robot, seed: int) -> list[Array]:
-    """Return ``SEEN`` configurations at which to look at a robot; its loops are closed there."""
+    """Return ``CONFIGURATIONS`` configurations to look at a robot at; loops are closed there."""
     if robot.loops:
-        return closed_configurations(robot, random.Random(seed), SEEN)
-    return list(np.random.default_rng(seed).uniform(-1, 1, (SEEN, robot.n)))
+        return closed_configurations(robot, random.Random(seed), CONFIGURATIONS)
+    return list(np.random.default_rng(seed).uniform(-1, 1, (CONFIGURATIONS, robot.n)))
 
 
 def motor_jacobian(model: ImpactModel, q: Array) -> Array:
@@ -50,6 +50,6 @@ def _along_axes(projector: Array) -> Array:
     basis: list[Array] = []
     for column in projector.T:
         rest = column - sum((row * (row @ column) for row in basis), np.zeros(3))
-        if np.linalg.norm(rest) > NOTHING:
+        if np.linalg.norm(rest) > LEAST_MOTION:
             basis.append(np.round(rest / np.linalg.norm(rest), 12) + 0.0)
     return np.array(basis)

@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from softimpact.symbolic import Robot, closed_chain
 from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
+from .contacts import BuiltIn
 from .directions import directions_of_motion
 from .functions import Symbols, has_potential, links_of
 from .functions.guards import fastest_arrival, heaviest
@@ -22,13 +23,13 @@ from .source import CSource
 GOLDEN_IMPACTS = 12
 """Impacts in a package's own test."""
 
-ACCURACY = 2e-3
+PEAK_ERROR = 2e-3
 """Bound stated of the error of peak forces, in double and in float."""
 
 HORIZON = QUASI_STATIC_FROM
 """Default time in which forces count [s]: what a transient limit is stated for."""
 
-STEPS = 800
+DEFAULT_BUDGET = 800
 """Default budget of steps of a call."""
 
 
@@ -83,6 +84,16 @@ class ImpactSource:
         return [self.robot.actuated[i] for i in self.independent]
 
     @property
+    def damping(self) -> list[float]:
+        """Damping of these joints' own [N·m·s/rad]."""
+        return [float(self.robot.damping[i]) for i in self.independent]
+
+    @property
+    def damped(self) -> bool:
+        """Whether any of these joints has damping of its own."""
+        return any(self.damping)
+
+    @property
     def elastic(self) -> bool:
         """Whether every joint has a spring behind its motor."""
         return is_elastic(self.robot)
@@ -95,7 +106,11 @@ class ImpactSource:
 
 
 def impact_source(
-    prefix: str, symbols: Symbols, points: Mapping[str, str], golden: int = GOLDEN_IMPACTS
+    prefix: str,
+    symbols: Symbols,
+    points: Mapping[str, str],
+    golden: int = GOLDEN_IMPACTS,
+    contacts: Sequence[BuiltIn] = (),
 ) -> ImpactSource | None:
     """Return the impacts of a robot.
 
@@ -108,6 +123,7 @@ def impact_source(
         points: frames of the contact points by name, the package's tip first.
         golden: how many golden impacts there should be; with none of them nobody looks whether
             the robot arrives anywhere.
+        contacts: built in, of which each has a golden impact of its own.
     """
     robot, parameters = symbols.robot, symbols.parameters
     directions = directions_of_motion(symbols.model)
@@ -117,22 +133,31 @@ def impact_source(
         return None
     links = links_of(symbols, tuple(points.values()))
     fastest, heavy = fastest_arrival(symbols.model), heaviest(robot)
-    found = []
-    for impact in draw_impacts(robot, parameters, directions, 4 * golden, seed=3):
-        force = reference_force(symbols, links, impact, directions, fastest, heavy)
-        if force is not None:
-            found.append((impact, float(f"{force:.6g}")))
-        if len(found) == golden:
-            break
+
+    def first(count: int, drawn: Iterable[Impact]) -> Iterator[tuple[Impact, float]]:
+        """Yield the first that are regular, with their forces."""
+        for impact in drawn:
+            force = reference_force(symbols, links, impact, directions, fastest, heavy)
+            if count > 0 and force is not None:
+                count -= 1
+                yield impact, float(f"{force:.6g}")
+            if count == 0:
+                return
+
+    found = [*first(golden, draw_impacts(robot, parameters, directions, 4 * golden, seed=3))]
     if golden and not found:
         return None
+    for i, body in enumerate(contacts if golden else ()):
+        drawn = draw_impacts(robot, parameters, directions, 4 * golden, seed=4 + i)
+        covered = (replace(impact, contact=body.contact, built_in=i) for impact in drawn[i % 4 :])
+        found += first(1, covered)
     record = ImpactRecord(
         points=tuple(points),
         flops=links.flops,
-        accuracy=ACCURACY,
+        accuracy=PEAK_ERROR,
         horizon=HORIZON,
         reaction_time=REACTION_TIME,
-        steps=STEPS,
+        steps=DEFAULT_BUDGET,
         searched=SEARCHED,
     )
     return ImpactSource(

@@ -11,8 +11,9 @@ from typing import Literal
 
 import numpy as np
 
-from softimpact.symbolic import REGIONS, BodyRegion, Robot, closed_chain
-from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
+from softimpact.symbolic import REGIONS, BodyRegion, Contact, Robot, closed_chain
+from softimpact.symbolic.body.laws import HERTZ_EXPONENT, PowerLaw
+from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
 from .accuracy import rounded_unit
@@ -43,7 +44,7 @@ KINDS: tuple[CMotorKind, ...] = ("free_or_driven", "free", "driven", "servo")
 REACTION_TIMES = (1 / 64, 1 / 32, 1.0)
 """When they are released [s]; the last is never."""
 
-LOOKED_AT = 3 / 32
+GOLDEN_HORIZON = 3 / 32
 """For how long [s]."""
 
 
@@ -53,27 +54,40 @@ class Impact:
 
     Attributes:
         sample: configuration, direction and parameters.
-        region: what it hits.
-        clamped: whether that is held.
+        contact: what it hits.
         speed: of the approach [m/s], exact in float.
         motors: what they do.
         reaction_time: until they are released [s].
         horizon: for how long forces count [s].
+        built_in: number of a contact that the package has built in; None: a region of the standard.
     """
 
     sample: Sample
-    region: BodyRegion
-    clamped: bool
+    contact: Contact
     speed: float
     motors: CMotorKind = "free"
     reaction_time: float = REACTION_TIMES[0]
-    horizon: float = LOOKED_AT
+    horizon: float = GOLDEN_HORIZON
+    built_in: int | None = None
+
+    @property
+    def region(self) -> BodyRegion:
+        """The region that it hits."""
+        return self.contact.region
+
+    @property
+    def clamped(self) -> bool:
+        """Whether that is held."""
+        return self.contact.clamped
 
     @property
     def body(self) -> ReferenceBody:
-        """The region as the integrator sees it."""
+        """The contact as the integrator sees it."""
         mass = None if self.clamped else self.region.effective_mass
-        return ReferenceBody(self.region.stiffness, self.region.damping, mass, HERTZ_STIFFNESS)
+        law = self.contact.law
+        is_hertz = isinstance(law, PowerLaw) and law.exponent == HERTZ_EXPONENT
+        skin = law.stiffness if isinstance(law, PowerLaw) and is_hertz else points_of(law)
+        return ReferenceBody(self.region.stiffness, self.region.damping, mass, skin)
 
     @property
     def kind(self) -> int:
@@ -96,8 +110,7 @@ def draw_impacts(
         impacts.append(
             Impact(
                 chosen,
-                REGIONS[BODIES[i // 4 % len(BODIES)]],
-                source.random() < 0.5,
+                Contact(REGIONS[BODIES[i // 4 % len(BODIES)]], source.random() < 0.5),
                 round(1024 * speed) / 1024,
                 KINDS[i % len(KINDS)],
                 REACTION_TIMES[int(source.random() * len(REACTION_TIMES))],
@@ -144,6 +157,7 @@ def reference_arrival(
         rotors=parameter("rotor_inertia"),
         gains=(parameter("position_gain") * held, parameter("damping_gain") * held),
         motors=motors,
+        damping=robot.damping[independent],
     )
 
 

@@ -20,6 +20,11 @@ import numpy as np
 
 from .errors import UnknownDeclaration
 
+POINTER = 8
+"""Size of an address where a library for Python runs [bytes]; WebAssembly has ``WASM_POINTER``."""
+
+WASM_POINTER = 4
+
 SIZES = {"int": 4, "unsigned int": 4, "unsigned char": 1, "double": 8, "float": 4}
 """Of the types that headers use [bytes], on every machine that has 32-bit int."""
 
@@ -35,7 +40,7 @@ class CVariable:
         name: in C.
         type: ``real``, one of ``SIZES``, or a struct's name without the prefix.
         shape: of an array; a pointer to many has a first size of None.
-        pointer: whether an address is passed.
+        pointer: whether an address is passed, or kept in a struct.
         written: whether the function writes there.
         comment: behind it, without the marks.
     """
@@ -108,7 +113,8 @@ class Interface:
         Its last four bits are 0, for the size of ``real``.
         """
         structs = [
-            [s.name, *([f.name, f.type, f.shape] for f in s.fields)] for s in self.structs.values()
+            [s.name, *([f.name, f.type, f.shape, f.pointer] for f in s.fields)]
+            for s in self.structs.values()
         ]
         entries = [
             [e.name, e.returns, *([a.type, a.shape, a.pointer] for a in e.arguments)]
@@ -121,7 +127,7 @@ class Interface:
         """Return a struct as NumPy holds it."""
         offsets, size = self.offsets(struct, real)
         fields = self.structs[struct].fields
-        kinds = [NUMPY[real if f.type == "real" else f.type] for f in fields]
+        kinds = ["u8" if f.pointer else NUMPY[real if f.type == "real" else f.type] for f in fields]
         return np.dtype({
             "names": [f.name for f in fields],
             "formats": [(k, f.shape) if f.shape else k for k, f in zip(kinds, fields, strict=True)],
@@ -129,11 +135,17 @@ class Interface:
             "itemsize": size,
         })  # fmt: skip
 
-    def offsets(self, struct: str, real: str) -> tuple[dict[str, int], int]:
-        """Return the offset of each field of a struct, and its size [bytes]."""
+    def offsets(self, struct: str, real: str, pointer: int = POINTER) -> tuple[dict[str, int], int]:
+        """Return the offset of each field of a struct, and its size [bytes].
+
+        Args:
+            struct: its name.
+            real: number type.
+            pointer: size of an address.
+        """
         offsets, at, widest = {}, 0, 1
         for field in self.structs[struct].fields:
-            size = SIZES[real if field.type == "real" else field.type]
+            size = pointer if field.pointer else SIZES[real if field.type == "real" else field.type]
             at = -(-at // size) * size
             offsets[field.name] = at
             at += size * math.prod(n or 0 for n in field.shape)
@@ -175,7 +187,9 @@ TABLE = re.compile(r"^extern const (\w+) (\w+)((?:\[\w+\])+);", re.MULTILINE)
 NUMBER = re.compile(r"^#define (\w+) (\d+|0x[0-9a-f]+)u?$", re.MULTILINE)
 LAYOUT = re.compile(r"^#define \w+_LAYOUT \((0x[0-9a-f]+)u \+", re.MULTILINE)
 TEXT = re.compile(r'^#define (\w+) (?:\\\n *)?"(.*)"$', re.MULTILINE)
-MEMBER = re.compile(r"(\w+(?: \w+)*?) (\w+)((?:\[\w*\])*);[ ]*(?:/\* (.*?) \*/)?", re.DOTALL)
+MEMBER = re.compile(
+    r"(?:const (\w+) \*|(\w+(?: \w+)*?) )(\w+)((?:\[\w*\])*);[ ]*(?:/\* (.*?) \*/)?", re.DOTALL
+)
 ARGUMENT = re.compile(r"(const )?(\w+(?: \w+)*?) (\*?)(\w+)((?:\[\w*\])*)$")
 
 
@@ -229,7 +243,13 @@ class _Header:
 
     def _struct(self, name: str, body: str, numbers: Mapping[str, int]) -> Struct:
         fields = [
-            CVariable(m[2], self._type(m[1]), self._shape(m[3], numbers), comment=m[4] or "")
+            CVariable(
+                m[3],
+                self._type(m[1] or m[2]),
+                self._shape(m[4], numbers),
+                bool(m[1]),
+                comment=m[5] or "",
+            )
             for m in MEMBER.finditer(body)
         ]
         if re.sub(r"/\*.*?\*/", "", MEMBER.sub("", body), flags=re.DOTALL).strip():

@@ -7,7 +7,7 @@ import re
 import unicodedata
 import zlib
 
-LONGEST = 40
+LONGEST_NAME = 40
 """Letters of a name; with those of a function they stay below the 63 that C99 tells apart."""
 
 HEADERS = frozenset((
@@ -46,8 +46,8 @@ def c_name(name: str) -> str:
     """
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     words = re.sub(r"[^a-z0-9]+", "_", plain.lower()).strip("_")
-    if len(words) > LONGEST:
-        words = f"{words[: LONGEST - 9].rstrip('_')}_{zlib.crc32(words.encode()):08x}"
+    if len(words) > LONGEST_NAME:
+        words = f"{words[: LONGEST_NAME - 9].rstrip('_')}_{zlib.crc32(words.encode()):08x}"
     taken = words in HEADERS | LIMITS | TARGETS or DEVICES.fullmatch(words)
     if taken or not words[:1].isalpha():
         words = f"robot_{words}".rstrip("_")

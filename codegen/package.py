@@ -9,12 +9,14 @@ from pathlib import Path
 import numpy as np
 
 import softimpact
-from softimpact.symbolic import STANDARD_GRAVITY, Drives, InvalidValue, Robot
+from softimpact.symbolic import STANDARD_GRAVITY, Contact, Drives, InvalidValue, Robot
+from softimpact.symbolic.former_names import renamed
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 
 from .accuracy import Inputs, accuracy, golden_results, is_regular
 from .configuration import Configuration, has_configuration
 from .configuration_source import configuration_source
+from .contacts import built_in
 from .costs import Costs
 from .defaults import Payload, defaults_of, frozen_parameters
 from .description import CFunction
@@ -50,6 +52,7 @@ def unseen(what: str, done: int, of: int) -> None:
     """Let steps pass without a word."""
 
 
+@renamed(drives_="drives")
 def generate_package(
     robot: Robot,
     out: str | Path,
@@ -65,6 +68,7 @@ def generate_package(
     floating: bool = False,
     poses: Mapping[str, Sequence[float]] | None = None,
     points: Mapping[str, str] | None = None,
+    contacts: Mapping[str, Contact] | None = None,
     compiler: Sequence[str] | None = None,
     on_step: OnStep = unseen,
 ) -> Manifest:
@@ -91,6 +95,8 @@ def generate_package(
             none. They must lie within the joints' limits. Not for robots without impacts.
         points: further contact points that ``speed_factor`` watches beside the tip: frames, or
             ``FRAME@x,y,z``, by a name that C can have.
+        contacts: bodies and covers that are built in beside the standard's regions, by a name that
+            C can have. Not for robots without impacts.
         compiler: words of a C compiler's command line, with which the package's own test is run
             before anything is written; None leaves it out.
         on_step: is told what comes next, and how many steps of how many are done.
@@ -124,6 +130,7 @@ def generate_package(
         floating=floating,
         poses=poses,
         points=points,
+        contacts=contacts,
         on_step=on_step,
     )
     files, costs = render(package)
@@ -154,6 +161,7 @@ def package_of(
     floating: bool = False,
     poses: Mapping[str, Sequence[float]] | None = None,
     points: Mapping[str, str] | None = None,
+    contacts: Mapping[str, Contact] | None = None,
     verified: bool = True,
     on_step: OnStep = unseen,
 ) -> Package:
@@ -168,6 +176,7 @@ def package_of(
     _check(robot, real, gravity, chain_order, floating)
     chain_order = chain_order or min(CHAIN_ORDER, longest_chain(robot))
     checked = checked_poses(robot, poses or {})
+    bodies = built_in(contacts or {})
     watched = {TIP: frame, **checked_points(robot, points or {})}
     prefix = c_name(name or robot.name)
     parameters = parameters_of(robot, payload=payload is not None)
@@ -211,11 +220,14 @@ def package_of(
             symbols,
             watched,
             golden=GOLDEN_IMPACTS if verified else 0,
+            contacts=bodies,
         ),
         poses=checked,
+        contacts=bodies,
     )
-    if package.poses and not package.impact:
-        raise InvalidValue("poses", f"robot '{robot.name}' has no impacts to choose them by")
+    for field in ("poses", "contacts"):
+        if getattr(package, field) and not package.impact:
+            raise InvalidValue(field, f"robot '{robot.name}' has no impacts to use them in")
     return package
 
 
@@ -281,7 +293,7 @@ def _manifest(package: Package, costs: Costs | None, hashes: dict[str, str]) -> 
         version=softimpact.__version__,
         model=package.robot.name,
         tip=package.tip,
-        digest=package.robot.digest(),
+        digest=package.robot.digest(floating=package.floating),
         real=package.real,
         joints=package.robot.joint_names,
         coordinates=package.coordinates,

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from softimpact.symbolic.body.laws.points import CubicPoints
 from softimpact.symbolic.robot.rigid import Array
 
 ReferenceKind = Literal["free", "driven", "servo"]
@@ -31,12 +32,12 @@ TERMS = 16
 
 @dataclass(frozen=True)
 class ReferenceBody:
-    """What is hit: k_h [N/m], c_h [N·s/m], m_h [kg] (None if clamped), k_f [N/m^1.5]."""
+    """What is hit: k_h [N/m], c_h [N·s/m], m_h [kg] (None if clamped), k_f [N/m^1.5] or a law."""
 
     stiffness: float
     damping: float
     mass: float | None
-    hertz_stiffness: float
+    skin: float | CubicPoints
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +53,7 @@ class ReferenceArrival:
         rotors: B behind the springs.
         gains: K_p and K_d of a servo.
         motors: which coordinates have one.
+        damping: of the joints' own, against the motion before.
     """
 
     mass: Array
@@ -62,6 +64,7 @@ class ReferenceArrival:
     rotors: Array
     gains: tuple[Array, Array]
     motors: NDArray[np.bool_]
+    damping: Array
 
 
 @dataclass(frozen=True)
@@ -109,15 +112,15 @@ def _system(arrival: ReferenceArrival, kind: ReferenceKind) -> _System:
         held = arrival.motors.astype(float)
         K = P + np.diag(K_p * held)
         grid = np.ix_(at, at)
-        D = np.diag(K_d * held)
+        D = np.diag(K_d * held + arrival.damping)
         return _System(arrival.mass[grid], D[grid], K[grid], arrival.row[at], pull[at])
     k = np.diag(arrival.springs)
     if kind == "driven":
-        return _System(arrival.mass, np.zeros((n, n)), k + P, arrival.row, pull)
+        return _System(arrival.mass, np.diag(arrival.damping), k + P, arrival.row, pull)
     zero, none = np.zeros((n, n)), np.zeros(n)
     return _System(
         np.block([[arrival.mass, zero], [zero, np.diag(arrival.rotors)]]),
-        np.block([[zero, zero], [zero, np.diag(K_d)]]),
+        np.block([[np.diag(arrival.damping), zero], [zero, np.diag(K_d)]]),
         np.block([[k + P, -k], [-k, k + np.diag(K_p)]]),
         np.concatenate([arrival.row, none]),
         np.concatenate([pull, none]),
@@ -192,18 +195,20 @@ class _Run:
         self.z, self.rate, self.time = state[:size], state[size:], end
 
     def _press(self, x: float, v: float, soft: Array, h: float) -> None:
-        """Solve f = k s + c ṡ, s = x − soft f − δ, f = k_f δ₊^1.5 for δ at the end of a step.
+        """Solve f = k s + c ṡ, s = x − soft f − δ, f = f(δ₊) for δ at the end of a step.
 
         Out of contact δ < 0 is the gap. δ̇ is a trapezoid's; the first one in a contact an Euler's.
         """
-        k, c, skin = self.body.stiffness, self.body.damping, self.body.hertz_stiffness
+        k, c, skin = self.body.stiffness, self.body.damping, self.body.skin
         lag, memory = 1 / h, -self.depth / h
         if self.force > 0:
             lag, memory = 2 / h, -2 * self.depth / h - self.slope
         slack = 1 + k * soft[0] + c * soft[1]
         right = k * x + c * (v - memory)
         depth = 0.0
-        if right > 0:
+        if right > 0 and isinstance(skin, CubicPoints):
+            depth, self.force = _pressed(skin, slack, k + c * lag, right)
+        elif right > 0:
             depth = _depth(skin * slack, k + c * lag, right)
             self.force = skin * depth**1.5
         else:
@@ -226,6 +231,20 @@ def _depth(cubic: float, square: float, right: float) -> float:
         if abs(change) < 1e-14 * u:
             break
     return u * u
+
+
+def _pressed(law: CubicPoints, slack: float, square: float, right: float) -> tuple[float, float]:
+    """Return δ and f(δ) with slack f(δ) + square δ = right, by Newton's method within bounds."""
+    low, high, depth = 0.0, right / square, right / square
+    for _ in range(200):
+        force, slope = law.at(depth)
+        over = slack * force + square * depth - right
+        low, high = (low, depth) if over > 0 else (depth, high)
+        change = over / (slack * slope + square)
+        if abs(change) < 1e-13 * depth:
+            break
+        depth = depth - change if low < depth - change < high else (low + high) / 2
+    return depth, law.at(depth)[0]
 
 
 def _exponential(A: Array) -> Array:

@@ -18,12 +18,14 @@ from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 from . import sine
 from .bindings import bindings
 from .configuration_source import ConfigurationSource
+from .contacts import BuiltIn
 from .costs import Costs, stored_costs
 from .defaults import Default
 from .functions import coordinates_of
 from .impact_source import ImpactSource
 from .inputs import SCALARS, Parameter, is_elastic
 from .interface import interface_of
+from .law_points import MOST_POINTS
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
@@ -57,6 +59,7 @@ class Package:
         impact: peak forces and safe speeds; None where the robot has none.
         floating: whether a function sets the base free.
         poses: built-in candidates for ``select_configuration``, by name.
+        contacts: built-in bodies and covers.
     """
 
     prefix: str
@@ -74,6 +77,7 @@ class Package:
     impact: ImpactSource | None = None
     floating: bool = False
     poses: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    contacts: tuple[BuiltIn, ...] = ()
 
     @property
     def elastic(self) -> bool:
@@ -169,6 +173,8 @@ def sources(package: Package, show: Templates) -> dict[str, str]:
         files |= runtime(name)
     if package.poses:
         files[f"src/{name}_candidates.c"] = show("candidates.c")
+    if package.contacts:
+        files[f"src/{name}_contacts.c"] = show("contacts.c")
     if package.configuration:
         files[f"src/{name}_configuration.c"] = show("configuration.c", c=package.configuration)
     return files
@@ -190,6 +196,7 @@ class Templates:
             "sine": sine,
             "regions": list(REGIONS.values()),
             "hertz_stiffness": HERTZ_STIFFNESS,
+            "most_law_points": MOST_POINTS,
             "measured": MEASURED_SAMPLES,
             "layout": 0,
         }

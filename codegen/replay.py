@@ -10,7 +10,7 @@ from pathlib import Path
 
 from .errors import FailedOwnTest
 
-LONGEST = 300.0
+LONGEST_RUN = 300.0
 """Seconds after which a compiler or a test hangs; thirty joints take some ten."""
 
 FLAGS = ("-std=c99", "-O0")
@@ -47,7 +47,7 @@ def replay(files: Mapping[str, str], compiler: Sequence[str]) -> None:
         try:
             outcome = _run(_built(compiler, sources, Path(folder)))
         except subprocess.TimeoutExpired:
-            raise FailedOwnTest(f"it did not end within {LONGEST:.0f} s") from None
+            raise FailedOwnTest(f"it did not end within {LONGEST_RUN:.0f} s") from None
     if outcome.returncode != 0:
         raise FailedOwnTest(_reason(outcome.stdout) or f"it ended with code {outcome.returncode}")
 
@@ -74,7 +74,7 @@ def _run(*command: str | Path) -> subprocess.CompletedProcess[str]:
         capture_output=True,
         text=True,
         errors="replace",
-        timeout=LONGEST,
+        timeout=LONGEST_RUN,
     )
 
 

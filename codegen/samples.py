@@ -20,13 +20,13 @@ from softimpact.symbolic import Joint, JointKind, Robot
 from .closed_samples import closed_configurations
 from .inputs import SCALARS, Parameter
 
-STEPS = 1024
+STEPS_PER_UNIT = 1024
 """Joint coordinates are multiples of 1/1024 rad or m."""
 
 UNLIMITED = {JointKind.HINGE: math.pi, JointKind.SLIDE: 1.0}
 """Largest coordinate sampled of a joint without limits [rad, m]."""
 
-FARTHEST = 128.0
+FARTHEST_LIMIT = 128.0
 """Limits farther away than this are none [rad, m]."""
 
 DRAWN = {
@@ -86,8 +86,8 @@ def draw_samples(
 def _range(joint: Joint) -> tuple[float, float]:
     """Return between which coordinates a joint is sampled: all that its limits allow."""
     most = UNLIMITED[joint.kind]
-    lower = joint.lower if joint.lower >= -FARTHEST else min(-most, joint.upper - most)
-    upper = joint.upper if joint.upper <= FARTHEST else max(most, joint.lower + most)
+    lower = joint.lower if joint.lower >= -FARTHEST_LIMIT else min(-most, joint.upper - most)
+    upper = joint.upper if joint.upper <= FARTHEST_LIMIT else max(most, joint.lower + most)
     return lower, upper
 
 
@@ -96,10 +96,10 @@ def _between(source: random.Random, low: int, high: int) -> int:
 
 
 def _coordinate(source: random.Random, lower: float, upper: float) -> float:
-    low, high = math.ceil(lower * STEPS), math.floor(upper * STEPS)
+    low, high = math.ceil(lower * STEPS_PER_UNIT), math.floor(upper * STEPS_PER_UNIT)
     if low > high:  # the joint hardly moves
         return float(np.float32((lower + upper) / 2))
-    return _between(source, low, high) / STEPS
+    return _between(source, low, high) / STEPS_PER_UNIT
 
 
 def _direction(source: random.Random) -> tuple[float, ...]:

@@ -21,7 +21,7 @@ from typing import Any
 from softimpact.symbolic import SoftImpactError
 
 from .errors import NoCrossCompiler
-from .interface import SIZES, CVariable, Interface, read_interface
+from .interface import SIZES, WASM_POINTER, CVariable, Interface, read_interface
 from .manifest import Real
 
 GLUE = Path(__file__).parent / "web" / "package.mjs"
@@ -71,8 +71,11 @@ def described(interface: Interface, real: Real) -> dict[str, Any]:
     sizes = {**SIZES, "real": SIZES[real]}
     structs = {}
     for name, struct in interface.structs.items():
-        offsets, size = interface.offsets(name, real)
-        fields = [{**_typed(f), "offset": offsets[f.name]} for f in struct.fields]
+        offsets, size = interface.offsets(name, real, WASM_POINTER)
+        fields = [
+            {**_typed(f), "offset": offsets[f.name], **({"pointer": True} if f.pointer else {})}
+            for f in struct.fields
+        ]
         structs[name] = {"size": size, "fields": fields}
     entries = {
         name: {

@@ -8,6 +8,7 @@ from .pareto import Pareto, pareto_fronts
 from .poses import Candidate, candidates
 from .solve import Mode, Outcome
 from .study import Pose, Study, load_study
+from .trade_off import TradeOff, TradePoint, trade_off_front
 
 __all__ = [
     "Candidate",
@@ -23,9 +24,12 @@ __all__ = [
     "PoseResult",
     "SolverFailure",
     "Study",
+    "TradeOff",
+    "TradePoint",
     "Unavailable",
     "candidates",
     "design",
     "load_study",
     "pareto_fronts",
+    "trade_off_front",
 ]

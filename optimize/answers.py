@@ -15,18 +15,18 @@ from .bounds import STEEPNESS, Bound
 from .ipopt import Found, Instance, VariableBounds
 from .nlp import Program
 from .study import Study
-from .tip_pose import POSE
+from .units import figure_in_words
 
-INDIFFERENT = 0.005
+NO_LOSS = 0.005
 """Share of the force that counts as no loss."""
 
 HALVINGS = 7
 """Bisections of the logarithm of a range: its ends are then right to 5 % or better."""
 
-WORTHLESS = 3e-6
+LEAST_GAIN_NAMED = 3e-6
 """Share of the objective below which a bound is not named: a thousandth of a newton or so."""
 
-ROOM = 0.1
+PRICED_SHARE = 0.1
 """Share of a limit whose price is told."""
 
 
@@ -65,7 +65,7 @@ def indifferent_ranges(
         cost: what is minimised, of v; greater than zero.
         keeps: whether all bounds are kept, of v.
     """
-    least = cost(v) * (1 + INDIFFERENT)
+    least = cost(v) * (1 + NO_LOSS)
     ranges = np.empty((v.size, 2))
 
     def good(place: int, value: float) -> bool:
@@ -80,8 +80,8 @@ def indifferent_ranges(
 
 
 def by_name(study: Study, rows: Array) -> dict[str, list[float]]:
-    """Return a row for each joint, and for each other value of the hardware, by its name."""
-    joints = zip(study.robot.joint_names, study.groups, strict=True)
+    """Return a row for each spring, and for each other value of the hardware, by its name."""
+    joints = zip(study.spring_names, study.groups, strict=True)
     springs = max(study.groups) + 1
     found = {name: rows[group].tolist() for name, group in joints}
     return found | dict(zip(study.range.names[springs:], rows[springs:].tolist(), strict=True))
@@ -116,10 +116,10 @@ def prices_of(
         return Price(bound, gain * one if unit == "N" else None, room, gain * one, unit)
 
     tasks = found.multipliers[: instance.shape.postures * program.rows]
-    by_row = tasks.reshape(-1, program.rows)[:, POSE:].sum(axis=0)
+    by_row = tasks.reshape(-1, program.rows)[:, program.held :].sum(axis=0)
     pieces = np.split(by_row, np.cumsum(program.bound_rows)[:-1])
     prices = [
-        price(bound.name, STEEPNESS[bound.sense] * float(piece.sum()) * ROOM, _room(bound))
+        price(bound.name, STEEPNESS[bound.sense] * float(piece.sum()) * PRICED_SHARE, _room(bound))
         for bound, piece in zip(study.bounds, pieces, strict=True)
     ]
     names = study.range.names
@@ -129,18 +129,18 @@ def prices_of(
         if spring and not up:
             more = "softer"
         name = f"stiffness.{end} of {names[i]}" if spring else f"hardware: {end} of {names[i]}"
-        gain = abs(float(multiplier)) * float(np.log10(1 + ROOM))
+        if study.range.lower[i] == study.range.upper[i]:
+            name = f"{name}, which is held"
+        gain = abs(float(multiplier)) * float(np.log10(1 + PRICED_SHARE))
         prices.append(price(name, gain, f"10 % {more}"))
-    kept = [each for each in prices if each.gain > WORTHLESS * one]
+    kept = [each for each in prices if each.gain > LEAST_GAIN_NAMED * one]
     return tuple(sorted(kept, key=lambda each: -each.gain))
 
 
 def _room(bound: Bound) -> str:
     """Return a tenth of a limit in words."""
-    room, unit = ROOM * bound.limit, bound.unit
-    if unit == "m":
-        room, unit = 1e3 * room, "mm"
-    return f"{room:g} {unit} {'more' if bound.sense == 'most' else 'less'}"
+    more = "more" if bound.sense == "most" else "less"
+    return f"{figure_in_words(PRICED_SHARE * bound.limit, bound.unit, 3)} {more}"
 
 
 def worth_of(study: Study, force: float) -> tuple[float, str]:

@@ -13,6 +13,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import posture_limits
 from .impact_program import impact_program
 from .ipopt import Instance, VariableBounds, one_posture
 from .nlp import task_numbers
@@ -21,7 +22,7 @@ from .solve import Start, solve
 from .solver_options import quiet
 from .study import Study
 from .timing import impact_timing
-from .tip_pose import tip_pose, tip_pose_error
+from .tip_pose import posture_error, tip_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +58,10 @@ def best_posture(
     problem: dict[str, Any] = {
         "x": q,
         "f": measure(q),
-        "g": tip_pose_error(model, q, ca.DM(position), ca.DM(rotation)),
+        "g": posture_error(model, q, ca.DM(position), ca.DM(rotation)),
     }
     solver = ca.nlpsol("posture", "ipopt", problem, quiet({"tol": 1e-9}))
-    lower, upper = model.robot.limits
+    lower, upper = posture_limits(model)
     found = solver(x0=start, lbx=lower, ubx=upper, lbg=0, ubg=0)
     stats = solver.stats()
     value, best = float(found["f"]), np.array(found["x"]).ravel()

@@ -12,6 +12,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import is_plain
 from .problem import Problem, felt_numbers, study_impacts
 from .repair import accurate_springs
 from .self_motion import SelfMotion, self_motion
@@ -39,7 +40,7 @@ class Branch:
     Attributes:
         curve: postures along it.
         q: posture of least force with springs that are just accurate, length n [rad].
-        springs: these, length n [N·m/rad].
+        springs: these, one each [N·m/rad].
         force: with them [N].
     """
 
@@ -54,7 +55,8 @@ def self_motions(study: Study) -> list[SelfMotion]:
 
     Empty for arms that have none with one parameter.
     """
-    if study.robot.n != POSE + 1 or not np.isfinite(study.robot.limits).all():
+    redundant = is_plain(study.model) and study.robot.n == POSE + 1
+    if not redundant or not np.isfinite(study.robot.limits).all():
         return []
     return _self_motions(study.model, tuple(study.task_pose.q.tolist()))
 
@@ -110,7 +112,7 @@ def branches(problem: Problem, max_deflection: float | None = None) -> list[Bran
     if max_deflection is not None:
         study = replace(study, max_deflection=max_deflection)
     impact, rows = problem.program.impacts[0], study_impacts(study, problem.timing.step)
-    equal = np.full(study.robot.n, float(np.median(study.nominal)))
+    equal = np.full(len(study.groups), float(np.median(study.nominal)))
     found = []
     for curve in self_motions(study):
         tried = []

@@ -14,7 +14,7 @@ from .evaluation import Kept, kept
 from .ipopt import VariableBounds, felt
 from .nlp import Program
 from .scenarios import Scenarios
-from .screening import PIECE, Screened, forces_at, screen
+from .screening import SCENARIOS_IN_A_JOB, Screened, forces_at, screen
 from .study import Study
 from .timing import Timing
 from .workers import Progress, as_completed
@@ -22,10 +22,10 @@ from .workers import Progress, as_completed
 SECANTS = 8
 """Most screenings for the greatest safe speed of given hardware."""
 
-AS_LIMIT = 1e-4
+SAFE_SPEED_ERROR = 1e-4
 """Share of the limit to which a safe speed is found."""
 
-ONE = np.zeros(1, dtype=np.int64)
+FIRST_SCENARIO = np.zeros(1, dtype=np.int64)
 """Number of a single scenario."""
 
 
@@ -112,7 +112,7 @@ class Setting:
             return self._at_safe_speed(at)
         found = self._screened(at)
         own = np.array([found[0].share]) if at.factors is None else np.log10(at.factors)
-        value = objective.value(own, ONE, np.ones(1))
+        value = objective.value(own, FIRST_SCENARIO, np.ones(1))
         return self._as_worst(at, found[0], value), found
 
     def _as_worst(self, at: Hardening, first: Screened, value: float) -> Worst:
@@ -132,8 +132,8 @@ class Setting:
             self.timing.step,
         )
         jobs = [
-            self.pool.submit(screen, *shared, begin, min(begin + PIECE, count))
-            for begin in range(0, count, PIECE)
+            self.pool.submit(screen, *shared, begin, min(begin + SCENARIOS_IN_A_JOB, count))
+            for begin in range(0, count, SCENARIOS_IN_A_JOB)
         ]
         found: list[Screened] = []
         for i, job in enumerate(as_completed(jobs)):
@@ -143,13 +143,15 @@ class Setting:
 
     def _at_safe_speed(self, at: Hardening) -> tuple[Worst, list[Screened]]:
         """Find the factor on all speeds with which the worst force is its limit."""
-        ends = self.study.objective.own(ONE, np.ones(1), np.array([max(self.scenarios.speeds)]))
+        ends = self.study.objective.own(
+            FIRST_SCENARIO, np.ones(1), np.array([max(self.scenarios.speeds)])
+        )
         factor = 1.0
         for _ in range(SECANTS):
             at = replace(at, factors=np.array([factor]))
             found = self._screened(at)
             nearest = float(np.clip(factor / found[0].share, *10 ** np.r_[ends.lower, ends.upper]))
-            if abs(found[0].share - 1) < AS_LIMIT or nearest == factor:
+            if abs(found[0].share - 1) < SAFE_SPEED_ERROR or nearest == factor:
                 break
             factor = nearest
         return self._as_worst(at, found[0], factor), found
@@ -181,7 +183,7 @@ class Setting:
             shares = self._shares(replace(at, factors=factors))
             effective = shares / (factors if factors.size == 1 else factors[numbers])
             nearer = 10 ** objective.own(numbers, effective, speeds).start
-            if not seek or np.allclose(nearer, factors, rtol=AS_LIMIT):
+            if not seek or np.allclose(nearer, factors, rtol=SAFE_SPEED_ERROR):
                 break
             factors = nearer
         return objective.value(np.log10(factors), numbers, speeds), factors, shares

@@ -75,7 +75,9 @@ def cluster(address: str) -> Iterator[Cluster]:
     except ValueError as error:
         raise InvalidValue("--dask", f"'{address}' is no address of a scheduler: {error}") from None
     except (OSError, TimeoutError):
-        raise ClusterSilent(f"no Dask scheduler answers at '{address}'") from None
+        raise ClusterSilent(
+            f"no Dask scheduler answers at '{address}'; start one there, or leave --dask out"
+        ) from None
     try:
         try:
             client.wait_for_workers(1, timeout=PATIENCE)

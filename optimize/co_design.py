@@ -13,11 +13,12 @@ from softimpact.symbolic import InvalidValue, Motors
 from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
-from .answers import Price, indifferent_ranges, prices_of, worth_of
+from .answers import Price
 from .branches import branches
 from .evaluation import largest_deflection, largest_share
 from .failure import SolverFailure
 from .ipopt import IN_TURN, minimise
+from .meaning import meaning
 from .optima import Optimum, distinct
 from .poses import Candidate, candidates, leaves_a_choice
 from .problem import Problem, felt_numbers, peak_force, prepare, study_impacts
@@ -141,7 +142,7 @@ class Design(Record):
 
     def rows(self) -> list[Row]:
         """Return a line for each search: the pose it began with, posture, springs and force."""
-        names = self.study.robot.joint_names
+        names, springs = self.study.robot.joint_names, self.study.spring_names
         return [
             {
                 "pose": found.name,
@@ -151,7 +152,7 @@ class Design(Record):
                 "deflection": largest_deflection(self.study, found.q, found.springs),
                 "solved": found.solved,
                 **{f"q_{name}": float(x) for name, x in zip(names, found.q, strict=True)},
-                **{f"k_{name}": float(k) for name, k in zip(names, found.springs, strict=True)},
+                **{f"k_{name}": float(k) for name, k in zip(springs, found.springs, strict=True)},
             }
             for pose in self.poses
             for mode, found in (("table", pose.table), ("free", pose.free))
@@ -237,26 +238,16 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
         again = minimise(
             program, instance, limits, winner.q[None, :], winner.springs, winner.others, free=free
         )
-
-    def force(v: Array) -> float:
-        return peak_force(study, program.impacts[0], problem.timing, winner.q, *limits.parted(v))
-
-    def keeps(v: Array) -> bool:
-        return largest_share(study, winner.q, *limits.parted(v)) <= KEEPS
-
+    meant = meaning(problem, winner, instance, again)
     task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
     accurate = study.nominal
-    if task.deflection_before > study.max_deflection * KEEPS:
+    if largest_share(study, task.candidate.q, study.nominal) > KEEPS:
         accurate = accurate_springs(study, task.candidate.q, study.nominal)
     at = task.candidate.q
     return Answers(
         deflection=largest_deflection(study, winner.q, winner.springs, winner.others),
-        indifferent=indifferent_ranges(
-            limits, limits.vector(winner.springs, winner.others), force, keeps
-        ),
-        prices=prices_of(
-            study, instance, again, worth_of(study, float(instance.units[0])), program
-        ),
+        indifferent=meant.indifferent,
+        prices=meant.prices,
         worst_motors=_worst_motors(problem, winner),
         reference=DesignReference(
             accurate,

@@ -16,10 +16,10 @@ from softimpact.symbolic.robot.rigid import Array, Indices
 from .ipopt import Found, Instance, VariableBounds, impact_forces, minimise
 from .nlp import Program
 
-NEAR = 0.98
+CARRIED_FROM = 0.98
 """Share of the worst force from which on an impact is carried from the start."""
 
-EXCEEDS = 1e-4
+MOST_EXCESS = 1e-4
 """Share by which an impact that is left out may exceed the worst: forces are no better known."""
 
 
@@ -40,7 +40,7 @@ def minimise_deciding(
     """
     v = bounds.vector(springs, others)
     shares = _shares(program, instance, postures, v)
-    carried = np.flatnonzero(shares >= NEAR * shares.max())
+    carried = np.flatnonzero(shares >= CARRIED_FROM * shares.max())
     iterations = 0
     while True:
         some = _some(instance, carried)
@@ -48,7 +48,7 @@ def minimise_deciding(
         iterations += found.iterations
         v = bounds.vector(found.springs, found.others)
         shares = _shares(program, instance, found.postures, v)
-        worse = np.flatnonzero(shares > found.worst * (1 + EXCEEDS))
+        worse = np.flatnonzero(shares > found.worst * (1 + MOST_EXCESS))
         fresh = np.setdiff1d(worse, carried)
         shares[carried] = found.shares
         found = replace(found, shares=shares, iterations=iterations)

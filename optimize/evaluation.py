@@ -13,7 +13,8 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
-from .bounds import Bound, Deflection
+from .bounds import Bound
+from .coordinates import sprung
 from .hardware import Hardware, Machine, TaskMotion
 from .study import Study
 from .variables import Variable
@@ -41,7 +42,7 @@ class Kept:
 
 
 def equipped(study: Study, springs: Matrix, others: Matrix | None = None) -> Hardware:
-    """Return a study's hardware with these springs, length n, and values of other variables."""
+    """Return a study's hardware with these springs and values of other variables."""
     return _equipped(study.model, study.other_variables, springs, others)
 
 
@@ -69,11 +70,10 @@ def figures(
         bound: of the study or another.
         study: robot, motions and margin.
         q: link angles, length n [rad].
-        springs: joint stiffness, length n [N·m/rad].
+        springs: stiffness of each spring [N·m/rad].
         others: values of the study's other variables; default the machine as it is.
     """
-    if isinstance(bound, Deflection):
-        bound = replace(bound, most=1.0)  # figures do not depend on limits
+    bound = bound.at(1.0)  # figures do not depend on limits
     motions = study.motions if bound.needs_speed else ()
     key = bound, study.model, study.other_variables, motions, study.margin
     function: ca.Function = _figures(*key)  # type: ignore[arg-type]
@@ -93,7 +93,7 @@ def _figures(
     margin: float,
 ) -> ca.Function:
     size = sum(variable.range(model).lower.size for variable in variables)
-    q, springs = ca.SX.sym("q", model.robot.n), ca.SX.sym("k_s", model.robot.n)
+    q, springs = ca.SX.sym("q", model.robot.n), ca.SX.sym("k_s", len(sprung(model)))
     others = ca.SX.sym("others", size)
     hardware = _equipped(model, variables, springs, others)
     machine = Machine.of(model, hardware, motions, margin)

@@ -19,13 +19,14 @@ from .objectives import WorstForce
 from .samples import elsewhere, promising
 from .screening import Screened
 from .solve import Outcome
+from .study import Study
 from .tip_pose import tip_pose
 from .workers import as_completed
 
 ROUNDS = 40
 """Most exchanges."""
 
-ADDED = 4
+ADDED_IN_AN_EXCHANGE = 4
 """Scenarios added in an exchange: the worst, each of another pose, point or direction."""
 
 SAMPLED = 3
@@ -34,12 +35,12 @@ SAMPLED = 3
 ALIKE = 1e-3
 """Share of the cost within which optima over the first scenarios count as one."""
 
-CLOSED = 1e-5
+MOST_EXCESS = 1e-5
 """Share by which a scenario may exceed what the NLP says: Ipopt's tolerance."""
 
 
 @dataclass(frozen=True, eq=False)
-class Exchanged:
+class ExchangeState:
     """Where an exchange stands."""
 
     best: Found
@@ -75,24 +76,43 @@ class _Optimum:
 
 
 def exchange(
-    setting: Setting, free: bool, first: Sequence[Screened], equal: Array, unit: float
-) -> Exchanged:
-    """Search, screen what was found best, and search again with what is worse there.
+    setting: Setting,
+    first: Sequence[int],
+    starts: Sequence[tuple[Array, Array | None]],
+    postures: Array,
+    unit: float,
+    *,
+    free: bool,
+    thorough: bool = False,
+) -> ExchangeState:
+    """Add the worst scenarios to an NLP until it holds all that decide.
 
     Searches from several starts end in several optima. More scenarios only raise their costs, so
     the one of least cost goes on, and is the answer when no scenario is worse than it says.
+
+    Args:
+        setting: the problem.
+        first: scenarios to begin with.
+        starts: springs and other values from which the first NLP is solved.
+        postures: of each pose, P×n [rad].
+        unit: share of a limit that counts as one.
+        free: whether the postures are sought as well.
+        thorough: whether searches begin with hardware at random, too, where they are quick.
     """
     study, given, limits = setting.study, setting.given, setting.limits
     if study.objective.scales_speed:
         unit = 1.0  # the limits themselves
-    everything = study.objective.all_scenarios
-    active = list(range(len(setting.scenarios))) if everything else _fresh(setting, first, set())
+    everything, thorough = study.objective.all_scenarios, thorough and serves(study, free)
+    active = list(range(len(setting.scenarios))) if everything else list(first)
     bends = setting.shares_of_bounds(Hardening(limits.vector(study.nominal), given))
     poses = _poses(setting, [int(np.argmax(bends))], active)
     instance = _instance(setting, active, poses, unit)
-    starts = [_Start(*each, given) for each in _starts(setting, instance, poses, equal, free)]
-    found = _apart(_searched(setting, instance, poses, starts, free))
-    hopped = False
+    if thorough:
+        shared = setting.program, instance, limits, given[poses]
+        starts = [*starts, *promising(*shared, SAMPLED)]
+    begun = [_Start(*each, postures) for each in starts]
+    found = _apart(_searched(setting, instance, poses, begun, free))
+    hopped = not thorough
     for rounds in range(1, ROUNDS + 1):
         while (best := min(found, key=lambda each: each.found.cost)).instance is not instance:
             start = _Start(best.found.springs, best.found.others, best.postures)
@@ -102,18 +122,18 @@ def exchange(
         at = Hardening(limits.vector(best.found.springs, best.found.others), best.postures, factors)
         worst, screened = setting.worst(at)
         setting.say("exchange", rounds, ROUNDS)
-        state = Exchanged(best.found, instance, at, worst, tuple(active), rounds, unit)
+        state = ExchangeState(best.found, instance, at, worst, tuple(active), rounds, unit)
         shares = setting.shares_of_bounds(at)
         too_far = int(np.argmax(shares))
         allowed = max(state.bound, 1.0) if factors is not None else state.bound
-        worse = [s for s in screened if s.share > allowed * (1 + CLOSED)]
-        fresh = [] if everything else _fresh(setting, worse, set(active))
+        worse = [s for s in screened if s.share > allowed * (1 + MOST_EXCESS)]
+        fresh = [] if everything else worst_few(setting, worse, set(active))
         if shares[too_far] > 1 + KEEPS and too_far not in poses:
             poses = [*poses, too_far]
         elif not fresh:
-            more = [] if hopped else _hops(setting, instance, poses, best, free)
+            more = [] if hopped else _hops(setting, instance, poses, best)
             found, hopped = [*found, *more], True
-            if min(each.found.cost for each in found) >= best.found.cost * (1 - CLOSED):
+            if min(each.found.cost for each in found) >= best.found.cost * (1 - MOST_EXCESS):
                 break
             continue
         active = [*active, *fresh]
@@ -122,31 +142,17 @@ def exchange(
     return state
 
 
-def _starts(
-    setting: Setting, instance: Instance, poses: list[int], equal: Array, free: bool
-) -> list[tuple[Array, Array | None]]:
-    """Return the springs and other values from which searches begin."""
-    if _serves(instance, free):
-        shared = setting.program, instance, setting.limits, setting.given[poses]
-        return [(equal, None), *promising(*shared, SAMPLED)]
-    return [(each, None) for each in (equal, setting.study.upper, setting.study.lower)]
-
-
-def _hops(
-    setting: Setting, instance: Instance, poses: list[int], best: _Optimum, free: bool
-) -> list[_Optimum]:
-    """Return optima that differ from the best in one value, to begin with."""
-    if not _serves(instance, free):
-        return []
+def _hops(setting: Setting, instance: Instance, poses: list[int], best: _Optimum) -> list[_Optimum]:
+    """Return optima that differ from the best in one value, to begin with; postures are held."""
     v = setting.limits.vector(best.found.springs, best.found.others)
     shared = setting.program, instance, setting.limits, setting.given[poses]
     starts = [_Start(*each, setting.given) for each in elsewhere(*shared, v)]
-    return _feasible(setting, instance, poses, starts, free)[0]
+    return _feasible(setting, instance, poses, starts, free=False)[0]
 
 
-def _serves(instance: Instance, free: bool) -> bool:
-    """Return whether ``least_worst`` solves an NLP."""
-    return not free and instance.shape.objective.kind == WorstForce.kind
+def serves(study: Study, free: bool) -> bool:
+    """Return whether ``least_worst`` solves a study's NLPs."""
+    return not free and study.objective.kind == WorstForce.kind
 
 
 def _apart(optima: Sequence[_Optimum]) -> list[_Optimum]:
@@ -170,13 +176,13 @@ def _factors(setting: Setting, best: Found) -> Array | None:
     return np.asarray(10**best.own)
 
 
-def _fresh(setting: Setting, screened: Sequence[Screened], known: set[int]) -> list[int]:
+def worst_few(setting: Setting, screened: Sequence[Screened], known: set[int]) -> list[int]:
     """Return the worst few that are not known, each of another pose, point or direction."""
     kinds: set[tuple[int, ...]] = set()
     fresh: list[int] = []
     for each in screened:
         kind = setting.scenarios[each.index][:3]
-        if each.index not in known and kind not in kinds and len(fresh) < ADDED:
+        if each.index not in known and kind not in kinds and len(fresh) < ADDED_IN_AN_EXCHANGE:
             kinds.add(kind)
             fresh.append(each.index)
     return fresh
@@ -222,17 +228,17 @@ def _feasible(
 ) -> tuple[list[_Optimum], list[Found]]:
     """Return what searches found that keeps the bounds, and what does not."""
     shared = setting.program, instance, setting.limits
-    jobs = {
-        setting.pool.submit(search, *shared, s.postures[poses], s.springs, s.others, free): s
+    jobs = [
+        setting.pool.submit(search, *shared, s.postures[poses], s.springs, s.others, free)
         for s in starts
-    }
+    ]
     optima, missed = [], []
     for job in as_completed(jobs):
-        start, found = jobs[job], job.result()
+        found = job.result()
         if found.violation > FEASIBLE:
             missed.append(found)
             continue
-        postures = start.postures.copy()
+        postures = setting.given.copy()
         if free:
             postures[poses] = found.postures
         optima.append(_Optimum(found, instance, postures))
@@ -250,7 +256,7 @@ def search(
 ) -> Found:
     """Run ``least_worst`` or, where it does not serve, ``minimise`` in a worker process."""
     with IN_TURN:
-        if _serves(instance, free):
+        if not free and instance.shape.objective.kind == WorstForce.kind:
             found = least_worst(program, instance, limits, postures, springs, others)
             if found.success and found.violation <= FEASIBLE:
                 return found

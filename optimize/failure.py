@@ -9,6 +9,7 @@ from .bounds import Bound
 from .ipopt import FEASIBLE
 from .solve import Outcome, preference
 from .stiffest import Stiffest
+from .units import figure_in_words
 
 
 class SolverFailure(Exception):
@@ -81,13 +82,13 @@ class Infeasible(Exception):
             at,
             *(f"the pose of the tip in '{p}'" for p in poses),
         )
+        side = {"most": "below", "least": "above"}
         asked = " and ".join(
-            f"{b.name} {'below' if b.sense == 'most' else 'above'} {_figure(b.limit, b.unit)}"
-            for b, _ in ends
+            f"{b.name} {side[b.sense]} {figure_in_words(b.limit, b.unit)}" for b, _ in ends
         )
         reached = "; ".join(
             f"the {'least' if b.sense == 'most' else 'largest'} that can be reached is "
-            f"{_figure(figure, b.unit)}" + (f" of {b.name}" if len(ends) > 1 else "")
+            f"{figure_in_words(figure, b.unit)}" + (f" of {b.name}" if len(ends) > 1 else "")
             for b, figure in ends
         )
         springs = ", ".join(f"{k:.0f}" for k in least.springs)
@@ -98,10 +99,6 @@ class Infeasible(Exception):
             least,
             conflicts,
         )
-
-
-def _figure(value: float, unit: str) -> str:
-    return f"{1e3 * value:.4g} mm" if unit == "m" else f"{value:.4g} {unit}"
 
 
 def _in_words(best: Outcome) -> str:

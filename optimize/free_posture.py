@@ -10,14 +10,14 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array
 
 from .branches import branches
-from .front import WORTH
+from .front import LEAST_SAVING
 from .levels import NO_BOUND
 from .searches import Searches
 from .solve import Mode, Outcome, Start, better, preference, solve
 from .stiffest import Stiffest
 from .sweep import Level, rescaled
 
-FIRST = 3
+POSTURES_TRIED_FIRST = 3
 """Held postures, the best at a level, from which the free one is first sought there."""
 
 LevelStart = tuple[int, Start]
@@ -100,7 +100,7 @@ def _from_held(held: Sequence[Sequence[Outcome | None]], mode: Mode) -> list[Lev
     tasks = []
     for i, column in enumerate(zip(*held, strict=True)):
         solved = sorted((o for o in column if o is not None and o.solved), key=preference)
-        for outcome in solved[:FIRST]:
+        for outcome in solved[:POSTURES_TRIED_FIRST]:
             tasks.append((i, Start(outcome.name, mode, ((outcome.q, outcome.springs),))))
     return tasks
 
@@ -153,4 +153,4 @@ def _improve(
 def _gained(before: Outcome, after: Outcome) -> bool:
     if not (before.solved and after.solved):
         return after.solved and not before.solved
-    return after.force < before.force * (1 - WORTH)
+    return after.force < before.force * (1 - LEAST_SAVING)

@@ -8,16 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .dominance import knee as bend
 from .evaluation import largest_deflection
+from .meaning import Meaning
 from .solve import Outcome
 from .study import Study
 
-WORTH = 1e-4
+LEAST_SAVING = 1e-4
 """Share of the force that a less accurate design must save to be kept: what forces are known to."""
-
-
-FLAT = 1e-6
-"""Share of a front's height below the straight line from which it counts as bent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +26,13 @@ class ParetoPoint:
         bound: on the deflection, with which it was sought [m].
         deflection: largest of the tip under the study's forces, by the springs [m].
         outcome: of the search that found it.
+        meaning: prices of its bounds and indifferent ranges, of points that were asked for them.
     """
 
     bound: float
     deflection: float
     outcome: Outcome
+    meaning: Meaning | None = None
 
     @property
     def force(self) -> float:
@@ -71,11 +71,11 @@ def front(study: Study, levels: Sequence[float], outcomes: Sequence[Outcome | No
 def undominated(points: Iterable[ParetoPoint]) -> tuple[ParetoPoint, ...]:
     """Return the points that no other beats, the most accurate first.
 
-    A less accurate point must save ``WORTH`` of the force.
+    A less accurate point must save ``LEAST_SAVING`` of the force.
     """
     kept: list[ParetoPoint] = []
     for point in sorted(points, key=lambda point: (point.deflection, point.force)):
-        if not kept or point.force < kept[-1].force * (1 - WORTH):
+        if not kept or point.force < kept[-1].force * (1 - LEAST_SAVING):
             kept.append(point)
     return tuple(kept)
 
@@ -87,11 +87,5 @@ def knee(points: Sequence[ParetoPoint]) -> int | None:
     the logarithm of the deflection, each from 0 to 1. None for fronts of two points or less, and
     for those that are nowhere below it.
     """
-    if len(points) < 3:
-        return None
-    x = np.log([point.deflection for point in points])
-    y = np.array([point.force for point in points])
-    x, y = (x - x[0]) / (x[-1] - x[0]), (y - y[-1]) / (y[0] - y[-1])
-    below = 1 - x - y
-    best = int(np.argmax(below))
-    return best if below[best] > FLAT else None
+    places = [(np.log(point.deflection), point.force) for point in points]
+    return bend(np.array(places)) if len(points) > 2 else None

@@ -13,12 +13,21 @@ from softimpact.symbolic import (
     ImpactModel,
     Matrix,
     Robot,
-    contact_point_jacobian,
     gravity_torques,
     least_velocity,
     mass_matrix,
 )
+from softimpact.symbolic.matrices import Factorisation
 from softimpact.symbolic.robot.rigid import Array, Inertia
+
+from .coordinates import (
+    along,
+    is_plain,
+    moved_by_motors,
+    of_springs,
+    onto,
+    springs_of,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +35,7 @@ class Hardware:
     """What variables of a design move.
 
     Attributes:
-        springs: joint stiffness k_s, length n [N·m/rad].
+        springs: stiffness k_s of each spring that there is [N·m/rad].
         rotors: reflected rotor inertias B with the present gears, length n [kg m²].
         gears: ratio of each gear over the present one, length n.
         masses: factor on mass and inertia of each joint's body, length n; None: as they are.
@@ -43,7 +52,7 @@ class Hardware:
     def of(model: ImpactModel) -> Hardware:
         """Return a robot as it is."""
         drives = model.drives
-        return Hardware(drives.springs, drives.rotors, ca.DM.ones(model.robot.n))
+        return Hardware(ca.DM(springs_of(model)), drives.rotors, ca.DM.ones(model.robot.n))
 
     @property
     def reflected_rotors(self) -> Matrix:
@@ -88,7 +97,7 @@ class Machine:
         margin: float = 0.0,
     ) -> Machine:
         """Return a robot with other hardware than its own."""
-        drives = replace(model.drives, springs=hardware.springs, rotors=hardware.reflected_rotors)
+        drives = replace(model.drives, rotors=hardware.reflected_rotors)
         return Machine(model.with_drives(drives), hardware, motions, margin)
 
     @property
@@ -96,32 +105,69 @@ class Machine:
         """The rigid robot."""
         return self.model.robot
 
-    @property
-    def softest_springs(self) -> Matrix:
-        """Joint stiffness with every spring at the soft end of its tolerance [N·m/rad]."""
-        return self.hardware.springs * (1 - self.margin)
+    def compliance(self, share: float = 0.0) -> Matrix:
+        """Return 1/k_s of each coordinate, zero where there is no spring, length m [rad/(N·m)].
+
+        Args:
+            share: by which every spring is stiffer than meant; softer where it is negative.
+        """
+        return ca.mtimes(of_springs(self.model), 1 / (self.hardware.springs * (1 + share)))
 
     def jacobian(self, q: Matrix) -> Matrix:
-        """Return the tip's translational J, 3×n."""
+        """Return the tip's translational J over the coordinates, 3×m."""
         return self.model.jacobian(q)
 
-    def joint_velocities(self, q: Matrix) -> Matrix:
-        """Return the joint velocities of each motion, those of least norm, n×motions [rad/s]."""
+    def velocities(self, q: Matrix) -> Matrix:
+        """Return the coordinates' velocities in each motion, those of least norm, m×motions."""
         found = []
         for motion in self.motions:
-            J = contact_point_jacobian(self.robot, motion.point, q)
-            found.append(least_velocity(J, ca.DM(motion.velocity)))
-        return ca.horzcat(*found) if found else ca.DM(self.robot.n, 0)
+            J = replace(self.model, tip=motion.point).jacobian(q)
+            found.append(least_motion(self.model, J, ca.DM(motion.velocity)))
+        return ca.horzcat(*found) if found else ca.DM(len(self.model.independent), 0)
+
+    def joint_velocities(self, q: Matrix) -> Matrix:
+        """Return the velocities of all joints in each motion, n×motions [rad/s]."""
+        return along(self.model, q, self.velocities(q))
 
     def mass_matrix(self, q: Matrix) -> Matrix:
-        """Return the links' M(q), n×n, without rotors."""
-        return scaled_by_mass(lambda robot: mass_matrix(robot, q), self.robot, self.hardware.masses)
+        """Return the links' M(q) over the coordinates, m×m, without rotors."""
+        return scaled_by_mass(
+            lambda robot: self.model.congruent(q, mass_matrix(robot, q)),
+            self.robot,
+            self.hardware.masses,
+        )
+
+    def rotor_matrix(self, q: Matrix) -> Matrix:
+        """Return what the rotors add to M(q) where joints are rigid, m×m."""
+        return self.model.congruent(q, ca.diag(self.hardware.reflected_rotors))
 
     def gravity_torques(self, q: Matrix) -> Matrix:
-        """Return the torques that hold the links against gravity, length n [N·m]."""
+        """Return the torques that hold the links against gravity, length m [N·m]."""
         return scaled_by_mass(
-            lambda robot: gravity_torques(robot, q), self.robot, self.hardware.masses
+            lambda robot: onto(self.model, q, gravity_torques(robot, q)),
+            self.robot,
+            self.hardware.masses,
         )
+
+
+IN_PLANE = 1e-12
+"""Share of JJᵀ's trace that is added to its diagonal, for points that cannot leave a plane."""
+
+
+def least_motion(model: ImpactModel, jacobian: Matrix, velocity: Matrix) -> Matrix:
+    """Return the coordinates' velocities of least norm that move a point; only motors move it.
+
+    Args:
+        model: of the robot.
+        jacobian: translational J over its coordinates, 3×m.
+        velocity: of the point, length 3, one that it can have.
+    """
+    if is_plain(model):
+        return least_velocity(jacobian, velocity)
+    J = moved_by_motors(model, jacobian)
+    square = ca.mtimes(J, J.T)
+    square = square + IN_PLANE * ca.trace(square) * ca.DM.eye(3)
+    return ca.mtimes(J.T, Factorisation(square).solve(velocity))
 
 
 def scaled_by_mass(of: Callable[[Robot], Matrix], robot: Robot, masses: Matrix | None) -> Matrix:

@@ -50,28 +50,39 @@ class ContactParameters(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ImpactDynamics:
-    """The linearised elastic robot in link angles x and motor angles θ, both since first touch.
+    """The linearised robot in link angles x and motor angles θ, both since first touch.
 
-    M ẍ = −k_s(x − θ) − J_cᵀ f_c, and B θ̈ = k_s(x − θ) + τ or a motion that is given; a servo has
-    τ = −K_p(θ − q̇0 t) − K_d(θ̇ − q̇0).
+    M ẍ = −k_s(x − θ) − D(ẋ − q̇0) − K_V x − J_cᵀ f_c, and B θ̈ = k_s(x − θ) + τ or a motion that is
+    given; a servo has τ = −K_p(θ − q̇0 t) − K_d(θ̇ − q̇0). A passive joint's spring is one whose
+    motor never moves: B⁻¹ = 0. Where a motor has no spring θ = x, and its rotor is part of M.
 
     Attributes:
-        mobility: M⁻¹, n×n.
+        mobility: (M + h D/2)⁻¹ for time steps h, n×n; so a step with damping stays stable and
+            exact to second order.
         jacobian: J_c, 1×n.
-        springs: k_s, length n.
-        rotors: B, length n.
+        springs: k_s, length n; zero where there is none.
+        rotor_mobility: B⁻¹, length n; zero for what is no motor behind a spring.
         gains: K_p, n×n; sparse where it is structurally zero.
         damping: K_d, length n.
         velocity: q̇0 of links and motors at first touch, length n [rad/s].
+        joint_damping: D, n×n; None where no joint damps.
+        potential: K_V, curvature of the links' potential energy, n×n; None where there is none.
+        rigid: places of motors without a spring.
+        carried: how the coordinates follow such motors by a unit of velocity each, whose motion is
+            given, n×r: M⁻¹ E (Eᵀ M⁻¹ E)⁻¹.
     """
 
     mobility: Matrix
     jacobian: Matrix
     springs: Matrix
-    rotors: Matrix
+    rotor_mobility: Matrix
     gains: Matrix
     damping: Matrix
     velocity: Matrix
+    joint_damping: Matrix | None = None
+    potential: Matrix | None = None
+    rigid: tuple[int, ...] = ()
+    carried: Matrix = ca.DM(0, 0)  # noqa: RUF009 - never changed
 
 
 def contact_forces(
@@ -94,19 +105,25 @@ def contact_forces(
         nodes: number of forces returned.
         substeps: time steps from node to node.
     """
+    D, K_V = dynamics.joint_damping, dynamics.potential
     parameters = ca.vertcat(
         ca.vec(dynamics.mobility),
         dynamics.jacobian.T,
         dynamics.springs,
-        1 / dynamics.rotors,
+        dynamics.rotor_mobility,
         dynamics.damping,
         dynamics.velocity,
         *contact,
         step,
         _nonzeros(dynamics.gains),
+        ca.vec(dynamics.carried),
+        *([] if D is None else [_nonzeros(D)]),
+        *([] if K_V is None else [ca.vec(K_V)]),
     )
     n = dynamics.springs.shape[0]
-    node = _leapfrog(n, substeps, dynamics.gains.sparsity())
+    gains, rigid = dynamics.gains.sparsity(), dynamics.rigid
+    damping = ca.Sparsity(n, n) if D is None else D.sparsity()
+    node = _leapfrog(n, substeps, gains, rigid, damping, K_V is not None)
     start = ca.vertcat(
         ca.MX.zeros(2 * n),
         dynamics.velocity,
@@ -142,7 +159,14 @@ class BodyState(NamedTuple):
     time: Matrix
 
 
-def _leapfrog(n: int, steps: int, gains: ca.Sparsity) -> ca.Function:
+def _leapfrog(
+    n: int,
+    steps: int,
+    gains: ca.Sparsity,
+    rigid: tuple[int, ...],
+    damping: ca.Sparsity,
+    has_potential: bool,
+) -> ca.Function:
     """Return (state, parameters) -> state after some steps.
 
     The state is link angles, motor angles, their velocities half a step ahead, and the body's. The
@@ -152,8 +176,10 @@ def _leapfrog(n: int, steps: int, gains: ca.Sparsity) -> ca.Function:
     M_inv, j, k_s = ca.SX.sym("M_inv", n, n), ca.SX.sym("j", n), ca.SX.sym("k_s", n)
     B_inv, K_d, velocity = ca.SX.sym("B_inv", n), ca.SX.sym("K_d", n), ca.SX.sym("dq0", n)
     K_p, law = ca.SX.sym("K_p", gains), ca.SX.sym("law", LAW)
+    D, K_V = ca.SX.sym("D", damping), ca.SX.sym("K_V", *(2 * [n * has_potential]))
     contact = ContactParameters(*ca.vertsplit(ca.SX.sym("contact", 4)))
     h = ca.SX.sym("h")
+    R, carried = list(rigid), ca.SX.sym("carried", n if rigid else 0, len(rigid))
     x, theta, dx, dtheta, rest = ca.vertsplit(state, [0, n, 2 * n, 3 * n, 4 * n, state.numel()])
     body = BodyState(*ca.vertsplit(rest))
     moves, share, servo = ca.vertsplit(law)
@@ -161,12 +187,33 @@ def _leapfrog(n: int, steps: int, gains: ca.Sparsity) -> ca.Function:
         x, theta = x + h * dx, theta + h * dtheta
         body = _press(body, ca.dot(j, x), contact, h)
         pull = k_s * (x - theta)
-        dx = dx - h * ca.mtimes(M_inv, pull + j * body.force)
+        push = pull + j * body.force + ca.mtimes(D, dx - velocity)
+        if has_potential:
+            push = push + ca.mtimes(K_V, x)
+        for i in R:
+            theta[i], dtheta[i] = x[i], dx[i]
         torque = ca.mtimes(K_p, theta - velocity * body.time) + K_d * (dtheta - velocity)
+        for i in R:
+            push[i] += servo * torque[i]
+        dx = dx - h * ca.mtimes(M_inv, push)
+        if R:  # an impulse of the motors whose motion is given
+            dx = dx + (1 - moves) * ca.mtimes(carried, share * velocity[R] - dx[R])
         moved = dtheta + h * B_inv * (pull - servo * torque)
         dtheta = moves * moved + (1 - moves) * share * velocity
     parameters = ca.vertcat(
-        ca.vec(M_inv), j, k_s, B_inv, K_d, velocity, *contact, h, _nonzeros(K_p), law
+        ca.vec(M_inv),
+        j,
+        k_s,
+        B_inv,
+        K_d,
+        velocity,
+        *contact,
+        h,
+        _nonzeros(K_p),
+        ca.vec(carried),
+        _nonzeros(D),
+        ca.vec(K_V),
+        law,
     )
     after = ca.vertcat(x, theta, dx, dtheta, *body)
     return ca.Function("leapfrog", [state, parameters], [after], FEW_DIRECTIONS)

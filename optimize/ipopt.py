@@ -13,12 +13,12 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import posture_limits
 from .nlp import SPEED, NlpShape, Program, nlp_solver, peak_rows
 from .objectives import Objective, WorstForce
 from .peaks import WINDOWS, hides_a_peak, valley
 from .solver_options import quiet
 from .study import Study
-from .tip_pose import POSE
 
 CURVATURE = 0.05
 """Of a share of the force over decades of stiffness and radians, where nothing is known yet: a
@@ -40,7 +40,7 @@ IPOPT: dict[str, Any] = {
 EXCHANGES = 3
 """How often an NLP is solved at most, its windows of time set anew in between."""
 
-WORTH_AGAIN = 1e-3
+LEAST_GAIN_OF_WINDOWS = 1e-3
 """Share of the force by which setting the windows anew must help to be done once more."""
 
 
@@ -88,7 +88,7 @@ class VariableBounds:
         ends = study.range
         logarithms = (np.log10(each) for each in (ends.lower, ends.upper, ends.start))
         return VariableBounds(
-            *study.robot.limits, study.lower, study.upper, study.groups, *logarithms
+            *posture_limits(study.model), study.lower, study.upper, study.groups, *logarithms
         )
 
     @property
@@ -109,7 +109,7 @@ class VariableBounds:
         return values[: self.springs][list(self.groups)], values[self.springs :]
 
 
-NONE = np.empty(0)
+NO_OTHERS = np.empty(0)
 """Values of no other variables."""
 
 
@@ -205,7 +205,7 @@ def minimise(
         gained = (found.cost - again[0].cost) / abs(found.cost)
         if _order(again[0]) < _order(found):
             best = again
-        if gained < WORTH_AGAIN:
+        if gained < LEAST_GAIN_OF_WINDOWS:
             break
     return replace(best[0], iterations=iterations)
 
@@ -321,12 +321,12 @@ def _round(
 
 
 def constraint_bounds(program: Program, shape: NlpShape, *, free: bool) -> tuple[Array, Array]:
-    """Bounds on g: the tip's pose is held where the posture is free, all else is at most zero."""
+    """Bounds on g: a free posture holds the tip's pose and loops; all else is at most zero."""
     lower = np.full(peak_rows(program, shape).stop, -np.inf)
     upper = np.zeros(lower.size)
     for k in range(shape.postures):
-        pose = slice(k * program.rows, k * program.rows + POSE)
-        lower[pose], upper[pose] = (0.0, 0.0) if free else (-np.inf, np.inf)
+        held = slice(k * program.rows, k * program.rows + program.held)
+        lower[held], upper[held] = (0.0, 0.0) if free else (-np.inf, np.inf)
     return lower, upper
 
 

@@ -10,10 +10,10 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .study import Study
 
-ROOM = 1.01
+LEAST_ROOM = 1.01
 """The stiffest level over the least deflection that can be reached, where there is no choice."""
 
-TINY = 1e-6
+SAME_FORCE_SHARE = 1e-6
 """Share of a force that counts as no difference."""
 
 NO_BOUND = 1e3
@@ -42,13 +42,13 @@ def level_range(study: Study, least: float, ideal: float) -> tuple[float, float]
             f"{study.source}: pareto.lower",
             f"the force is least at a deflection of {ideal:.4g} m already; lower it",
         )
-    if wanted.upper is not None and wanted.upper < ROOM * least:
+    if wanted.upper is not None and wanted.upper < LEAST_ROOM * least:
         raise InvalidValue(
             f"{study.source}: pareto.upper",
             f"springs and posture give way by {least:.4g} m at least; raise it",
         )
     upper = ideal if wanted.upper is None else wanted.upper
-    return min(ROOM * least, upper) if wanted.lower is None else wanted.lower, upper
+    return min(LEAST_ROOM * least, upper) if wanted.lower is None else wanted.lower, upper
 
 
 def even_bounds(bounds: Array, forces: Array) -> Array:
@@ -65,7 +65,7 @@ def even_bounds(bounds: Array, forces: Array) -> Array:
         return bounds
     x = np.log(bounds / bounds[0]) / np.log(bounds[-1] / bounds[0])
     y = np.minimum.accumulate(np.interp(x, x[known], forces[known]))
-    y /= max(float(y[0] - y[-1]), TINY * float(y[0]))
+    y /= max(float(y[0] - y[-1]), SAME_FORCE_SHARE * float(y[0]))
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
     places = np.interp(np.linspace(0.0, arc[-1], bounds.size), arc, np.log(bounds))
     return np.concatenate([bounds[:1], np.exp(places[1:-1]), bounds[-1:]])

@@ -13,7 +13,7 @@ from .study import Study
 from .timing import impact_timing
 from .workers import cores
 
-CHUNK = 200
+IMPACTS_IN_A_CALL = 200
 """Impacts simulated in one call."""
 
 TRIALS = 24
@@ -33,16 +33,18 @@ def peaks_of_postures(study: Study, postures: Array) -> Array:
     spread = np.unique(np.linspace(0, len(postures) - 1, TRIALS).astype(int))
     timing = impact_timing(study, [postures[i] for i in spread])
     program = impact_program(study.model, timing.nodes, timing.substeps, compiled=True)
-    count, padding = len(postures), (-len(postures)) % CHUNK
+    count, padding = len(postures), (-len(postures)) % IMPACTS_IN_A_CALL
     padded = np.pad(postures, ((0, padding), (0, 0)), mode="edge")
-    springs = np.tile(np.log10(study.nominal), (CHUNK, 1))
-    peaks = program["peaks"].map(CHUNK, "thread", cores())
+    springs = np.tile(np.log10(study.nominal), (IMPACTS_IN_A_CALL, 1))
+    peaks = program["peaks"].map(IMPACTS_IN_A_CALL, "thread", cores())
     rows = study_impacts(study, timing.step)
     found = []
-    for begin in range(0, count + padding, CHUNK):
-        x = np.column_stack([padded[begin : begin + CHUNK], springs]).T
+    for begin in range(0, count + padding, IMPACTS_IN_A_CALL):
+        x = np.column_stack([padded[begin : begin + IMPACTS_IN_A_CALL], springs]).T
         forces = [
-            np.array(peaks(x, np.tile(row[:, None], CHUNK), np.zeros((1, CHUNK)))).max(axis=0)
+            np.array(
+                peaks(x, np.tile(row[:, None], IMPACTS_IN_A_CALL), np.zeros((1, IMPACTS_IN_A_CALL)))
+            ).max(axis=0)
             for row in rows
         ]
         found.append(np.max(forces, axis=0))

@@ -21,7 +21,6 @@ from softimpact.symbolic.robot.rigid import Array
 from .ipopt import FEASIBLE, Found, Instance, VariableBounds
 from .minimax_point import Held, Point
 from .nlp import Program, peak_rows
-from .tip_pose import POSE
 
 STEPS = 100
 """Most steps."""
@@ -305,7 +304,7 @@ def _found(search: _Search, model: _Model, step: _Step, steps: int, status: str)
     program, shape = held.program, held.instance.shape
     multipliers = np.zeros(peak_rows(program, shape).stop)
     for key, price in zip(model.of[model.peaks :], step.prices[model.peaks :], strict=True):
-        multipliers[key[0] * program.rows + POSE + key[1]] = price
+        multipliers[key[0] * program.rows + program.held + key[1]] = price
     at_end = np.isclose(at.v, bounds.lower) | np.isclose(at.v, bounds.upper)
     springs, others = bounds.parted(at.v)
     return Found(

@@ -17,7 +17,6 @@ from .impact_program import ImpactProgram
 from .ipopt import Instance
 from .nlp import Program
 from .peaks import top_weights, tops
-from .tip_pose import POSE
 
 TOGETHER = 4
 """Derivatives come in multiples, so that few maps are made."""
@@ -160,8 +159,8 @@ def bound_rows(program: Program, postures: Array, v: Array, tasks: Array) -> tup
     """
     count, x = len(postures), np.column_stack([postures, v])
     rows, by_x = _tasks(program.task, count)(x.T, tasks.T)
-    slopes = np.array(by_x).reshape(program.rows, count, -1)[POSE:, :, program.n :]
-    return np.array(rows)[POSE:].T, slopes.transpose(1, 0, 2)
+    slopes = np.array(by_x).reshape(program.rows, count, -1)[program.held :, :, program.n :]
+    return np.array(rows)[program.held :].T, slopes.transpose(1, 0, 2)
 
 
 @lru_cache(maxsize=16)

@@ -27,7 +27,7 @@ from .impact_program import NUMBERS, SIZES, ImpactProgram, Parts
 from .objectives import Objective, WorstForce
 from .peaks import WINDOWS
 from .study import Study
-from .tip_pose import tip_pose_error
+from .tip_pose import posture_error
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,7 @@ class Program:
         variables: number of entries of v.
         bound_rows: number of rows of each bound.
         rows: of the task.
+        held: of these that are zero where a posture is sought: the tip's pose, and loops.
         size: of its numbers b.
     """
 
@@ -54,6 +55,7 @@ class Program:
     bound_rows: tuple[int, ...]
     rows: int
     size: int
+    held: int
 
     @property
     def library(self) -> bool:
@@ -105,6 +107,8 @@ def _hardware(study: Study, v: Matrix) -> Hardware:
 def task_function(study: Study) -> tuple[ca.Function, tuple[int, ...]]:
     """Return (x, b) -> (rows, their derivative by x), and how many rows each bound has.
 
+    The first rows are ``posture_error``.
+
     x is [q, v], and b as ``task_numbers`` has it.
     """
     n, bounds = study.robot.n, study.bounds
@@ -113,7 +117,7 @@ def task_function(study: Study) -> tuple[ca.Function, tuple[int, ...]]:
     position, rotation, limits = ca.vertsplit(b, [0, 3, 12, b.numel()])
     q, v = ca.vertsplit(x, [0, n, x.numel()])
     machine = Machine.of(study.model, _hardware(study, v), study.motions, study.margin)
-    error = tip_pose_error(study.model, q, position, ca.reshape(rotation, 3, 3))
+    error = posture_error(study.model, q, position, ca.reshape(rotation, 3, 3))
     kept = [row(b.sense, b.figures(machine, q), limits[i]) for i, b in enumerate(bounds)]
     rows = ca.vertcat(error, *kept)
     task = ca.Function("task", [x, b], ca.cse([rows, ca.densify(ca.jacobian(rows, x))]))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,10 +19,12 @@ from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .evaluation import largest_deflection
+from .exchange import search
 from .failure import SolverFailure
 from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
-from .levels import ROOM, even_bounds, level_range
+from .levels import LEAST_ROOM, even_bounds, level_range
+from .meaning import meaning
 from .problem import Problem, prepare
 from .searches import Searches
 from .solve import Outcome, Start, better, preference, solve
@@ -136,9 +138,9 @@ def pareto_fronts(
         held = _held(searches, ends, levels)
         free = free_outcomes(searches, levels, list(held.values()), accurate)
         _seed_held(searches, ends, levels, held, free)
-    if not any(outcome.solved for outcome in free if outcome is not None):
-        raise SolverFailure([outcome for outcome in free if outcome is not None])
-    return _fronts(problem, [level.bound for level in levels], held, free)
+        if not any(outcome.solved for outcome in free if outcome is not None):
+            raise SolverFailure([outcome for outcome in free if outcome is not None])
+        return _explained(searches, _fronts(problem, [level.bound for level in levels], held, free))
 
 
 def _require_deflection(study: Study) -> None:
@@ -172,7 +174,7 @@ def _levels(
     lower, upper = level_range(study, accurate[1].deflection, ideal)
     bounds = np.unique(np.geomspace(lower, upper, study.levels.points))
     bounds = even_bounds(bounds, first_forces(searches, placed(bounds), accurate, soft))
-    more = (study.max_deflection, ROOM * task.deflection)
+    more = (study.max_deflection, LEAST_ROOM * task.deflection)
     return placed(np.union1d(bounds, [bound for bound in more if lower < bound < upper]))
 
 
@@ -234,6 +236,29 @@ def _fronts(
         timing=problem.timing,
         compiled=problem.program.library,
     )
+
+
+def _explained(searches: Searches, found: Pareto) -> Pareto:
+    """Say what the points of the fronts that are told mean: what binds there, and what matters."""
+    problem, task = searches.problem, found.study.task_pose.name
+    told = {"free": found.free, "given": found.given, "task": found.task}
+    points = {id(p.outcome): p for front in told.values() for p in front.points}
+    jobs = {}
+    for key, point in points.items():
+        o, instance = point.outcome, problem.numbers(point.bound)
+        start = o.q[None, :], o.springs, o.others
+        jobs[key] = (problem.program, instance, problem.bounds, *start, o.mode == "free")
+    meant = {}
+    for key, again in searches.run("prices", search, jobs):
+        point, instance = points[key], jobs[key][1]
+        meant[key] = meaning(problem, point.outcome, instance, again, point.bound)
+
+    def explained(front: Front) -> Front:
+        with_ = [replace(p, meaning=meant[id(p.outcome)]) for p in front.points]
+        return replace(front, points=tuple(with_))
+
+    held = {**found.held, task: explained(found.task)}
+    return replace(found, free=explained(found.free), given=explained(found.given), held=held)
 
 
 def _least(outcomes: Sequence[Outcome | None]) -> Outcome | None:

@@ -17,13 +17,13 @@ from softimpact.symbolic.robot.rigid import Array
 WINDOWS = 2
 """Windows of time, each with its peak."""
 
-ALIKE = 0.98
+NEARLY_AS_LARGE = 0.98
 """Share of the largest peak from which another within the same window deserves its own."""
 
-PARTED = 0.01
+LEAST_DIP = 0.01
 """Share of the largest peak by which the force falls between two that are not one."""
 
-FLAT = 1e-9
+LEAST_CURVATURE = 1e-9
 """Curvature [N] below which three forces lie on a line."""
 
 
@@ -43,7 +43,7 @@ def _vertices(forces: Matrix) -> Matrix:
     """Return the forces; at local maxima those of the parabola through three of them."""
     before, after = ca.vertcat(0, forces[:-1]), ca.vertcat(forces[1:], forces[-1])
     is_top = (forces >= before) * (forces >= after)
-    curvature = ca.fmax(2 * forces - before - after, FLAT)
+    curvature = ca.fmax(2 * forces - before - after, LEAST_CURVATURE)
     return forces + is_top * (after - before) ** 2 / (8 * curvature)
 
 
@@ -63,7 +63,7 @@ def hides_a_peak(forces: Array, boundary: int) -> bool:
     for part in (forces[:boundary], forces[boundary:]):
         split = valley(part)
         lower = _lower_peak(part)[split] if split else 0.0
-        if lower > ALIKE * largest and lower - part[split] > PARTED * largest:
+        if lower > NEARLY_AS_LARGE * largest and lower - part[split] > LEAST_DIP * largest:
             return True
     return False
 
@@ -83,7 +83,7 @@ def tops(forces: Array) -> list[tuple[NDArray[np.int64], Array]]:
     """
     before, after = np.zeros_like(forces), forces.copy()
     before[:, 1:], after[:, :-1] = forces[:, :-1], forces[:, 1:]
-    curvature = np.maximum(2 * forces - before - after, FLAT)
+    curvature = np.maximum(2 * forces - before - after, LEAST_CURVATURE)
     heights = forces + (after - before) ** 2 / (8 * curvature)
     at_top = (forces >= before) & (forces >= after) & (forces > 0)
     at_top[~at_top.any(axis=1), 0] = True
@@ -96,9 +96,9 @@ def top_weights(forces: Array, node: int) -> Array:
     last = forces.size - 1
     before, own = forces[node - 1] if node else 0.0, forces[node]
     after = forces[min(node + 1, last)]
-    rise, curvature = after - before, max(2 * own - before - after, FLAT)
+    rise, curvature = after - before, max(2 * own - before - after, LEAST_CURVATURE)
     by_rise = rise / (4 * curvature)
-    by_curvature = -(rise**2) / (8 * curvature**2) if curvature > FLAT else 0.0
+    by_curvature = -(rise**2) / (8 * curvature**2) if curvature > LEAST_CURVATURE else 0.0
     weights = np.zeros(forces.size)
     weights[node] += 1 + 2 * by_curvature
     weights[min(node + 1, last)] += by_rise - by_curvature

@@ -11,11 +11,12 @@ import numpy as np
 from softimpact.symbolic import InvalidValue, Joint, JointKind
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import freedom, held, turns_with_first
 from .repair import held_elsewhere, nearest_at_pose, posture_at_pose
 from .study import Pose, Study
-from .tip_pose import POSE, tip_pose, tip_pose_error, tip_poses
+from .tip_pose import POSE, posture_error, tip_pose, tip_poses
 
-TURNED = 0.1
+LEAST_TURN = 0.1
 """Angle [rad] about the base from which a pose counts as another one, turned."""
 
 
@@ -42,17 +43,19 @@ class Candidate:
 def leaves_a_choice(study: Study) -> bool:
     """Return whether an arm's posture can be sought while its tip is held as the task asks.
 
-    Six joints or more can be led there from any pose, even if they then have no choice. Fewer have
-    one posture nearby, that of the task itself, unless they move in a plane or the like.
+    Six motors or more can be led there from any pose, even if they then have no choice. Fewer have
+    one posture nearby, that of the task itself, unless they move in a plane or the like. Passive
+    joints stay where their springs are unbent: nothing else would hold them.
     """
-    n = study.robot.n
-    if n >= POSE:
+    model = study.model
+    if freedom(model) >= POSE:
         return True
-    q = ca.SX.sym("q", n)
-    position, rotation = tip_pose(study.model, study.task_pose.q)
-    error = tip_pose_error(study.model, q, ca.DM(position), ca.DM(rotation))
+    q = ca.SX.sym("q", model.robot.n)
+    position, rotation = tip_pose(model, study.task_pose.q)
+    error = posture_error(model, q, ca.DM(position), ca.DM(rotation))
     jacobian = ca.Function("error", [q], [ca.jacobian(error, q)])(study.task_pose.q)
-    return bool(np.linalg.matrix_rank(np.array(jacobian), tol=1e-6) < n)
+    moving = [i for i in range(model.robot.n) if i not in held(model)]
+    return bool(np.linalg.matrix_rank(np.array(jacobian)[:, moving], tol=1e-6) < len(moving))
 
 
 def candidates(study: Study) -> list[Candidate]:
@@ -67,9 +70,9 @@ def candidates(study: Study) -> list[Candidate]:
     task = tip_pose(study.model, study.task_pose.q)
     first, given = study.robot.joints[0], np.array([pose.q for pose in study.poses])
     turns = np.zeros(len(given))
-    if first.kind is JointKind.HINGE:
+    if first.kind is JointKind.HINGE and turns_with_first(study.model):
         turns = _best_turns(study, given, task)
-        turns[abs(turns) <= TURNED] = 0.0
+        turns[abs(turns) <= LEAST_TURN] = 0.0
     back = given.copy()
     back[:, 0] = [
         _within_limits(first, q - turn) for q, turn in zip(given[:, 0], turns, strict=True)

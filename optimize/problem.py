@@ -20,7 +20,7 @@ from .poses import Candidate, candidates, leaves_a_choice
 from .solve import Mode
 from .study import Study
 from .timing import Timing, impact_timing
-from .tip_pose import tip_pose
+from .tip_pose import posture_equations, tip_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +116,8 @@ def study_program(study: Study, impacts: tuple[ImpactProgram, ...]) -> Program:
     variables = study.range.lower.size
     rows, size = task.numel_out(0), task.numel_in(1)
     serialised = task.serialize(), hardware.serialize()
-    return Program(impacts, *serialised, study.robot.n, variables, each, rows, size)
+    held = posture_equations(study.model)
+    return Program(impacts, *serialised, study.robot.n, variables, each, rows, size, held)
 
 
 def study_impacts(study: Study, step: float) -> Array:
@@ -137,7 +138,7 @@ def felt_numbers(
     Args:
         study: whose variables they are.
         parts: that are sought.
-        springs: joint stiffness, length n [N·m/rad].
+        springs: stiffness of each spring [N·m/rad].
         others: values of the other variables; default the machine as it is.
         speed: factor on the speed.
     """

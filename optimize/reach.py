@@ -24,9 +24,9 @@ from .poses import Candidate
 from .solver_options import quiet
 from .stiffest import Stiffest
 from .study import Study
-from .tip_pose import POSE, tip_pose
+from .tip_pose import posture_equations, tip_pose
 
-WITHIN = 1e-5
+ROW_TOLERANCE = 1e-5
 """Excess of a bound's row up to which it counts as kept: Ipopt's tolerance."""
 
 IPOPT = {"hessian_approximation": "limited-memory", "max_iter": 300, "tol": 1e-8}
@@ -68,7 +68,7 @@ def reach(
     asked = replace(study, other_bounds=tuple(b for b in bounds if b != study.deflection))
     with_deflection = any(b == study.deflection for b in bounds)
     task, rows = task_function(asked)
-    limits = VariableBounds.of(study)
+    limits, rows_held = VariableBounds.of(study), posture_equations(study.model)
     n, V, K = study.robot.n, limits.lower.size, len(postures)
     chosen = [with_deflection, *(True for _ in asked.other_bounds)]
     soft = [sought is None or bound in sought for bound in asked.bounds]
@@ -77,8 +77,8 @@ def reach(
     held, poses = [], []
     for q, given in zip(qs, postures, strict=True):
         found = task(ca.vertcat(q, v), task_numbers(asked, *tip_pose(study.model, given)))[0]
-        poses.append(found[:POSE])
-        pieces = ca.vertsplit(found[POSE:], np.cumsum([0, *rows]).tolist())
+        poses.append(found[:rows_held])
+        pieces = ca.vertsplit(found[rows_held:], np.cumsum([0, *rows]).tolist())
         for piece, is_chosen, is_soft in zip(pieces, chosen, soft, strict=True):
             if is_chosen:
                 held.append(piece - t if is_soft else piece)
@@ -91,7 +91,7 @@ def reach(
     solver = ca.nlpsol("reach", "ipopt", problem, quiet(IPOPT))
     loose = 0.0 if free else np.inf
     flat = np.concatenate(list(postures))
-    lower, upper = study.robot.limits
+    lower, upper = limits.q_lower, limits.q_upper
     least = np.concatenate([limits.lower, np.tile(lower, K) if free else flat, [-np.inf]])
     most = np.concatenate([limits.upper, np.tile(upper, K) if free else flat, [np.inf]])
     best: Reach | None = None
@@ -111,7 +111,7 @@ def reach(
         excess = float(end[-1] + max(missed[g_poses.numel() :].max(), 0.0))
         if off < 1e-6 and (best is None or excess < best.excess):
             best = Reach(excess, end[:V], end[V:-1].reshape(K, n))
-        if best is not None and best.excess <= WITHIN:
+        if best is not None and best.excess <= ROW_TOLERANCE:
             break
     return best or Reach(np.inf, limits.upper, np.array(postures))
 
@@ -120,14 +120,14 @@ def reachable(study: Study, q: Array, *, free: bool) -> bool:
     """Return whether some hardware keeps all bounds in one posture."""
     if largest_share(study, q, study.upper) <= 1:
         return True
-    return reach(study, [q], study.bounds, free=free).excess <= WITHIN
+    return reach(study, [q], study.bounds, free=free).excess <= ROW_TOLERANCE
 
 
 def require_reachable(study: Study, poses: Sequence[Candidate], *, free: bool) -> None:
     """Raise Infeasible if no hardware keeps all bounds in all poses at once."""
     if all(largest_share(study, pose.q, study.upper) <= 1 for pose in poses):
         return
-    if reach(study, [pose.q for pose in poses], study.bounds, free=free).excess <= WITHIN:
+    if reach(study, [pose.q for pose in poses], study.bounds, free=free).excess <= ROW_TOLERANCE:
         return
     raise infeasible(study, poses, free=free)
 
@@ -136,7 +136,7 @@ def infeasible(study: Study, poses: Sequence[Candidate], *, free: bool) -> Infea
     """Return why no hardware keeps all bounds: a set of them of which each is needed for that."""
 
     def broken(some: Sequence[Candidate], bounds: Sequence[Bound]) -> bool:
-        return reach(study, [p.q for p in some], bounds, free=free).excess > WITHIN
+        return reach(study, [p.q for p in some], bounds, free=free).excess > ROW_TOLERANCE
 
     alone = [pose for pose in poses if broken([pose], study.bounds)]
     some = _needed([alone[0]] if alone else poses, lambda left: broken(left, study.bounds))

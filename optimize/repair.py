@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
 
-from .evaluation import largest_deflection
+from .coordinates import freedom, posture_limits
+from .evaluation import largest_deflection, largest_share
 from .solver_options import quiet
 from .study import Study
-from .tip_pose import POSE, tip_pose_error
+from .tip_pose import POSE, posture_error
 
 HELD = 1e-9
 """Pose error [m, rad] up to which a posture holds the tip as it is."""
@@ -26,6 +27,10 @@ FIRST_ORDER_STEPS = 12
 
 STILL = 1e-8
 """Length of a step [rad] at which a posture is where it will be."""
+
+
+ENOUGH = 1e-3
+"""Share by which springs in proportion may miss a bound, or be stiffer than need be."""
 
 
 def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) -> Array | None:
@@ -40,10 +45,10 @@ def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) ->
     pose = np.concatenate([position, rotation.ravel(order="F")])
     if abs(np.array(_pose_error(study.model)(q, pose))).max() < HELD:
         return q
-    if study.robot.n < POSE:  # Ipopt refuses what has more equations than unknowns
+    if freedom(study.model) < POSE:  # Ipopt refuses what has more equations than unknowns
         return None
     solver = _posture_solver(study.model)
-    lower, upper = study.robot.limits
+    lower, upper = posture_limits(study.model)
     p = np.concatenate([q, pose])
     found = solver(x0=q, p=p, lbx=lower, ubx=upper, lbg=0, ubg=0)
     return np.array(found["x"]).ravel() if solver.stats()["success"] else None
@@ -57,8 +62,8 @@ def nearest_at_pose(
     Each step takes the posture nearest to the given one that holds the tip to first order. Where
     that does not end soon or leaves the joints' limits, Ipopt must say.
     """
-    wanted, lower, upper = postures, *study.robot.limits
-    if study.robot.n < POSE:
+    wanted, lower, upper = postures, *posture_limits(study.model)
+    if freedom(study.model) < POSE:
         return wanted, np.zeros(len(wanted), dtype=bool)
     pose = np.concatenate([position, rotation.ravel(order="F")])
     slope, q = _pose_slope(study.model), wanted.copy()
@@ -68,7 +73,7 @@ def nearest_at_pose(
             break
         poses = np.tile(pose[:, None], len(moving))
         error, jacobian = (np.array(each) for each in slope(q[moving].T, poses))
-        J = jacobian.reshape(POSE, len(moving), -1).transpose(1, 0, 2)
+        J = jacobian.reshape(len(error), len(moving), -1).transpose(1, 0, 2)
         missed = error.T + np.einsum("mij,mj->mi", J, wanted[moving] - q[moving])
         nearer = wanted[moving] - np.einsum("mji,mi->mj", np.linalg.pinv(J), missed)
         still = abs(nearer - q[moving]).max(axis=1) < STILL
@@ -91,14 +96,14 @@ def held_elsewhere(
 def _pose_error(model: ImpactModel) -> ca.Function:
     q = ca.SX.sym("q", model.robot.n)
     position, rotation = ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)
-    error = tip_pose_error(model, q, position, rotation)
+    error = posture_error(model, q, position, rotation)
     return ca.Function("error", [q, ca.vertcat(position, ca.vec(rotation))], [error])
 
 
 @lru_cache(maxsize=8)
 def _pose_slope(model: ImpactModel) -> ca.Function:
     q, pose = ca.SX.sym("q", model.robot.n), ca.SX.sym("pose", 12)
-    error = tip_pose_error(model, q, pose[:3], ca.reshape(pose[3:], 3, 3))
+    error = posture_error(model, q, pose[:3], ca.reshape(pose[3:], 3, 3))
     return ca.Function("slope", [q, pose], ca.cse([error, ca.densify(ca.jacobian(error, q))]))
 
 
@@ -111,7 +116,7 @@ def _posture_solver(model: ImpactModel) -> ca.Function:
         "x": q,
         "p": ca.vertcat(wanted, position, ca.vec(rotation)),
         "f": ca.sumsqr(q - wanted),
-        "g": tip_pose_error(model, q, position, rotation),
+        "g": posture_error(model, q, position, rotation),
     }
     return ca.nlpsol("posture", "ipopt", problem, quiet({"tol": 1e-9}))
 
@@ -119,18 +124,37 @@ def _posture_solver(model: ImpactModel) -> ca.Function:
 def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
     """Return the softest springs, in the given proportions, that meet the deflection bound.
 
-    Joints that reach a bound of their stiffness stay there; if the upper bounds are too soft, the
-    springs come as near as they can.
+    Where they break another bound that stiffer ones keep, such as one on a frequency, they are just
+    stiff enough for that. Joints that reach a bound of their stiffness stay there; if the upper
+    bounds are too soft, the springs come as near as they can.
 
     Args:
         study: whose forces and bounds count.
         q: posture, length n [rad].
-        springs: proportions of the stiffness, length n [N·m/rad].
+        springs: proportions of the stiffness, one for each spring [N·m/rad].
     """
     scaled = np.clip(springs, study.lower, study.upper)
-    for _ in range(4 * study.robot.n):
+    for _ in range(4 * len(study.groups)):
         share = largest_deflection(study, q, scaled) / study.max_deflection
-        if abs(share - 1.0) < 1e-3:
+        if abs(share - 1.0) < ENOUGH:
             break
         scaled = np.clip(scaled * share, study.lower, study.upper)
-    return scaled
+    return _stiffened(study, q, scaled) if study.other_bounds else scaled
+
+
+def _stiffened(study: Study, q: Array, springs: Array) -> Array:
+    """Return springs times the least factor with which they keep all bounds; as given if none."""
+
+    def times(logarithm: float) -> Array:
+        return np.asarray(np.clip(springs * np.exp(logarithm), study.lower, study.upper))
+
+    def keeps(logarithm: float) -> bool:
+        return largest_share(study, q, times(logarithm)) <= 1 + ENOUGH
+
+    low, high = 0.0, float(np.log(np.max(study.upper / springs)))
+    if keeps(low) or not keeps(high):
+        return springs
+    while high - low > ENOUGH:
+        middle = (low + high) / 2
+        low, high = (low, middle) if keeps(middle) else (middle, high)
+    return times(high)

@@ -23,17 +23,15 @@ from .answers import Price, indifferent_ranges, prices_of, worth_of
 from .catalogue import Bought, bought
 from .certificate import KEEPS, Hardening, Setting, Worst
 from .evaluation import equipped, largest_share
-from .exchange import Exchanged, exchange
+from .exchange import ExchangeState, exchange, serves, worst_few
 from .hardware import Hardware
-from .impact_program import impact_program
-from .ipopt import VariableBounds
-from .problem import sought_parts, study_program
 from .reach import require_reachable
 from .repair import accurate_springs
 from .scenarios import Scenarios
-from .screening import PIECE
-from .study import Study, transient_limit
-from .timing import Timing, scenario_timing
+from .screening import SCENARIOS_IN_A_JOB
+from .setting import setting_of
+from .study import Study
+from .timing import Timing
 from .variables.cover import Cover
 from .workers import Progress, cores, workers, works_elsewhere
 
@@ -115,35 +113,15 @@ def robust_design(
             f"'{study.objective.kind}' looks at every impact at once, and {len(scenarios)} are "
             f"more than {MOST_AT_ONCE}; choose 'worst_force' or fewer scenarios",
         )
-    _require_lengths(study, scenarios)
+    require_lengths(study, scenarios)
     require_reachable(study, scenarios.poses, free=free)
-    timing, parts = scenario_timing(study, scenarios), sought_parts(study)
-    impacts = tuple(
-        impact_program(
-            study.model,
-            timing.nodes,
-            timing.substeps,
-            point,
-            parts,
-            compiled=True,
-            elsewhere=works_elsewhere(executor),
-        )
-        for point in scenarios.points
-    )
-    with workers(min(max(2, len(scenarios) // PIECE), cores()), executor) as pool:
-        setting = Setting(
-            study,
-            scenarios,
-            study_program(study, impacts),
-            timing,
-            VariableBounds.of(study),
-            pool,
-            on_progress or (lambda *_: None),
-        )
+    with workers(min(max(2, len(scenarios) // SCENARIOS_IN_A_JOB), cores()), executor) as pool:
+        elsewhere = works_elsewhere(executor)
+        setting = setting_of(study, scenarios, pool, on_progress, elsewhere=elsewhere)
         return _exchanged(setting, free)
 
 
-def _require_lengths(study: Study, scenarios: Scenarios) -> None:
+def require_lengths(study: Study, scenarios: Scenarios) -> None:
     """Raise InvalidValue if the objective does not fit the scenarios, before anything is built."""
     if study.objective.all_scenarios:
         numbers = np.arange(len(scenarios)) // len(scenarios.motors)
@@ -155,16 +133,20 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     study, given, limits = setting.study, setting.given, setting.limits
     nominal = Hardening(limits.vector(study.nominal), given)
     before, found = setting.worst(nominal)
-    equal = _equal_springs(setting, given)
+    equal = equal_springs(setting, given)
     equal_worst, more = setting.worst(Hardening(limits.vector(equal), given))
-    state = exchange(setting, free, [*more[:1], *found], equal, equal_worst.share)
+    starts = [(equal, None)]
+    if not serves(study, free):
+        starts += [(each, None) for each in (study.upper, study.lower)]
+    first = worst_few(setting, [*more[:1], *found], set())
+    state = exchange(setting, first, starts, given, equal_worst.share, free=free, thorough=True)
     choice = None
     if study.catalogue:
         choice, state = _bought(setting, state)
     springs, others = limits.parted(state.at.v)
     if choice is not None:  # their logarithms lose a digit
         springs = choice.springs
-    _require_thick_cover(setting, state.worst, equipped(study, ca.DM(springs), others))
+    require_thick_cover(setting, state.worst, equipped(study, ca.DM(springs), others))
     worth = worth_of(study, state.worst.force / state.worst.share * state.unit)
     return RobustDesign(
         study=study,
@@ -178,7 +160,7 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
         bound=state.bound,
         active=state.active,
         rounds=state.rounds,
-        indifferent=_indifferent(setting, state),
+        indifferent=indifferent(setting, state),
         prices=prices_of(study, state.instance, state.best, worth, setting.program),
         timing=setting.timing,
         compiled=setting.program.library,
@@ -186,20 +168,20 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     )
 
 
-def _equal_springs(setting: Setting, postures: Array) -> Array:
+def equal_springs(setting: Setting, postures: Array) -> Array:
     """Return springs in the nominal proportions that are just accurate in every pose."""
     study = setting.study
     softest = [accurate_springs(study, q, study.nominal) for q in postures]
     return np.asarray(np.max(softest, axis=0))
 
 
-def _require_thick_cover(setting: Setting, worst: Worst, hardware: Hardware) -> None:
+def require_thick_cover(setting: Setting, worst: Worst, hardware: Hardware) -> None:
     """Refuse a cover that some impact presses through: its law does not hold then."""
     thickness = [v.thickness for v in setting.study.other_variables if isinstance(v, Cover)]
     if not thickness or thickness[0] is None or hardware.cover is None:
         return
     # a scenario of a lower share may have the larger force
-    most = worst.share * max(transient_limit(contact) for contact in setting.scenarios.contacts)
+    most = worst.share * float(setting.scenarios.limits.max())
     depth = (most / float(hardware.cover)) ** (2 / 3)
     if depth > thickness[0]:
         raise InvalidValue(
@@ -209,14 +191,15 @@ def _require_thick_cover(setting: Setting, worst: Worst, hardware: Hardware) -> 
         )
 
 
-def _decisive(setting: Setting, state: Exchanged) -> Setting:
+def _decisive(setting: Setting, state: ExchangeState) -> Setting:
     """Return the setting with the scenarios alone that decided."""
     places = np.array([setting.scenarios[i] for i in state.active])
     rows = np.unique(places[:, :6], axis=0)
     return replace(setting, scenarios=replace(setting.scenarios, rows=rows))
 
 
-def _indifferent(setting: Setting, state: Exchanged) -> Array:
+def indifferent(setting: Setting, state: ExchangeState) -> Array:
+    """Return the range of each value that costs less than 0.5 %, the others held."""
     study = setting.study
     decisive = setting if study.objective.all_scenarios else _decisive(setting, state)
 
@@ -231,7 +214,7 @@ def _indifferent(setting: Setting, state: Exchanged) -> Array:
     return indifferent_ranges(setting.limits, state.at.v, cost, keeps)
 
 
-def _bought(setting: Setting, state: Exchanged) -> tuple[Bought, Exchanged]:
+def _bought(setting: Setting, state: ExchangeState) -> tuple[Bought, ExchangeState]:
     """Take springs of the catalogue instead; the postures stay."""
     choice = bought(setting, _decisive(setting, state), state.at, state.worst)
     return choice, replace(state, at=choice.at, worst=choice.worst)

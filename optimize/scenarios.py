@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -44,6 +44,7 @@ class Scenarios:
         speeds: [m/s].
         motors: what they do.
         rows: places on all axes but the motors', for a list; None for the product.
+        allowed: share of the regions' limits that counts as the limit.
     """
 
     poses: tuple[Candidate, ...]
@@ -54,6 +55,7 @@ class Scenarios:
     speeds: tuple[float, ...]
     motors: tuple[Motors, ...]
     rows: Indices | None = None
+    allowed: float = 1.0
 
     @property
     def _sizes(self) -> tuple[int, ...]:
@@ -99,9 +101,22 @@ class Scenarios:
             self.payloads[one.payload],
         )
 
+    @property
+    def limits(self) -> Array:
+        """Force that reaches a transient limit of each contact [N], times what is allowed of it."""
+        return self.allowed * np.array([transient_limit(contact) for contact in self.contacts])
+
     def limit(self, one: Scenario) -> float:
-        """Return the force that reaches a transient limit of what is hit [N]."""
-        return transient_limit(self.contacts[one.contact])
+        """Return the largest force that a scenario allows [N]."""
+        return float(self.limits[one.contact])
+
+    def faster(self, factor: float) -> Scenarios:
+        """Return the scenarios with all speeds times a factor."""
+        return replace(self, speeds=tuple(factor * speed for speed in self.speeds))
+
+    def within(self, share: float) -> Scenarios:
+        """Return the scenarios with a share of the regions' limits allowed."""
+        return replace(self, allowed=share)
 
     def describe(self, one: Scenario) -> dict[str, object]:
         """Return a scenario in words and numbers."""

@@ -12,15 +12,14 @@ from softimpact.symbolic.robot.rigid import Array, Indices
 from .impact_program import NUMBERS
 from .nlp import Program
 from .scenarios import Scenario, Scenarios
-from .study import transient_limit
 
-CHUNK = 128
+IMPACTS_IN_A_CALL = 128
 """Most impacts simulated in one call."""
 
-PIECE = 1000
+SCENARIOS_IN_A_JOB = 1000
 """Scenarios in one job."""
 
-KEPT = 8
+SCENARIOS_REPORTED = 8
 """Scenarios of a piece that are reported: the worst, each of another pose, point or direction."""
 
 
@@ -63,14 +62,13 @@ def screen(
     """
     places = scenarios.at(begin, end)
     force = forces_at(program, scenarios, postures, y, speeds, step, begin, end)
-    limits = np.array([transient_limit(contact) for contact in scenarios.contacts])
-    share = force / limits[places[:, 3]]
+    share = force / scenarios.limits[places[:, 3]]
     kept: dict[tuple[int, ...], Screened] = {}
     for i in np.argsort(-share):
         kind = tuple(places[i, :3])
         if kind not in kept:
             kept[kind] = Screened(begin + int(i), float(share[i]), float(force[i]))
-        if len(kept) == KEPT:
+        if len(kept) == SCENARIOS_REPORTED:
             break
     return list(kept.values())
 
@@ -121,7 +119,9 @@ def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Ar
         numbers: of the impacts, m×``NUMBERS``.
     """
     count = len(x)
-    chunk = min(CHUNK, 1 << (count - 1).bit_length())  # few sizes, so that maps are made once
+    chunk = min(
+        IMPACTS_IN_A_CALL, 1 << (count - 1).bit_length()
+    )  # few sizes, so that maps are made once
     padding = (-count) % chunk
     x, numbers = (np.pad(a, ((0, padding), (0, 0)), mode="edge") for a in (x, numbers))
     peaks = program.impacts[point]["peaks"].map(chunk)

@@ -20,13 +20,13 @@ CORRECTIONS = 20
 HELD = 1e-10
 """Pose error [m, rad] up to which the task counts as held."""
 
-CLOSE = 0.6
+BACK_WITHIN = 0.6
 """Share of a step within which the curve counts as back where it began."""
 
-SHORTEST = 1e-3
+SHORTEST_STRIDE = 1e-3
 """Share of a step below which a joint limit counts as reached."""
 
-LONGEST = 2000
+MOST_STRIDES = 2000
 """Steps to one side at most."""
 
 
@@ -69,7 +69,7 @@ def self_motion(model: ImpactModel, q: Array, step: float = 0.02) -> SelfMotion:
 
     def returned(x: Array) -> bool:  # full turns apart counts
         apart = np.where(hinges, np.remainder(x - q + np.pi, 2 * np.pi) - np.pi, x - q)
-        return bool(np.linalg.norm(apart) < CLOSE * step)
+        return bool(np.linalg.norm(apart) < BACK_WITHIN * step)
 
     within = CurveEnds(allowed, returned)
 
@@ -127,7 +127,7 @@ def _trace(
     """Postures after ``start`` along a tangent, and whether they lead back to it."""
     points: list[Array] = []
     q, stride = start, step
-    while len(points) < LONGEST and stride > SHORTEST * step:
+    while len(points) < MOST_STRIDES and stride > SHORTEST_STRIDE * step:
         found = _corrected(hold, q + stride * tangent)
         if found is None or not bounds.allowed(found):
             stride /= 2

@@ -10,7 +10,7 @@ from typing import Literal
 from softimpact.symbolic.robot.rigid import Array
 
 from .deciding import minimise_deciding
-from .ipopt import FEASIBLE, IN_TURN, NONE, Instance, VariableBounds
+from .ipopt import FEASIBLE, IN_TURN, NO_OTHERS, Instance, VariableBounds
 from .nlp import Program
 
 Mode = Literal["table", "free"]
@@ -64,7 +64,7 @@ class Outcome:
     springs: Array
     force: float
     violation: float
-    others: Array = field(default_factory=lambda: NONE)
+    others: Array = field(default_factory=lambda: NO_OTHERS)
 
 
 def solve(program: Program, start: Start, bounds: VariableBounds, instance: Instance) -> Outcome:

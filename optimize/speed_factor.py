@@ -30,13 +30,13 @@ from .motor_laws import MotorLaws
 STEP = 2e-4
 """Time between two forces [s]: a fifth of the shortest peaks' width at half their height."""
 
-KEPT = 0.01
+SHARE_KEPT_FREE = 0.01
 """Share of a limit that is kept free: for peaks between two forces, and the leapfrog's error."""
 
 SHARP = 600.0
 """Sharpness of the largest force: n alike ones count log(n)/SHARP of the limit too much."""
 
-SLOW = 1e-3
+FADING_SPEED = 1e-3
 """Speed [m/s] below which a point's direction fades out, so that it has one at rest, too."""
 
 
@@ -77,8 +77,8 @@ def speed_factor(
         compiled: whether to compile it, if there is a compiler.
 
     Raises:
-        InvalidValue: joints that are rigid, damped or coupled, a body that does not follow Hertz's
-            law, or motors that are held.
+        InvalidValue: joints that are rigid, sprung by the file or coupled, a body that does not
+            follow Hertz's law, or motors that are held.
     """
     _check(model, motors)
     n = model.robot.n
@@ -93,7 +93,12 @@ def speed_factor(
                 shares.append(force * _one_over(limits, force.numel()))
     share = ca.logsumexp(SHARP * ca.vertcat(*shares)) / SHARP
     factor = ca.Function(
-        "speed_factor", [q, rate], [(1 - KEPT) / share], ["q", "dq"], ["factor"], FEW_DIRECTIONS
+        "speed_factor",
+        [q, rate],
+        [(1 - SHARE_KEPT_FREE) / share],
+        ["q", "dq"],
+        ["factor"],
+        FEW_DIRECTIONS,
     )
     if not compiled:
         return factor
@@ -109,20 +114,24 @@ def _check(model: ImpactModel, motors: Sequence[Motors]) -> None:
         raise InvalidValue("motors", "names none")
     if robot.loops or robot.has_springs or not all(model.drives.elastic):
         raise InvalidValue("joint_stiffness", "is needed for all joints, and no closed chain")
-    if robot.damping.any():
-        raise InvalidValue("damping", "of joints is not known here; set it to zero")
 
 
 def _arrival(model: ImpactModel, point: str) -> ca.Function:
-    """Return (q, q̇) -> M⁻¹ and the row of J along the point's velocity."""
+    """Return (q, q̇) -> ``ImpactDynamics.mobility`` and the row of J along the point's way."""
     n = model.robot.n
     q, rate = ca.SX.sym("q", n), ca.SX.sym("dq", n)
     J = contact_point_jacobian(model.robot, model.robot.frame(point).name, q)
     velocity = ca.mtimes(J, rate)
-    direction = velocity / ca.sqrt(ca.dot(velocity, velocity) + SLOW**2)
-    mobility = Factorisation(mass_matrix(model.robot, q)).solve(ca.SX.eye(n))
+    direction = velocity / ca.sqrt(ca.dot(velocity, velocity) + FADING_SPEED**2)
+    mass = mass_matrix(model.robot, q) + STEP / 2 * _joint_damping(model)
+    mobility = Factorisation(mass).solve(ca.SX.eye(n))
     row = ca.SX(ca.densify(ca.mtimes(direction.T, J)))
     return ca.Function("arrival", [q, rate], [ca.SX(ca.densify(mobility)), row])
+
+
+def _joint_damping(model: ImpactModel) -> ca.DM:
+    """Return the joints' own damping, n×n [N·m·s/rad]."""
+    return ca.sparsify(ca.diag(ca.DM(model.robot.damping)))
 
 
 def _forces(
@@ -140,10 +149,11 @@ def _forces(
         mobility=mobility,
         jacobian=jacobian,
         springs=ca.MX(ca.DM(drives.springs)),
-        rotors=ca.MX(known_rotors(model)),
+        rotor_mobility=ca.MX(1 / known_rotors(model)),
         gains=ca.MX(gains),
         damping=ca.MX(ca.DM.zeros(n) if drives.damping_gains is None else drives.damping_gains),
         velocity=rate,
+        joint_damping=_joint_damping(model),
     )
     nodes = ceil(horizon / STEP)
     laws = MotorLaws.of(motors)

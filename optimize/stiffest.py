@@ -14,12 +14,13 @@ from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
 
 from .bounds import Deflection
+from .coordinates import posture_limits, sprung
 from .evaluation import largest_deflection
 from .hardware import Hardware, Machine
 from .solve import Mode
 from .solver_options import quiet
 from .study import Study
-from .tip_pose import tip_pose, tip_pose_error
+from .tip_pose import posture_equations, posture_error, tip_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,7 @@ class Stiffest:
 
     Attributes:
         q: posture, length n [rad].
-        springs: joint stiffness, length n [N·m/rad].
+        springs: stiffness of each spring [N·m/rad].
         deflection: largest of the tip under the study's forces [m].
     """
 
@@ -48,10 +49,10 @@ def stiffest(study: Study, q: Array, mode: Mode) -> Stiffest:
         mode: table or free.
     """
     n, held = study.robot.n, mode == "table"
-    lower, upper = study.robot.limits
+    lower, upper = posture_limits(study.model)
     unit = largest_deflection(study, q, study.upper)
     position, rotation = tip_pose(study.model, study.task_pose.q)
-    free_pose = np.full(6, np.inf if held else 0.0)
+    free_pose = np.full(posture_equations(study.model), np.inf if held else 0.0)
     least = np.concatenate([q if held else lower, np.log10(study.lower), [0.0]])
     most = np.concatenate([q if held else upper, np.log10(study.upper), [np.inf]])
     deflection = replace(study.deflection, most=1.0)
@@ -76,7 +77,8 @@ def stiffest(study: Study, q: Array, mode: Mode) -> Stiffest:
 def _solver(model: ImpactModel, deflection: Deflection, margin: float) -> ca.Function:
     """Ipopt on min t with (deflection/unit)² ≤ t under each load."""
     n = model.robot.n
-    q, s, t, unit = ca.SX.sym("q", n), ca.SX.sym("s", n), ca.SX.sym("t"), ca.SX.sym("unit")
+    q, s = ca.SX.sym("q", n), ca.SX.sym("s", len(sprung(model)))
+    t, unit = ca.SX.sym("t"), ca.SX.sym("unit")
     position, rotation = ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)
     hardware = replace(Hardware.of(model), springs=10**s)
     machine = Machine.of(model, hardware, margin=margin)
@@ -85,6 +87,6 @@ def _solver(model: ImpactModel, deflection: Deflection, margin: float) -> ca.Fun
         "x": ca.vertcat(q, s, t),
         "p": ca.vertcat(position, ca.vec(rotation), unit),
         "f": t,
-        "g": ca.vertcat(tip_pose_error(model, q, position, rotation), squares - t),
+        "g": ca.vertcat(posture_error(model, q, position, rotation), squares - t),
     }
     return ca.nlpsol("stiffest", "ipopt", problem, quiet({"tol": 1e-8}))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,26 +16,19 @@ from softimpact.symbolic import (
     Contact,
     ImpactModel,
     InvalidValue,
-    Joint,
     Motors,
     Robot,
     SoftImpactError,
-    UnknownName,
     approach_velocity,
     body_region,
-    chain_to,
-    drives,
-    impact_model,
     limits_of,
-    load_robot,
-    lock_joints,
     unit_direction,
 )
 from softimpact.symbolic.impact.approach import singular_postures
-from softimpact.symbolic.impact.drives import PerJoint, require_rotors
 from softimpact.symbolic.robot.rigid import Array
 
 from .bounds import Bound, Deflection
+from .coordinates import spring_names, with_springs
 from .hardware import TaskMotion
 from .objectives import Objective, WorstForce
 from .study_file import (
@@ -50,7 +43,17 @@ from .study_file import (
 from .study_motors import study_motors
 from .study_numbers import catalogue_of, moments_of, stiffness_of
 from .study_parts import asked_bounds, asked_objective, asked_variables, require_fit
-from .variables import JointStiffness, Range, Variable, joint_groups
+from .study_robot import (
+    chain_of,
+    loaded,
+    model_of,
+    posture_of,
+    require_held_joints,
+    require_known_rotors,
+    require_within_limits,
+    sprung_joints,
+)
+from .variables import JointStiffness, Range, Variable, joint_groups, require_common_stiffness
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +62,7 @@ class Pose:
 
     Attributes:
         name: of the pose.
-        q: link angles as given, length n [rad].
+        q: link angles, length n, loops closed and a floating base at zero [rad].
         recovered: whether the source does not print it.
     """
 
@@ -75,15 +78,15 @@ class Study:
     Attributes:
         title: for figures and reports.
         source: the study file.
-        model: the robot with the nominal joint stiffness, all joints elastic.
+        model: the robot with the nominal stiffness of its springs.
         contact: what it hits.
         motors: what they do during the impact; of several the worst counts.
         horizon: up to which every contact counts [s].
         direction: unit vector of the tip's velocity, base axes.
         speed: of the tip [m/s].
-        lower, upper: bounds on the joint stiffness, length n [N·m/rad].
-        nominal: the joint stiffness to improve on, length n [N·m/rad].
-        groups: of each joint, length n; joints of the same group have the same stiffness.
+        lower, upper: bounds on the stiffness of each spring [N·m/rad].
+        nominal: the stiffness to improve on, of each spring [N·m/rad].
+        groups: of each spring; those of the same group have the same stiffness.
         forces: on the tip, k×3 [N].
         max_deflection: of the springs under each force [m].
         levels: at which a Pareto front is sought, as the file has it.
@@ -136,6 +139,15 @@ class Study:
         return self.model.robot
 
     @property
+    def spring_names(self) -> tuple[str, ...]:
+        """Names of the joints whose spring is sought: all of an arm, unless some are rigid."""
+        return spring_names(self.model)
+
+    def with_springs(self, springs: Array) -> ImpactModel:
+        """Return the robot with springs of some stiffness, one for each [N·m/rad]."""
+        return with_springs(self.model, springs)
+
+    @property
     def deflection(self) -> Deflection:
         """The bound on accuracy."""
         moments = () if self.moments is None else _rows(self.moments)
@@ -166,6 +178,12 @@ class Study:
             for end in ("lower", "upper", "start")
         )
         return Range(tuple(names), lower, upper, start)
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Unit of each of ``range``'s values."""
+        each = [(variable.unit, variable.range(self.model)) for variable in self.variables]
+        return tuple(unit for unit, found in each for _ in found.names)
 
     @property
     def limit(self) -> float:
@@ -238,29 +256,32 @@ def build_study(file: StudyFile, source: Path) -> Study:
     """Return the study that a file describes; raises InvalidValue, which names file and field."""
     robot = robot_of_study(file.robot, source)
     with _naming(source, "stiffness", "lower"):
-        lower, upper, nominal = stiffness_of(robot, file.stiffness)
+        places = sprung_joints(robot, file.stiffness.rigid)
+        names = [robot.joint_names[i] for i in places]
+        lower, upper, nominal = stiffness_of(names, file.stiffness)
     with _naming(source, "robot", "rotor_inertia"):
-        model = _model(robot, file, nominal)
+        model = model_of(robot, file, places, nominal)
         if file.motors.kind != "driven":
-            require_rotors(model.drives, robot.joint_names)
+            require_known_rotors(model)
     with _naming(source, "motors", "kind"):
         motors = study_motors(file.motors, model)
     with _naming(source, "hardware", "joint_stiffness"):
-        groups = joint_groups(robot, file.hardware.joint_stiffness)
+        groups = joint_groups(model, file.hardware.joint_stiffness)
+        require_common_stiffness(model, groups, lower, upper)
     with _naming(source, "impact", "direction"):
         direction = unit_direction(file.impact.direction)
     with _naming(source, "impact", "region"):
         region = body_region(file.impact.region)
     with _naming(source, "poses", "q"):
-        poses = tuple(_pose(robot, pose) for pose in file.poses)
+        poses = tuple(_pose(model, pose) for pose in file.poses)
     with _naming(source, "accuracy", "moments"):
-        moments = moments_of(file.accuracy)
+        moments = moments_of(file.accuracy, model)
     with _naming(source, "hardware", "variables"):
         variables = asked_variables(file.hardware, model)
     with _naming(source, "hardware", "catalogue"):
-        catalogue = catalogue_of(file.hardware.catalogue, robot, groups, lower, upper)
+        catalogue = catalogue_of(file.hardware.catalogue, names, groups, lower, upper)
     with _naming(source, "bounds", "bounds"):
-        bounds = asked_bounds(file.bounds)
+        bounds = asked_bounds(file.bounds, model)
     with _naming(source, "objective", "kind"):
         objective = asked_objective(file.objective)
         require_fit(objective, bounds)
@@ -301,80 +322,17 @@ def build_study(file: StudyFile, source: Path) -> Study:
 
 def robot_of_study(section: RobotSection, source: Path) -> Robot:
     """Load the robot, a chain to its tip; a path is taken relative to the study file."""
-    beside = source.parent / section.model
     with _naming(source, "robot", "model"):
-        model = beside if beside.is_file() else section.model
-        robot = load_robot(model, hold_base=section.hold_base, toward=section.tip)
+        robot = loaded(section, source.parent)
     with _naming(source, "robot", "tip"):
-        tip = section.tip if section.tip is not None else robot.tip
-        if tip is None:
-            raise UnknownName("frame (none is named)", "", robot.frames)
-        chain = _locked(chain_to(robot, tip), section.lock)
-        if chain.n == 0:
-            raise InvalidValue("tip", f"frame '{tip}' is fixed to the base; name one that moves")
+        chain = chain_of(robot, section)
     with _naming(source, "robot", "model"):
-        _require_open(chain)
-        for joint in chain.joints:
-            _require_drive(joint)
+        require_held_joints(chain)
     return chain
 
 
-def _locked(chain: Robot, lock: Mapping[str, float]) -> Robot:
-    for name in lock:
-        if name not in chain.joint_names:
-            raise UnknownName("joint (robot.lock)", name, chain.joint_names)
-    return lock_joints(chain, lock)
-
-
-def _require_open(chain: Robot) -> None:
-    if chain.loops:
-        names = ", ".join(f"'{loop.name}'" for loop in chain.loops)
-        raise InvalidValue(
-            "model",
-            f"'{chain.name}' has joints that are tied together ({names}); a study needs an open "
-            "chain to the tip: hold joints still by robot.lock, or take analyze, simulate, "
-            "program and generate, which follow them",
-        )
-
-
-def _require_drive(joint: Joint) -> None:
-    """A study puts a spring between each joint's motor and its link; the file must not."""
-    if joint.actuated and not joint.stiffness:
-        return
-    fault = "has a spring of its own" if joint.stiffness else "has no motor"
-    raise InvalidValue(
-        "model",
-        f"joint '{joint.name}' {fault}; give the rigid arm, in which every joint has a motor: the "
-        "study adds a spring to each",
-    )
-
-
-def _model(robot: Robot, file: StudyFile, nominal: Array) -> ImpactModel:
-    section, motors = file.robot, file.motors
-    rotors: PerJoint | None
-    if isinstance(section.rotor_inertia, str):
-        rotors = robot.rotor_inertia_set(section.rotor_inertia)
-    else:
-        rotors = section.rotor_inertia
-    gain = section.position_gain if motors.position_gain is None else motors.position_gain
-    built = drives(
-        robot,
-        nominal,
-        rotors,
-        gain,
-        section.computed_torque_gain,
-        damping_gain=motors.damping_gain,
-    )
-    return impact_model(robot, drives=built)
-
-
-def _pose(robot: Robot, section: PoseSection) -> Pose:
-    q = robot.vector(f"{section.name}.q", section.q)
-    lower, upper = robot.limits
-    for name, value, low, high in zip(robot.joint_names, q, lower, upper, strict=True):
-        if not low <= value <= high:
-            raise InvalidValue(
-                f"{section.name}.q",
-                f"{value:g} at joint '{name}' is outside its limits [{low:g}, {high:g}]",
-            )
+def _pose(model: ImpactModel, section: PoseSection) -> Pose:
+    field = f"{section.name}.q"
+    q = posture_of(model, field, section.q)
+    require_within_limits(model.robot, field, q)
     return Pose(section.name, q, section.recovered)

@@ -17,7 +17,7 @@ from softimpact.symbolic import InvalidValue
 
 from .poses import candidates
 from .study import build_study, robot_of_study
-from .study_file import Fault, RobotSection, StudyFile, fault_in_words, read_toml
+from .study_file import Fault, RobotSection, StudyFile, faults_of, read_toml
 from .timing import require_time_steps
 
 ROUNDS = 100
@@ -93,7 +93,7 @@ def _faults(content: dict[str, Any], source: Path) -> list[Fault]:
     try:
         file = StudyFile.model_validate(deepcopy(content))
     except ValidationError as error:
-        return [fault_in_words(dict(fault)) for fault in error.errors()]
+        return faults_of(error)
     try:
         build_study(file, source)
     except InvalidValue as error:

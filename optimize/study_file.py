@@ -16,23 +16,24 @@ from softimpact.robots import built_in_studies
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.errors import did_you_mean
-from softimpact.symbolic.file_section import Finite, NotNegative, Positive, Section, Vector3
+from softimpact.symbolic.file_section import FileSection, Finite, NotNegative, Positive, Vector3
 from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, MotorKind, Reaction
 
 
-class RobotSection(Section):
+class RobotSection(FileSection):
     """Which robot, and its drives."""
 
     model: str
     tip: str | None = None
     hold_base: bool = False
+    floating: bool = False
     lock: dict[str, Finite] = Field(default_factory=dict)
     rotor_inertia: str | Finite | list[Finite] | None = None
     position_gain: Finite | list[Finite] | None = None
     computed_torque_gain: Finite | None = None
 
 
-class ImpactSection(Section):
+class ImpactSection(FileSection):
     """What is hit, how fast and from where."""
 
     region: str
@@ -41,7 +42,7 @@ class ImpactSection(Section):
     speed: Positive
 
 
-class MotorsSection(Section):
+class MotorsSection(FileSection):
     """What the motors do during an impact; without a kind the worse end of {free, driven}."""
 
     kind: MotorKind | None = None
@@ -53,7 +54,7 @@ class MotorsSection(Section):
     horizon: Positive = QUASI_STATIC_FROM
 
 
-class HardwareSection(Section):
+class HardwareSection(FileSection):
     """Which variables of the hardware are sought: joint stiffness, each, equal or in groups.
 
     Other fields are tables of the variables in ``optimize/variables``.
@@ -65,7 +66,7 @@ class HardwareSection(Section):
     catalogue: Annotated[list[Positive], Field(min_length=1)] | None = None
 
 
-class ScenariosSection(Section):
+class ScenariosSection(FileSection):
     """The product of what may happen; what is left out is the study's own."""
 
     poses: Literal["all"] | Annotated[list[str], Field(min_length=1)] = "all"
@@ -77,7 +78,7 @@ class ScenariosSection(Section):
     speeds: Annotated[list[Positive], Field(min_length=1)] | None = None
 
 
-class ScenarioSection(Section):
+class ScenarioSection(FileSection):
     """One of a list of scenarios; what is left out is the study's own."""
 
     pose: str | None = None
@@ -88,15 +89,16 @@ class ScenarioSection(Section):
     speed: Positive | None = None
 
 
-class StiffnessSection(Section):
+class StiffnessSection(FileSection):
     """Bounds on the joint stiffness and the design to improve on [N·m/rad]."""
 
+    rigid: list[str] = Field(default_factory=list)
     lower: Positive | list[Positive]
     upper: Positive | list[Positive]
     nominal: Positive | list[Positive]
 
 
-class AccuracySection(Section):
+class AccuracySection(FileSection):
     """Loads on the tip [N, N·m, kg] and how far [m] the springs may give way under each."""
 
     forces: Annotated[list[Vector3], Field(min_length=1)]
@@ -107,12 +109,19 @@ class AccuracySection(Section):
     margin: Annotated[float, Field(ge=0, lt=1)] = 0.0
 
 
-class ParetoSection(Section):
-    """Between which bounds on the deflection [m], and at how many, a Pareto front is sought."""
+class ParetoSection(FileSection):
+    """What a Pareto front trades, at how many levels of each, and between which ends.
+
+    ``lower`` and ``upper`` are those of the deflection [m].
+    """
 
     points: Annotated[int, Field(ge=2, le=100)] = 11
     lower: Positive | None = None
     upper: Positive | None = None
+    objectives: list[str] | None = None
+    ends: dict[str, Annotated[list[Positive], Field(min_length=2, max_length=2)]] = Field(
+        default_factory=dict
+    )
 
     @model_validator(mode="after")
     def _lower_is_below(self) -> ParetoSection:
@@ -121,14 +130,14 @@ class ParetoSection(Section):
         return self
 
 
-class TaskSection(Section):
+class TaskSection(FileSection):
     """Where the tip is held: where one of the poses has it."""
 
     pose_of: str
     exact: bool = True
 
 
-class PoseSection(Section):
+class PoseSection(FileSection):
     """A candidate configuration."""
 
     name: str
@@ -136,7 +145,7 @@ class PoseSection(Section):
     recovered: bool = False
 
 
-class StudyFile(Section):
+class StudyFile(FileSection):
     """A study file, as written."""
 
     title: str = ""
@@ -201,8 +210,8 @@ def read_toml(source: Path) -> dict[str, Any]:
 
 def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
     """Return the fault that tells most: a name that is not known, before one that is missing."""
-    faults = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
-    place, reason = fault_in_words(dict(faults[0]))
+    faults = faults_of(error)
+    place, reason = faults[0]
     field = ".".join(str(part) for part in place)
     where = f"{source}: {field}" if field else str(source)
     more = f" (and {len(faults) - 1} more; softimpact check lists all)" if faults[1:] else ""
@@ -213,10 +222,38 @@ Fault = tuple[tuple[str | int, ...], str]
 """Where in a study something is wrong, and what."""
 
 
+OTHER_FORM = re.compile(r"_type$|literal_error")
+"""Kinds of faults of a field that has not the form that was tried, which may be one of several."""
+
+
+def faults_of(error: ValidationError) -> list[Fault]:
+    """Return what is wrong, names that are not known first.
+
+    Of a field that may have several forms only what is wrong with the nearest is told.
+    """
+    found = sorted(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+    placed = [(_place_of(fault["loc"]), fault) for fault in found]
+    told: dict[tuple[str | int, ...], str] = {}
+    for place, fault in placed:
+        reason = fault_in_words(dict(fault))
+        nearer = any(
+            other[: len(place)] == place
+            and (len(other) > len(place) or not OTHER_FORM.search(each["type"]))
+            for other, each in placed
+        )
+        if not (OTHER_FORM.search(fault["type"]) and nearer):
+            told.setdefault(*reason)
+    return list(told.items())
+
+
+def _place_of(parts: Sequence[str | int]) -> tuple[str | int, ...]:
+    """Return a place without the forms that pydantic names on the way."""
+    return tuple(part for part in parts if not re.search(r"Section|\[", str(part)))
+
+
 def fault_in_words(fault: Mapping[str, Any]) -> Fault:
     """Words for a field of the wrong form, with the name that may have been meant."""
-    # of a table that may have two forms, pydantic names the form, too
-    place = tuple(part for part in fault["loc"] if not re.search(r"Section|\[", str(part)))
+    place = _place_of(fault["loc"])
     reason = str(fault["msg"]).removeprefix("Value error, ")
     if not place:  # a check of the whole, which names its field itself
         field, _, words = reason.partition(": ")
@@ -225,6 +262,11 @@ def fault_in_words(fault: Mapping[str, Any]) -> Fault:
         reason = f"unknown{did_you_mean(str(place[-1]), _fields_of(place[:-1]))}"
     elif fault["type"] == "missing":
         reason = "is missing"
+    elif fault["type"] == "too_short":
+        least, found = fault["ctx"]["min_length"], fault["ctx"]["actual_length"]
+        reason = f"needs {least}, not {found}"
+        if not found:
+            reason = "is empty; name one at least, or leave the field out"
     return place, reason
 
 

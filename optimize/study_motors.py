@@ -24,7 +24,7 @@ def study_motors(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ..
         InvalidValue: motors that are held, or a servo without gains.
     """
     kind, has_gains = section.kind, model.drives.has_gains
-    if kind == "driven" and (np.array(model.drives.rotors) == 0).any():
+    if kind == "driven" and _unknown_rotors(model):
         return (Motors("driven", inf),)
     if kind is None and has_gains:
         kind = "servo"
@@ -39,3 +39,11 @@ def study_motors(section: MotorsSection, model: ImpactModel) -> tuple[Motors, ..
         refuse_held(motors, "a design")
         check_motors(motors)
     return found
+
+
+def _unknown_rotors(model: ImpactModel) -> bool:
+    """Return whether a motor's rotor is not known: one behind a spring needs an inertia."""
+    drives, actuated = model.drives, np.array(model.robot.actuated)
+    without = (np.array(drives.rotors).ravel() == 0) & np.array(drives.elastic)
+    known = np.array(drives.rotors_known or (True,) * model.robot.n)
+    return bool((actuated & (without | ~known)).any())

@@ -3,17 +3,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from softimpact.symbolic import InvalidValue, Robot
-from softimpact.symbolic.impact.drives import per_joint
+from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.robot import vector_of
 
+from .coordinates import loose
 from .study_file import AccuracySection, StiffnessSection
 
 
-def moments_of(section: AccuracySection) -> Array | None:
+def moments_of(section: AccuracySection, model: ImpactModel) -> Array | None:
     """Return the moments on the tip, one for each force; raises InvalidValue."""
+    if section.sag and loose(model):
+        raise InvalidValue(
+            "sag",
+            "of a floating robot depends on what it stands on; hold the base, or leave it out",
+        )
     given = section.moments
     if given is None:
         return None
@@ -23,7 +31,11 @@ def moments_of(section: AccuracySection) -> Array | None:
 
 
 def catalogue_of(
-    given: list[float] | None, robot: Robot, groups: tuple[int, ...], lower: Array, upper: Array
+    given: list[float] | None,
+    names: Sequence[str],
+    groups: tuple[int, ...],
+    lower: Array,
+    upper: Array,
 ) -> tuple[float, ...]:
     """Return the stiffnesses that can be bought, rising; each group must have one in its range.
 
@@ -34,19 +46,26 @@ def catalogue_of(
         joints = [i for i, g in enumerate(groups) if g == group]
         low, high = lower[joints].max(), upper[joints].min()
         if not any(low <= entry <= high for entry in entries):
-            names = ", ".join(robot.joint_names[i] for i in joints)
+            of = ", ".join(names[i] for i in joints)
             raise InvalidValue(
-                "catalogue", f"has no entry from {low:g} to {high:g} N·m/rad, the range of {names}"
+                "catalogue", f"has no entry from {low:g} to {high:g} N·m/rad, the range of {of}"
             )
     return entries
 
 
-def stiffness_of(robot: Robot, section: StiffnessSection) -> tuple[Array, Array, Array]:
-    """Return lower and upper bounds and the nominal stiffness, length n each."""
-    lower = per_joint(robot, "lower", section.lower)
-    upper = per_joint(robot, "upper", section.upper)
-    nominal = per_joint(robot, "nominal", section.nominal)
-    for joint, low, high, value in zip(robot.joint_names, lower, upper, nominal, strict=True):
+def stiffness_of(names: Sequence[str], section: StiffnessSection) -> tuple[Array, Array, Array]:
+    """Return lower and upper bounds and the nominal stiffness, one for each spring.
+
+    Args:
+        names: of the joints that have one.
+        section: as written: one number for all, or one for each.
+    """
+    lower, upper, nominal = (
+        vector_of(names, field, [value] * len(names) if isinstance(value, float | int) else value)
+        for field, value in vars(section).items()
+        if field != "rigid"
+    )
+    for joint, low, high, value in zip(names, lower, upper, nominal, strict=True):
         if low > high:
             raise InvalidValue(
                 "lower", f"lower bound {low:g} is above the upper {high:g} at joint '{joint}'"

@@ -9,14 +9,22 @@ from softimpact.symbolic import ImpactModel, InvalidValue
 
 from . import bounds, objectives, variables
 from .bounds import Bound, Deflection
+from .bounds.torque import Torque
+from .coordinates import is_plain, loose
 from .members import built, kinds_in
 from .objectives import Objective, WorstForce
 from .study_file import HardwareSection
 from .variables import JointStiffness, Variable
+from .variables.cover import Cover
 
 
-def asked_bounds(tables: dict[str, Any]) -> tuple[Bound, ...]:
+def asked_bounds(tables: dict[str, Any], model: ImpactModel) -> tuple[Bound, ...]:
     """Return the bounds of ``[bounds]``; raises InvalidValue."""
+    if Torque.kind in tables and loose(model):
+        raise InvalidValue(
+            Torque.kind,
+            "of a floating robot depends on what it stands on; hold the base, or leave it out",
+        )
     kinds = kinds_in(bounds, Bound)
     kinds = {kind: found for kind, found in kinds.items() if found is not Deflection}
     found = tuple(built(kinds, "bound", kind, fields) for kind, fields in tables.items())
@@ -34,6 +42,10 @@ def asked_variables(section: HardwareSection, model: ImpactModel) -> tuple[Varia
     kinds = {kind: found for kind, found in kinds.items() if found is not JointStiffness}
     found = []
     for kind, fields in (section.model_extra or {}).items():
+        if kind != Cover.kind and kind in kinds and not is_plain(model):
+            raise InvalidValue(
+                kind, "is for arms in which each joint has a motor with a spring; take springs"
+            )
         variable = built(kinds, "variable", kind, fields)
         try:
             variable.range(model)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,15 +45,24 @@ def scenarios_of(study: Study) -> Scenarios:
     return found
 
 
+def contacts_of(study: Study) -> tuple[Contact, ...]:
+    """Return what a study's robot may hit; raises UnknownName for a region."""
+    asked, own = study.scenarios, study.contact.region.name
+    if isinstance(asked, tuple):
+        names = [one.region or own for one in asked]
+    else:
+        names = (asked.regions if asked else None) or [own]
+    return tuple(_contact(study, name) for name in dict.fromkeys(names))
+
+
 def _product(study: Study, asked: ScenariosSection | None) -> Scenarios:
     asked = asked or ScenariosSection()
     names = None if asked.poses == "all" else asked.poses
-    regions = asked.regions or [study.contact.region.name]
     return Scenarios(
         poses=_poses(study, names),
         points=tuple(_point(study, name) for name in asked.points or [study.model.tip]),
         directions=_directions(asked.directions or [study.direction.tolist()]),
-        contacts=tuple(_contact(study, name) for name in regions),
+        contacts=contacts_of(replace(study, scenarios=asked)),
         payloads=tuple(asked.payloads or [0.0]),
         speeds=tuple(asked.speeds or [study.speed]),
         motors=study.motors,

@@ -11,11 +11,23 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix, frame_pose
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import closure, equations
+
 HALF_TURN = 1e-12
 """Keeps the pose error of a tip turned by exactly half a turn finite, and from vanishing there."""
 
 POSE = 6
 """Equations that a pose of the tip stands for; an arm of fewer joints has no posture to choose."""
+
+
+def posture_error(model: ImpactModel, q: Matrix, position: Matrix, rotation: Matrix) -> Matrix:
+    """Return by how far a posture misses a pose of the tip, and closed loops: all to be zero."""
+    return ca.vertcat(tip_pose_error(model, q, position, rotation), closure(model, q))
+
+
+def posture_equations(model: ImpactModel) -> int:
+    """Return how many numbers ``posture_error`` has."""
+    return POSE + equations(model)
 
 
 def tip_pose_error(model: ImpactModel, q: Matrix, position: Matrix, rotation: Matrix) -> Matrix:

@@ -21,7 +21,7 @@ Result = TypeVar("Result")
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, how much of it is done, and how much there is."""
 
-AWAKE = 0.5
+LONGEST_WAIT = 0.5
 """Time [s] that is waited without a look at whether Ctrl-C was pressed."""
 
 
@@ -90,7 +90,7 @@ def as_completed(jobs: Iterable[Future[Result]]) -> Iterator[Future[Result]]:
     waiting = set(jobs)
     while waiting:
         try:
-            for job in futures.as_completed(waiting, timeout=AWAKE):
+            for job in futures.as_completed(waiting, timeout=LONGEST_WAIT):
                 waiting.remove(job)
                 yield job
         except TimeoutError:

@@ -22,10 +22,10 @@ CORRECTIONS = 25
 HELD = 1e-8
 """Error [m, rad] up to which a place is reached."""
 
-SOFT = 1e-4
+NEWTON_DAMPING = 1e-4
 """Damping of Newton's steps [m, rad], so that they stay small where an arm is nearly stretched."""
 
-MOST = 40_000
+MOST_PLACES = 40_000
 """Places of a plane at most."""
 
 Hold = Literal["pose", "position"]
@@ -97,8 +97,10 @@ def postures_in_plane(
             found[at] = posture
             apart = float(np.linalg.norm(posture - found[i, j]))
             heapq.heappush(border, (way + apart, at))
-            if len(found) > MOST:
-                raise InvalidValue("step", f"makes more than {MOST} places; take a larger one")
+            if len(found) > MOST_PLACES:
+                raise InvalidValue(
+                    "step", f"makes more than {MOST_PLACES} places; take a larger one"
+                )
     return _plane(found, start, axes, step)
 
 
@@ -118,7 +120,7 @@ def _solver(
             e, J = np.array(values).ravel(), np.array(slope)
             if abs(e).max() < HELD:
                 return q
-            inertia = J @ J.T + SOFT**2 * np.eye(len(e))
+            inertia = J @ J.T + NEWTON_DAMPING**2 * np.eye(len(e))
             q = np.clip(q - J.T @ np.linalg.solve(inertia, e), lower, upper)
         return None
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -19,6 +20,10 @@ GENERATOR = "softimpact reproduce"
 
 GIAF_FOLDER = "giaf"
 """Where in the results the second paper's page and figures are."""
+
+
+WIDE = 40
+"""Columns of a quantity's name, so that 80 hold the table."""
 
 
 class Paper(StrEnum):
@@ -152,19 +157,29 @@ def _print(record: dict[str, Any], out: Path) -> None:
     if "comparisons" in record:
         _print_verdicts("Printed numbers of MSM", record["verdicts"])
         others = [x for x in record["comparisons"] if x.verdict not in ("agrees", "input")]
-        print_table(
-            "Where they differ",
-            ("quantity", "scenario", "unit", "printed", "ours", "verdict"),
-            [(x.what, x.scenario, x.unit, x.printed, x.ours, x.verdict) for x in others],
-        )
+        for verdict in dict.fromkeys(x.verdict for x in others):
+            print_table(
+                f"Where they differ: {verdict}",
+                ("quantity", "scenario", "unit", "printed", "ours"),
+                [
+                    (fill(x.what, WIDE), x.scenario, x.unit, x.printed, x.ours)
+                    for x in others
+                    if x.verdict == verdict
+                ],
+            )
     if "giaf" in record:
         _print_verdicts("Statements of GIAF", record["giaf"]["verdicts"])
         others = [line for line in record["giaf"]["statements"] if line.verdict != "holds"]
-        print_table(
-            "Which do not hold",
-            ("source", "statement", "tip", "rotors", "ours", "verdict"),
-            [(x.source, x.claim, x.tip, x.rotors, x.ours, x.verdict) for x in others],
-        )
+        for said in dict.fromkeys((x.source, x.claim, x.verdict) for x in others):
+            print_table(
+                f"{said[0]}: {said[1]}: {said[2]}",
+                ("tip", "rotors", "ours"),
+                [
+                    (x.tip, x.rotors, x.ours)
+                    for x in others
+                    if (x.source, x.claim, x.verdict) == said
+                ],
+            )
     say(f"\nReports, figures and numbers: {out}")
 
 

@@ -5,8 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from softimpact.optimize import Study
 from softimpact.optimize.answers import Price, by_name
+from softimpact.optimize.units import figure_in_words
 from softimpact.symbolic.robot.rigid import Array
 
 
@@ -18,11 +21,19 @@ def answers_in_words(study: Study, ranges: Array, prices: Sequence[Price]) -> It
         ranges: of each value of the hardware.
         prices: of bounds.
     """
-    joints, named = study.robot.joint_names, by_name(study, ranges)
-    springs = ", ".join(f"{name} {named[name][0]:.0f}–{named[name][1]:.0f}" for name in joints)
-    yield f"costs less than 0.5 %, one at a time: {springs} N·m/rad"
-    others = [f"{k} {low:.4g}–{high:.4g}" for k, (low, high) in named.items() if k not in joints]
+    joints, named = study.spring_names, by_name(study, ranges)
+    sought = [joints[i] for i in np.flatnonzero(study.lower < study.upper)]
+    springs = ", ".join(f"{name} {named[name][0]:.0f}–{named[name][1]:.0f}" for name in sought)
+    if springs:
+        yield f"costs less than 0.5 %, one at a time: {springs} N·m/rad"
+    units = dict(zip(study.range.names, study.units, strict=True))
+    others = [
+        f"{name} {low:.4g}–{figure_in_words(high, units[name])}"
+        for name, (low, high) in named.items()
+        if name not in joints
+    ]
     if others:
-        yield f"the same of the rest: {', '.join(others)}"
+        words = "the same of the rest" if springs else "costs less than 0.5 %, one at a time"
+        yield f"{words}: {', '.join(others)}"
     for price in prices:
         yield f"{price.bound}: {price.room} buys {price.gain:.2g} {price.unit}"

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import casadi as ca
-
 from softimpact.optimize import Outcome, Study
 from softimpact.simulate import (
     Approach,
@@ -54,7 +52,7 @@ def simulated(
 
     Of what the motors may do, the one of the largest peak counts.
     """
-    model = study.model.with_springs(ca.DM(springs))
+    model = study.with_springs(springs)
     approach = Approach(q, study.direction, study.speed)
     lumped = fidelity in ("one_mass", "two_mass")
     found = [
@@ -68,7 +66,7 @@ def simulated(
 
 def safe_speed(study: Study, q: Array, springs: Array) -> float:
     """Return the speed [m/s] up to which peaks keep the limit, whatever the motors may do."""
-    model = study.model.with_springs(ca.DM(springs))
+    model = study.with_springs(springs)
     approach = Approach(q, study.direction, study.speed)
     limit = force_limits(limits_of(study.contact.region, study.contact.clamped))
     return min(
@@ -86,8 +84,8 @@ free motors."""
 
 def peaks_by_reaction(study: Study, q: Array, springs: Array) -> dict[float, float]:
     """Return the largest force [N] for each of ``REACTIONS``, whatever the study's motors do."""
-    drives = study.model.drives.without_gains()
-    model = study.model.with_drives(drives).with_springs(ca.DM(springs))
+    model = study.with_springs(springs)
+    model = model.with_drives(model.drives.without_gains())
     approach = Approach(q, study.direction, study.speed)
     forces = {}
     for time in REACTIONS:
@@ -101,7 +99,7 @@ def peaks_by_reaction(study: Study, q: Array, springs: Array) -> dict[float, flo
 
 def peak_band(study: Study, q: Array, springs: Array) -> Band:
     """Return where the largest force [N] lies in 95 of 100 cases, for what is not known exactly."""
-    model = study.model.with_springs(ca.DM(springs))
+    model = study.with_springs(springs)
     limits = limits_of(study.contact.region, study.contact.clamped)
     approach = Approach(q, study.direction, study.speed)
     motors = study.motors

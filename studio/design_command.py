@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from softimpact.optimize import Design, Study
     from softimpact.optimize.execution import Execution
     from softimpact.optimize.solve import Mode
+    from softimpact.symbolic import ImpactModel
 
     from .design_report import DesignReport
 
@@ -50,7 +51,7 @@ def design(
     from softimpact.optimize.execution import Execution
 
     from .design_report import GENERATOR, design_record, design_report
-    from .output import failures_as_json, print_json
+    from .output import failures_as_json, print_json, print_warnings
     from .results_folder import (
         replaced_folder,
         require_folder_of,
@@ -82,6 +83,7 @@ def design(
         from .report.design_pages import write_design_report
 
         write_design_report(report, page)
+    print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})
     else:
@@ -90,13 +92,12 @@ def design(
 
 def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json: bool) -> None:
     """Design one machine for all scenarios."""
-    from softimpact.codegen import generate_package
     from softimpact.optimize.robust import robust_design
     from softimpact.optimize.study_file import ScenariosSection
     from softimpact.optimize.study_scenarios import scenarios_of
 
     from .design_report import GENERATOR
-    from .output import failures_as_json, print_json, say, write_json
+    from .output import failures_as_json, print_json, print_warnings, say, write_json
     from .progress import optimiser_bar
     from .results_folder import RESULTS, replaced_folder, running
     from .robust_report import designed_model, robust_in_words, robust_record
@@ -113,12 +114,12 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
         record = robust_record(found)
         with replaced_folder(folder, GENERATOR) as fresh:
             write_json(fresh / RESULTS, record)
-            model = designed_model(found)
-            generate_package(model.robot, fresh / "c", drives=model.drives)
+            _write_package(designed_model(found), fresh)
     if page is not None:
         from .report.design_pages import write_robust_report
 
         write_robust_report(found, page)
+    print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})
         return
@@ -158,16 +159,24 @@ def _search(study: Study, modes: tuple[Mode, ...], pool: Executor) -> Design:
 
 
 def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:
-    from softimpact.codegen import generate_package
-
     from .figures import draw_figures
     from .output import write_json
     from .results_folder import RESULTS
 
     write_json(folder / RESULTS, record)
     draw_figures(report, folder)
-    model = report.study.model.with_springs(report.design.winner.springs)
-    generate_package(model.robot, folder / "c", drives=model.drives)
+    _write_package(report.study.with_springs(report.design.winner.springs), folder)
+
+
+def _write_package(model: ImpactModel, folder: Path) -> None:
+    """Write the C of what was designed; that of a floating robot has its base held, and heavier."""
+    from softimpact.codegen import generate_package
+    from softimpact.symbolic.impact.floating import base_held, is_floating
+
+    floating = is_floating(model.robot)
+    if floating:
+        model = base_held(model)
+    generate_package(model.robot, folder / "c", drives=model.drives, floating=floating)
 
 
 def _print(report: DesignReport, folder: Path) -> None:

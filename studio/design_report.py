@@ -21,6 +21,7 @@ from softimpact.simulate.bracket import unknown_rotors
 from softimpact.symbolic import Analysis, analyse
 from softimpact.symbolic.robot.rigid import Array
 
+from .cautions import study_warnings
 from .checks import Check, peak_band, peaks_by_reaction, safe_speed, simulated
 
 Limited = Literal["transient", "quasi_static"]
@@ -170,6 +171,7 @@ def design_record(report: DesignReport) -> dict[str, Any]:
         "band": report.band,
         "reactions": {"before": report.reactions_before, "after": report.reactions_after},
         "peak_definition": "peak",
+        "warnings": study_warnings(study),
         "poses": [_pose(pose, study.max_deflection) for pose in report.poses],
     }
 
@@ -201,6 +203,7 @@ def inputs(study: Study) -> dict[str, Any]:
         "robot": study.robot.name,
         "robot_digest": study.robot.digest(),
         "joints": study.robot.joint_names,
+        "joints_with_springs": study.spring_names,
         "tip": study.model.tip,
         "rotor_inertia": np.array(study.model.drives.rotors).ravel(),
         "direction": study.direction,

@@ -10,16 +10,22 @@ import numpy as np
 
 from softimpact.simulate.history import HORIZON
 from softimpact.symbolic import (
+    InvalidValue,
+    Loop,
+    LoopError,
     Robot,
     SingularDirection,
     approach_velocity,
     arm_of,
-    contact_point_jacobian,
+    close_loops,
     drives,
     impact_model,
     load_robot,
 )
+from softimpact.symbolic.loops.couplings import whole_configuration
+from softimpact.symbolic.loops.loops import closed_chain
 from softimpact.symbolic.robot.loading import model_path
+from softimpact.symbolic.robot.plausibility import outside
 from softimpact.symbolic.robot.rigid import Array
 
 POSES_TRIED = 200
@@ -56,9 +62,9 @@ speed = 0.5  # TODO: of the tip, m/s
 {motors}
 
 [stiffness]  # of the joints' springs, N·m/rad: one number, or one for each of {joints}
-lower = {lower:g}
-upper = {upper:g}
-nominal = {nominal:g}  # TODO: of the springs that the robot has now
+{rigid}lower = {lower}
+upper = {upper}
+nominal = {nominal}  # TODO: of the springs that the robot has now
 
 [accuracy]  # how far the tip may give way
 forces = [[30.0, 0.0, 0.0], [0.0, 30.0, 0.0], [0.0, 0.0, 30.0]]  # N, base axes
@@ -68,7 +74,8 @@ max_deflection = 0.001  # TODO: m
 pose_of = "first"  # the tip is held where this pose has it
 exact = true
 
-# Candidate postures, rad and m. TODO: those of your task; limits are
+# Candidate postures, rad and m{angles}.
+# TODO: those of your task; limits are
 {limits}
 [[poses]]
 name = "first"
@@ -89,6 +96,7 @@ def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
     robot = load_robot(model, toward=tip)
     arm = arm_of(robot, tip, tip)
     q, direction = first_posture(arm.robot)
+    looped = _has_loops(arm.robot)
     path = model_path(model)
     name = model if path.name != Path(model).name else str(path.resolve())
     others = [frame for frame in robot.frames if frame != arm.robot.tip]
@@ -100,37 +108,84 @@ def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
         rotors=_rotors(arm.robot),
         direction=list(direction),
         motors=_motors(arm.robot),
-        joints=", ".join(arm.robot.joint_names),
-        lower=NOMINAL / 50,
-        upper=_upper(arm.robot, q, direction),
-        nominal=NOMINAL,
+        angles=", of the motors alone: loops close, and springs are unbent" if looped else "",
+        **_springs(arm.robot, q, direction),
         limits="".join(
             f"#   {joint.name}: {joint.lower:g} to {joint.upper:g}\n" for joint in arm.robot.joints
         ),
-        q=[round(float(x), 3) for x in q],
+        q=[round(float(q[i]), 3) for i in _entries(arm.robot)],
     )
-    return text, [*arm.robot.warnings, *arm.warnings, *_tied(arm.robot)]
+    return text, [*arm.robot.warnings, *arm.warnings, *_not_held(arm.robot)]
 
 
-def _tied(robot: Robot) -> list[str]:
+def _not_held(robot: Robot) -> list[str]:
     """Say what a study does not take, before somebody fills it in."""
-    if not robot.loops:
-        return []
-    names = ", ".join(f"'{loop.name}'" for loop in robot.loops)
-    return [
-        f"the arm has joints that are tied together ({names}), which studies do not follow: hold "
-        "some still by robot.lock"
+    from softimpact.optimize.study_robot import require_held_joints
+
+    try:
+        require_held_joints(robot)
+    except InvalidValue as error:
+        return [error.reason]
+    return []
+
+
+def _has_loops(robot: Robot) -> bool:
+    return any(isinstance(loop, Loop) for loop in robot.loops)
+
+
+def _entries(robot: Robot) -> list[int]:
+    """Return the joints that a pose of a study names."""
+    if _has_loops(robot):
+        return [i for i in closed_chain(robot).independent if robot.actuated[i]]
+    return [i for i, name in enumerate(robot.joint_names) if name not in robot.followers]
+
+
+def _springs(robot: Robot, q: Array, direction: tuple[float, ...]) -> dict[str, str]:
+    """Return what a study says of the springs; those of a file's passive joints are its own.
+
+    Motors whose rotors are nothing, as a file may state, have no spring.
+    """
+    from softimpact.optimize.study_robot import sprung_joints
+
+    direct = [
+        joint.name
+        for joint in robot.joints
+        if joint.actuated and robot.rotors_stated and not joint.armature
     ]
+    try:
+        places = sprung_joints(robot, direct)
+    except InvalidValue:  # no joint is left
+        places, direct = sprung_joints(robot, []), []
+    own = np.array([robot.joints[i].stiffness for i in places])
+    nominal = np.where(own > 0, own, NOMINAL)
+    upper = np.where(own > 0, 10 * own, _upper(robot, q, direction, places))
+
+    def shown(values: Array) -> str:
+        rounded = [f"{value:.12g}" for value in values]
+        return rounded[0] if len(set(rounded)) == 1 else f"[{', '.join(rounded)}]"
+
+    return {
+        "joints": ", ".join(robot.joint_names[i] for i in places),
+        "rigid": f"rigid = {json.dumps(direct)}  # their motors drive directly\n" if direct else "",
+        "lower": shown(nominal / 50),
+        "upper": shown(upper),
+        "nominal": shown(nominal),
+    }
 
 
-def _upper(robot: Robot, q: Array, direction: tuple[float, ...]) -> float:
+def _upper(robot: Robot, q: Array, direction: tuple[float, ...], places: tuple[int, ...]) -> float:
     """Return springs as stiff as ten times the nominal ones, or as a design can bear."""
     from softimpact.optimize.timing import stiffest_in_time
 
+    behind = [i for i in places if robot.actuated[i]]
+    if not behind:
+        return 10 * NOMINAL
     sets = [np.array(values) for values in robot.rotor_inertia_sets.values()]
     lightest = np.min(sets, axis=0) if sets else np.full(robot.n, ROTOR)
     rotors = np.where(robot.armature > 0, robot.armature, lightest)
-    model = impact_model(robot, drives=drives(robot, NOMINAL, rotors))
+    stiffness = np.full(robot.n, np.inf)
+    stiffness[behind] = NOMINAL
+    model = impact_model(robot, drives=drives(robot, stiffness, rotors))
     most = MARGIN * stiffest_in_time(model, q, np.array(direction), HORIZON)
     return float(f"{min(10 * NOMINAL, most):.1e}")
 
@@ -149,10 +204,10 @@ def _rotors(robot: Robot) -> str:
         lines += [
             f"# TODO: the model has no rotor inertia of {', '.join(unknown)};",
             "# give it, reflected to the joints, kg m²:",
-            f"# rotor_inertia = {[ROTOR] * robot.n}",
+            f"# rotor_inertia = {[ROTOR] * sum(robot.actuated)}",
         ]
     else:
-        shown = ", ".join(f"{joint.armature:g}" for joint in robot.joints)
+        shown = ", ".join(f"{joint.armature:g}" for joint in robot.joints if joint.actuated)
         lines.append(f"# rotor inertias of the model, kg m²: {shown}")
     if robot.rotor_inertia_sets:
         sets = ", ".join(f'"{name}"' for name in robot.rotor_inertia_sets)
@@ -181,8 +236,11 @@ def first_posture(robot: Robot) -> tuple[Array, tuple[float, ...]]:
     model = impact_model(robot)
     best: tuple[float, Array, tuple[float, ...]] | None = None
     for _ in range(POSES_TRIED):
-        q = (middle + 0.6 * room * random.uniform(-1, 1, robot.n)).round(3)
-        J = np.array(contact_point_jacobian(robot, str(robot.tip), q))
+        tried = (middle + 0.6 * room * random.uniform(-1, 1, robot.n)).round(3)
+        q = _closed(robot, tried)
+        if q is None:
+            continue
+        J = np.array(model.jacobian(q))
         for direction in DIRECTIONS:
             try:
                 approach_velocity(model, q, direction)
@@ -195,3 +253,25 @@ def first_posture(robot: Robot) -> tuple[Array, tuple[float, ...]]:
             if best is None or score > best[0]:
                 best = (score, q, direction)
     return (middle, DIRECTIONS[0]) if best is None else best[1:]
+
+
+NEAR_HOME = 0.3
+"""How far from home motors of a chain with loops are tried, which closes there [rad, m]."""
+
+
+def _closed(robot: Robot, tried: Array) -> Array | None:
+    """Return a configuration that keeps loops and couplings; None where there is none nearby."""
+    if not robot.loops:
+        return tried
+    chain = closed_chain(robot)
+    if not _has_loops(robot):
+        own = [i for i, name in enumerate(robot.joint_names) if name not in robot.followers]
+        q = whole_configuration(robot, tried[own])
+        return q if not any(outside(j, x) for j, x in zip(robot.joints, q, strict=True)) else None
+    start = np.array([joint.spring_reference for joint in robot.joints])
+    motors = [i for i in chain.independent if robot.actuated[i]]
+    start[motors] = (chain.home + NEAR_HOME * np.sin(tried))[motors].round(3)
+    try:
+        return close_loops(robot, start[list(chain.independent)])
+    except LoopError:
+        return None

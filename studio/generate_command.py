@@ -13,7 +13,7 @@ from . import options as o
 
 if TYPE_CHECKING:
     from softimpact.codegen import Manifest, Payload
-    from softimpact.symbolic import Robot
+    from softimpact.symbolic import Contact, Robot
 
 RealOption = Annotated[str, typer.Option(metavar="TYPE", help="Number type: float or double.")]
 NameOption = Annotated[
@@ -96,6 +96,14 @@ def generate(
             "may be repeated.",
         ),
     ] = None,
+    contact: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=BODY[+COVER]",
+            help="Body to build in beside the standard's regions: a region, area, device or body "
+            "file, behind a pad or cover file; may be repeated.",
+        ),
+    ] = None,
     json: o.JsonOption = False,
 ) -> None:
     """Write a C99 package; the drives given are the defaults of its parameters."""
@@ -116,7 +124,7 @@ def generate(
     )
     from .values import one_of
 
-    number: Real = one_of("number type", real, RealOption)
+    number: Real = one_of("number type", real, Real)
     if floating and hold_base:
         raise InvalidValue("hold_base", "excludes floating; give one of them")
     typed = TypedArm(model, tip, end=end, lock=lock, hold_base=hold_base)
@@ -138,6 +146,7 @@ def generate(
         freeze=[] if freeze is None else [name.strip() for name in freeze.split(",")],
         poses=pose_table(poses, robot) if poses else None,
         points=_points(point or []),
+        contacts=_contacts(contact or []),
         compiler=_compiler(),
     )
     if robot.n >= MANY_JOINTS:
@@ -195,14 +204,36 @@ def _points(given: list[str]) -> dict[str, str]:
     return points
 
 
+def _contacts(given: list[str]) -> dict[str, Contact]:
+    """Read NAME=BODY[+COVER]; a name given twice is one too many."""
+    from softimpact.symbolic import Contact, InvalidValue, body_region
+    from softimpact.symbolic.body.bodies import BODIES
+    from softimpact.symbolic.body.body_file import load_body, load_cover
+
+    contacts: dict[str, Contact] = {}
+    for text in given:
+        name, equals, what = text.partition("=")
+        body, plus, cover = what.partition("+")
+        if not equals or not body or (plus and not cover) or name in contacts:
+            raise InvalidValue("contact", f"needs NAME=BODY[+COVER], each name once, not '{text}'")
+        is_file = body not in BODIES and Path(body).suffix
+        region = load_body(body) if is_file else body_region(body)
+        contacts[name] = Contact(region, cover=load_cover(cover) if cover else None)
+    return contacts
+
+
 def _left_out(robot: Robot) -> list[str]:
     """Return what of the robot impacts in C leave out although it counts."""
-    damped = [joint.name for joint in robot.joints if joint.damping > 0]
+    from softimpact.symbolic import closed_chain
+
+    following = closed_chain(robot).dependent
+    damped = [robot.joints[i].name for i in following if robot.joints[i].damping > 0]
     if not damped:
         return []
     return [
-        f"impacts in C leave out the damping of {', '.join(damped)}: with 1 to 50 N·m·s/rad in "
-        "the joints peaks were 3 % lower to 5 % higher, so keep 5 % of the limits free"
+        f"impacts in C leave out the damping of {', '.join(damped)}, which follow from other "
+        "joints: with 1 to 50 N·m·s/rad in the joints peaks were 3 % lower to 5 % higher, so keep "
+        "5 % of the limits free"
     ]
 
 

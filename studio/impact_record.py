@@ -13,6 +13,7 @@ from softimpact.simulate.tolerances import Tolerances
 from softimpact.symbolic.body.regions import NEWTON_PER_CM2
 from softimpact.symbolic.body.shapes import shape_from
 
+from .cautions import not_permitted
 from .impact import Answer, controller_of
 from .output import print_table
 
@@ -129,6 +130,7 @@ def warnings_of(answer: Answer) -> list[str]:
     return [
         *answer.scene.warnings,
         *found.warnings,
+        *not_permitted([answer.contact.region]),
         *_cautions(found),
         *(beyond if peak > reach else []),
     ]
@@ -136,8 +138,6 @@ def warnings_of(answer: Answer) -> list[str]:
 
 def _cautions(found: Assessment) -> Iterator[str]:
     """Yield what a reader must know before using the numbers."""
-    if found.verdict.ruling == "not permitted":
-        yield "contact with this region is not to be designed for; its limits are for reference"
     for names, words in (
         (found.joint_speed_limit_exceeded, "faster than their speed limits"),
         (found.torque_limit_exceeded, "asked for more torque than they have (the model gives it)"),

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from softimpact.optimize import Front, ParetoPoint
+from softimpact.optimize.answers import by_name
 
+from .cautions import study_warnings
 from .design_report import inputs, limit_kind, versions
-from .pareto_report import FRONTS, CheckedPoint, ParetoReport
+from .pareto_report import FRONTS, CheckedFrontPoint, ParetoReport, price_of_deflection
 
 GENERATOR = "softimpact pareto"
 """Marks a folder of results as one that may be replaced."""
@@ -27,6 +29,7 @@ def pareto_record(report: ParetoReport) -> dict[str, Any]:
         "limit": report.limit,
         "limit_kind": limit_kind(study),
         "peak_definition": "peak",
+        "warnings": study_warnings(study),
         "accuracy": "largest deflection of the tip by the springs under the study's forces [m]",
         "solver": {
             "compiled": pareto.compiled,
@@ -75,12 +78,15 @@ def _point(point: ParetoPoint) -> dict[str, Any]:
     }
 
 
-def _checked(checked: CheckedPoint, report: ParetoReport) -> dict[str, Any]:
+def _checked(checked: CheckedFrontPoint, report: ParetoReport) -> dict[str, Any]:
+    meaning = checked.point.meaning
     return {
         **_point(checked.point),
         "meets_limit": checked.point.force <= report.limit,
         "safe_speed": checked.safe_speed,
         "check": vars(checked.check),
+        "prices": [] if meaning is None else meaning.prices,
+        "indifferent": {} if meaning is None else by_name(report.study, meaning.indifferent),
     }
 
 
@@ -100,10 +106,10 @@ def _unsolved(front: Front, report: ParetoReport) -> list[dict[str, Any]]:
 
 def write_table(report: ParetoReport, path: Path) -> None:
     """Write the fronts as CSV, a row a point, in SI units."""
-    joints = report.study.robot.joint_names
+    joints, springs = report.study.robot.joint_names, report.study.spring_names
     header = ["front", "bound_m", "deflection_m", "force_N", "safe_speed_m_per_s", "meets_limit"]
-    header += ["knee", "linearised_N", "full_N", "status", "mode", "start"]
-    header += [f"k_s_{joint}" for joint in joints] + [f"q_{joint}" for joint in joints]
+    header += ["knee", "a_tenth_more_buys_N", "linearised_N", "full_N", "status", "mode", "start"]
+    header += [f"k_s_{joint}" for joint in springs] + [f"q_{joint}" for joint in joints]
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(header)
@@ -113,12 +119,13 @@ def write_table(report: ParetoReport, path: Path) -> None:
                 table.writerow([name, *_row(checked, report, is_knee)])
 
 
-def _row(checked: CheckedPoint, report: ParetoReport, is_knee: str) -> list[object]:
+def _row(checked: CheckedFrontPoint, report: ParetoReport, is_knee: str) -> list[object]:
     point, outcome = checked.point, checked.point.outcome
     return [
         *(point.bound, point.deflection, point.force, checked.safe_speed),
         str(point.force <= report.limit).lower(),
         is_knee,
+        price_of_deflection(point),
         *(checked.check.linearised, checked.check.full),
         *(outcome.status, outcome.mode, outcome.name),
         *map(float, outcome.springs),

@@ -16,7 +16,7 @@ FRONTS = ("free", "given", "task")
 
 
 @dataclass(frozen=True, eq=False)
-class CheckedPoint:
+class CheckedFrontPoint:
     """A design on a front.
 
     Attributes:
@@ -41,7 +41,7 @@ class ParetoReport:
     """
 
     pareto: Pareto
-    fronts: dict[str, tuple[CheckedPoint, ...]]
+    fronts: dict[str, tuple[CheckedFrontPoint, ...]]
     reference_speed: float
 
     @property
@@ -58,14 +58,20 @@ class ParetoReport:
         """Return the number of a front's knee, None where it has none."""
         return knee([checked.point for checked in self.fronts[front]])
 
-    def at(self, front: str, level: float) -> CheckedPoint | None:
+    def at(self, front: str, level: float) -> CheckedFrontPoint | None:
         """Return the point that was sought with a bound [m], None if another beats it."""
         return next((p for p in self.fronts[front] if p.point.bound == level), None)
 
-    def within(self, front: str, deflection: float) -> CheckedPoint | None:
+    def within(self, front: str, deflection: float) -> CheckedFrontPoint | None:
         """Return the point of least force that gives way by no more than a deflection [m]."""
         kept = [p for p in self.fronts[front] if p.point.deflection <= deflection * (1 + 1e-5)]
         return kept[-1] if kept else None
+
+
+def price_of_deflection(point: ParetoPoint) -> float:
+    """Return what a tenth more of the bound on the deflection buys [N]; zero where none binds."""
+    prices = () if point.meaning is None else point.meaning.prices
+    return sum(p.gain for p in prices if p.bound == "accuracy.max_deflection")
 
 
 def pareto_report(pareto: Pareto, on_progress: Progress) -> ParetoReport:
@@ -77,13 +83,13 @@ def pareto_report(pareto: Pareto, on_progress: Progress) -> ParetoReport:
     }
     study, done = pareto.study, 0
     total = sum(len(front.points) for front in fronts.values())
-    found: dict[str, tuple[CheckedPoint, ...]] = {}
+    found: dict[str, tuple[CheckedFrontPoint, ...]] = {}
     for name, front in fronts.items():
         points = []
         for point in front.points:
             on_progress("simulation of each point", done, total)
             speed = safe_speed(study, point.outcome.q, point.outcome.springs)
-            points.append(CheckedPoint(point, checked(study, point.outcome), speed))
+            points.append(CheckedFrontPoint(point, checked(study, point.outcome), speed))
             done += 1
         found[name] = tuple(points)
     on_progress("simulation of each point", done, total)

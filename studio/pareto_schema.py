@@ -36,12 +36,28 @@ class CheckedRecord(_Part):
     full: float
 
 
+class PriceRecord(_Part):
+    """What a bound costs: how much a little more room buys, to first order."""
+
+    bound: str
+    newtons: float | None = Field(description="force saved [N]")
+    room: str = Field(description="how much more")
+    gain: float
+    unit: str = Field(description="of gain")
+
+
 class CheckedPointRecord(PointRecord):
     """A design on a front, simulated."""
 
     meets_limit: bool
     safe_speed: float = Field(description="at which the force is the limit [m/s]")
     check: CheckedRecord
+    prices: list[PriceRecord] = Field(
+        description="what each bound that binds costs, the dearest first"
+    )
+    indifferent: dict[str, list[float]] = Field(
+        description="range of each value that costs less than 0.5 %, the others held"
+    )
     knee: bool = Field(description="whether the front bends there")
 
 
@@ -92,6 +108,7 @@ class ParetoResults(_Part):
     limit: float = Field(description="force that reaches a limit of the region [N]")
     limit_kind: str
     peak_definition: str
+    warnings: list[str] = Field(description="what was ignored, and what limits are worth")
     accuracy: str
     solver: Solver
     levels: list[float] = Field(description="bounds on the deflection [m]")

@@ -10,9 +10,10 @@ from math import log
 from softimpact.optimize import ParetoPoint
 from softimpact.optimize.poses import leaves_a_choice
 
+from .answers_in_words import answers_in_words
 from .design_report import limit_kind, peak_in_words
 from .output import Cell, shown
-from .pareto_report import CheckedPoint, ParetoReport
+from .pareto_report import CheckedFrontPoint, ParetoReport, price_of_deflection
 
 MM = 1e3
 """Millimetres in a metre."""
@@ -26,14 +27,17 @@ WORTH_SAYING = 5e-4
 COLUMNS = (
     "deflection\nmm",
     "free\nN",
+    "a tenth\nbuys N",
     "from",
-    "best given\nN",
+    "best\ngiven\nN",
     "pose",
     "task's\nN",
-    "safe, free\nm/s",
-    "safe, task's\nm/s",
-    "Ipopt",
+    "safe,\nfree\nm/s",
+    "safe,\ntask's\nm/s",
 )
+
+STATUS = "Ipopt"
+"""Head of a column that is there where Ipopt failed at a level."""
 
 
 def heading(report: ParetoReport) -> str:
@@ -46,6 +50,11 @@ def heading(report: ParetoReport) -> str:
     )
 
 
+def columns(report: ParetoReport) -> tuple[str, ...]:
+    """Return the table's heads."""
+    return (*COLUMNS, STATUS) if report.pareto.free.unsolved else COLUMNS
+
+
 def rows(report: ParetoReport) -> list[list[Cell]]:
     """Return a row for each level; a dash is a level out of reach, or no better than another."""
     return [_row(report, float(level)) for level in report.pareto.levels]
@@ -56,21 +65,22 @@ def _row(report: ParetoReport, level: float) -> list[Cell]:
     return [
         f"{MM * level:.4g}",
         _force(free),
+        None if free is None else f"{price_of_deflection(free.point):.2g}",
         _start(free),
         _force(given),
         None if given is None else given.point.outcome.name,
         _force(task),
         None if free is None else f"{free.safe_speed:.3f}",
         None if task is None else f"{task.safe_speed:.3f}",
-        _status(report, level),
+        *([_status(report, level)] if report.pareto.free.unsolved else []),
     ]
 
 
-def _force(checked: CheckedPoint | None) -> str | None:
+def _force(checked: CheckedFrontPoint | None) -> str | None:
     return None if checked is None else f"{checked.point.force:.1f}"
 
 
-def _start(checked: CheckedPoint | None) -> str | None:
+def _start(checked: CheckedFrontPoint | None) -> str | None:
     """The pose that the search began with; a held one that no other beats says so."""
     if checked is None:
         return None
@@ -121,6 +131,8 @@ def _trade_off(report: ParetoReport) -> list[str]:
             f"The knee is at {MM * at.deflection:.3g} mm and {at.force:.1f} N: more deflection "
             "buys less for what it costs, more accuracy costs more."
         )
+        if at.meaning is not None:
+            lines += answers_in_words(report.study, at.meaning.indifferent, at.meaning.prices)
     return lines
 
 
@@ -214,9 +226,15 @@ def _unsolved(report: ParetoReport) -> list[str]:
     return [f"Ipopt failed at {len(failed)} of {asked} levels of all postures ({kinds})."]
 
 
+def as_one_line(heads: Sequence[str]) -> list[str]:
+    """Return heads with their last line, the unit, in brackets."""
+    parted = (head.rpartition("\n") for head in heads)
+    return [f"{' '.join(name.split())} [{unit}]" if name else unit for name, _, unit in parted]
+
+
 def markdown(report: ParetoReport, figures: Sequence[str]) -> str:
     """Return a page with the table, what it says, and links to figures beside it."""
-    titles = [column.replace("\n", " [", 1) + ("]" if "\n" in column else "") for column in COLUMNS]
+    titles = as_one_line(columns(report))
     table = [titles, ["---"] * len(titles), *([shown(c) for c in row] for row in rows(report))]
     title, setting = heading(report).split("\n")
     blocks = [

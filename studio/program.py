@@ -30,6 +30,7 @@ from softimpact.symbolic.robot.rigid import Array
 from softimpact.symbolic.robot.robot import BASE
 
 from . import values
+from .cautions import not_permitted
 from .motion_file import limits_left
 from .motion_source import MotionSource, Survey, motion_source, require_all_move, survey
 from .program_engine import Engine
@@ -183,10 +184,7 @@ def _bodies(how: TypedProgram) -> list[Somebody]:
 
 
 def _cautions(robot: Robot, bodies: Sequence[Somebody], seen: Survey) -> Iterator[str]:
-    for name in dict.fromkeys(
-        body.contact.region.name for body in bodies if not body.contact.region.permitted
-    ):
-        yield f"contact with '{name}' is not to be designed for; its limits are for reference"
+    yield from not_permitted(body.contact.region for body in bodies)
     for name, speed, limit in zip(robot.joint_names, seen.fastest, robot.speed_limits, strict=True):
         if speed > limit * (1 + 1e-6):
             yield f"joint '{name}' moves at up to {speed:.4g}, beyond its speed limit {limit:.4g}"

@@ -9,7 +9,7 @@ and a point outside of its zones are left to Python, sample by sample.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import casadi as ca
@@ -17,12 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from softimpact.batch import CompiledPackage, NoCompiler, compiled_arm
+from softimpact.codegen import region_parameters
 from softimpact.codegen.inputs import is_elastic
 from softimpact.simulate.history import PRESSED_UNTIL
 from softimpact.simulate.program import STILL, formula_speed
 from softimpact.simulate.trajectory import Passes
 from softimpact.simulate.zones import Somebody
-from softimpact.symbolic import Drives, ImpactModel, InvalidValue, Motors
+from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors
 from softimpact.symbolic.robot.rigid import Array
 
 from .motion_source import moving_points
@@ -51,19 +52,16 @@ def why_not_in_c(
 ) -> str | None:
     """Return what of a question C knows nothing of, None if it can answer."""
     robot = model.robot
-    if robot.loops or not is_elastic(robot):
-        return "closed chains, passive joints and springs of the model file"
-    if robot.damping.any():
-        return "the joints' damping"
+    if not is_elastic(robot) and any(model.drives.elastic):
+        return "springs behind motors where loops, passive joints or springs are part of the robot"
+    if not is_elastic(robot) and robot.damping.any():
+        return "the joints' damping where loops, passive joints or springs are part of the robot"
     if model.drives.computed_torque_gain is not None:
         return "computed-torque gains"
     if any(end.reaction == "stop" for end in ends.values()):
         return "motors that stop"
-    try:
-        for body in bodies:
-            _ = body.contact.series_stiffness
-    except InvalidValue:
-        return "covers and skins that do not follow Hertz's law"
+    if any(body.contact.region.plate_mass for body in bodies):
+        return "a device's plate"
     return None
 
 
@@ -130,6 +128,7 @@ class CompiledEngine:
     ends: Mapping[str, Motors]
     horizon: float
     formula: Sequence[float]
+    regions: Mapping[Contact, Mapping[str, Any]]
 
     def fill(self, table: ProgramTable, met: Passes, first: int) -> NDArray[np.intp]:
         """Note factors, and return the samples that Python has to decide.
@@ -168,7 +167,8 @@ class CompiledEngine:
         return _Moved(place, velocity, np.linalg.norm(velocity, axis=2))
 
     def _allowed(self, force: float) -> float:
-        return force if all(self.model.drives.elastic) else force * (1 - FOR_STIFF)
+        as_it_is = all(self.model.drives.elastic) or not is_elastic(self.model.robot)
+        return force if as_it_is else force * (1 - FOR_STIFF)
 
     def _call(
         self,
@@ -193,15 +193,8 @@ class CompiledEngine:
         return dict(self.package.speed_factor(met.q[rows], slowed, allowed, **options))
 
     def _options(self, body: Somebody, kind: str, end: Motors, horizon: float) -> dict[str, Any]:
-        region = body.contact.region
         return {
-            "region": {
-                "stiffness": region.stiffness,
-                "damping": region.damping,
-                "effective_mass": region.effective_mass,
-                "hertz_stiffness": body.contact.series_stiffness,
-            },
-            "clamped": body.contact.clamped,
+            "region": self.regions[body.contact],
             "motors": kind,
             "reaction_time": min(end.reaction_time, 2 * horizon),
             "horizon": horizon,
@@ -223,7 +216,8 @@ class CompiledEngine:
                 continue
             slowed = factor[at, None] * met.velocity[at]
             options = self._options(body, kind, end, until)
-            could[left] = self.package.may_press(met.q[at], slowed, allowed, **options)
+            found = self.package.may_press(met.q[at], slowed, allowed, **options)
+            could[left] = (found["status"] != OK) | (found["may"] != 0)
         return could
 
 
@@ -241,21 +235,26 @@ def compiled_engine(
     if unknown is not None:
         return f"the generated C knows nothing of {unknown}"
     robot, first = model.robot, points[0]
-    springs = np.array(model.drives.springs, dtype=float).ravel()
-    rotors = np.maximum(np.array(model.drives.rotors, dtype=float).ravel(), LIGHT)
-    known = Drives(
-        ca.DM(rotors),
-        ca.DM(np.where(model.drives.elastic, springs, STIFF)),
-        (True,) * robot.n,
-        model.drives.gains,
-        damping_gains=model.drives.damping_gains,
-    )
+    known = replace(model.drives, torque_limits=None)
+    if is_elastic(robot):
+        springs = np.array(model.drives.springs, dtype=float).ravel()
+        rotors = np.maximum(np.array(model.drives.rotors, dtype=float).ravel(), LIGHT)
+        known = replace(
+            known,
+            rotors=ca.DM(rotors),
+            springs=ca.DM(np.where(model.drives.elastic, springs, STIFF)),
+            elastic=(True,) * robot.n,
+        )
     others = {f"p{i}": point for i, point in enumerate(points) if i > 0}
     try:
         package = compiled_arm(robot, known, tip=first, points=others, gravity=model.gravity)
     except NoCompiler as error:
         return str(error).split(";")[0]
     formula = [formula_speed(model, body, payload) for body in bodies]
+    try:
+        regions = {body.contact: region_parameters(body.contact) for body in bodies}
+    except InvalidValue as error:
+        return f"the generated C cannot take a law of contact: {error}"
     return CompiledEngine(
-        package, moving_points(robot, points), model, bodies, ends, horizon, formula
+        package, moving_points(robot, points), model, bodies, ends, horizon, formula, regions
     )

@@ -95,24 +95,28 @@ def _body(body: Somebody) -> dict[str, Any]:
     }
 
 
-COLUMNS = ("worst at", "factor", "point", "region", "limit", "motors", "m/s", "safe m/s", "N")
+COLUMNS = ("at\ns", "factor", "point", "region", "limit", "motors", "m/s", "safe\nm/s", "N")
 
 
 def print_program(found: ProgramResult, out: Path | None) -> None:
     """Print what limits a program as a table."""
     record = found.record
-    bands = {"band N": None} if any("band" in moment for moment in record["worst"]) else {}
-    print_table(
-        f"{record['robot']}: {in_a_sentence(record)}",
-        (*COLUMNS, *bands),
+    # points and kinds of limits in two lines, so that 80 columns hold the table
+    rows = [
         [
-            (
-                *moment_row(moment),
-                *(f"{moment['band'].low:.0f} to {moment['band'].high:.0f}" for _ in bands),
-            )
-            for moment in record["worst"]
-        ],
-    )
+            c.replace(" ", "\n").replace("@", "\n@") if isinstance(c, str) else c
+            for c in moment_row(moment)
+        ]
+        for moment in record["worst"]
+    ]
+    print_table(f"{record['robot']}: {in_a_sentence(record)}", COLUMNS, rows)
+    banded = [moment for moment in record["worst"] if "band" in moment]
+    if banded:
+        print_table(
+            "95 of 100 cases lie within, for what is not known exactly",
+            ("at\ns", "N", "from\nN", "to\nN"),
+            [(f"{m['t']:.4g}", m["peak"], m["band"].low, m["band"].high) for m in banded],
+        )
     if out is not None:
         say(f"wrote {out}")
 
@@ -132,4 +136,4 @@ def moment_row(moment: dict[str, Any]) -> Sequence[Cell]:
     """Return a moment as a row below ``COLUMNS``."""
     words = (moment[name] for name in ("point", "region", "limit", "motors"))
     numbers = (moment[name] for name in ("speed", "safe_speed", "peak"))
-    return (f"{moment['t']:.4g} s", moment["factor"], *words, *numbers)
+    return (f"{moment['t']:.4g}", moment["factor"], *words, *numbers)

@@ -40,7 +40,7 @@ CHECKED = 20
 AGREED = 0.02
 """Largest difference of both, relative: C leaves up to 2 % of a limit."""
 
-Progress = Callable[[str, float], AbstractContextManager[Callable[[float], None]]]
+Announce = Callable[[str, float], AbstractContextManager[Callable[[float], None]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +100,7 @@ def slowed_program(
     question: Question,
     engine: Engine,
     band: bool,
-    progress: Progress,
+    progress: Announce,
 ) -> SlowedProgram:
     """Return by how much a program must slow down.
 

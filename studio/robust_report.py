@@ -4,36 +4,67 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
 import casadi as ca
 import numpy as np
 
+from softimpact.optimize import Study
 from softimpact.optimize.answers import by_name
 from softimpact.optimize.catalogue import Bought
 from softimpact.optimize.certificate import Worst
 from softimpact.optimize.evaluation import Kept, equipped
 from softimpact.optimize.impact_program import hertz_in_series
 from softimpact.optimize.robust import RobustDesign
+from softimpact.optimize.scenarios import Scenarios
+from softimpact.optimize.units import figure_in_words
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import Contact, ImpactModel, Robot, impact_model, with_load
 from softimpact.symbolic.robot.rigid import Array, Inertia
 
 from .answers_in_words import answers_in_words
+from .cautions import study_warnings
 from .design_report import GENERATOR, inputs, versions
 
 
-def designed_model(design: RobustDesign) -> ImpactModel:
+class Designed(Protocol):
+    """A machine for scenarios, of a robust design or on a front."""
+
+    @property
+    def study(self) -> Study:
+        """The problem."""
+
+    @property
+    def scenarios(self) -> Scenarios:
+        """All impacts that it must bear."""
+
+    @property
+    def springs(self) -> Array:
+        """Joint stiffness, length n [N·m/rad]."""
+
+    @property
+    def others(self) -> Array:
+        """Values of the other variables of the hardware."""
+
+    @property
+    def postures(self) -> Array:
+        """Posture of each pose, P×n [rad]."""
+
+    @property
+    def worst(self) -> Worst:
+        """The worst scenario."""
+
+
+def designed_model(design: Designed) -> ImpactModel:
     """Return the robot with the hardware that was found."""
     study = design.study
     hardware = equipped(study, ca.DM(design.springs), design.others)
-    drives = replace(
-        study.model.drives, springs=hardware.springs, rotors=ca.DM(hardware.reflected_rotors)
-    )
-    robot = study.robot
+    model = study.with_springs(design.springs)
+    drives = replace(model.drives, rotors=ca.DM(hardware.reflected_rotors))
+    robot = model.robot
     if hardware.masses is not None:
         robot = _scaled(robot, np.array(ca.DM(hardware.masses)).ravel())
-    return impact_model(robot, study.model.tip, drives=drives)
+    return impact_model(robot, model.tip, drives=drives)
 
 
 def _scaled(robot: Robot, masses: Array) -> Robot:
@@ -46,7 +77,7 @@ def _scaled(robot: Robot, masses: Array) -> Robot:
     return replace(robot, joints=tuple(joints))
 
 
-def _covered(design: RobustDesign, contact: Contact) -> Contact:
+def _covered(design: Designed, contact: Contact) -> Contact:
     """Return what is hit as the design's cover makes it."""
     cover = equipped(design.study, ca.DM(design.springs), design.others).cover
     if cover is None:
@@ -55,7 +86,7 @@ def _covered(design: RobustDesign, contact: Contact) -> Contact:
     return replace(contact, cover=None, hertz_stiffness=float(hertz_in_series(own, ca.DM(cover))))
 
 
-def simulated_worst(design: RobustDesign) -> float:
+def simulated_worst(design: Designed) -> float:
     """Return the peak force of the worst scenario, by SUNDIALS up to the horizon [N]."""
     study, scenarios = design.study, design.scenarios
     one = scenarios[design.worst.index]
@@ -72,7 +103,7 @@ def simulated_worst(design: RobustDesign) -> float:
     return simulate_impact(hit, approach, contact, motors=motors, horizon=study.horizon).peak
 
 
-def _factor(design: RobustDesign, worst: Worst) -> float:
+def _factor(design: Designed, worst: Worst) -> float:
     """Return the factor on the speed of the worst scenario."""
     if worst.factors is None:
         return 1.0
@@ -90,6 +121,7 @@ def robust_record(design: RobustDesign) -> dict[str, Any]:
         "versions": versions(),
         "study": inputs(study),
         "peak_definition": "peak",
+        "warnings": study_warnings(study),
         "objective": {
             "kind": study.objective.kind,
             "unit": study.objective.unit,
@@ -107,7 +139,7 @@ def robust_record(design: RobustDesign) -> dict[str, Any]:
         },
         "worst_force": worst.force,
         "worst_share": worst.share,
-        "worst_scenario": _scenario(design, worst),
+        "worst_scenario": scenario_record(design, worst),
         "check": {"nlp": worst.force, "linearised": simulated_worst(design)},
         "bounds": worst.bounds,
         "before": _other(design, design.before, study.nominal),
@@ -137,7 +169,8 @@ def _catalogue(bought: Bought | None) -> dict[str, Any] | None:
     return {"ideal_springs": bought.ideal, "loss": bought.loss, "tried": bought.tried}
 
 
-def _scenario(design: RobustDesign, worst: Worst) -> dict[str, object]:
+def scenario_record(design: Designed, worst: Worst) -> dict[str, object]:
+    """Return the worst scenario in words and numbers, as fast as it is."""
     one = design.scenarios[worst.index]
     words = design.scenarios.describe(one)
     speed = design.scenarios.speeds[one.speed] * _factor(design, worst)
@@ -149,7 +182,7 @@ def _other(design: RobustDesign, worst: Worst, springs: Array) -> dict[str, Any]
         "springs": springs,
         "worst_force": worst.force,
         "worst_share": worst.share,
-        "worst_scenario": _scenario(design, worst),
+        "worst_scenario": scenario_record(design, worst),
         "value": worst.value,
         "deflection": worst.deflection,
         "keeps_bounds": worst.keeps,
@@ -162,15 +195,15 @@ def robust_in_words(design: RobustDesign) -> list[str]:
     equal, springs = design.equal
     saved = 100 * (1 - worst.value / equal.value) * (-1 if objective.more_is_better else 1)
     gain = "gains" if objective.more_is_better else "saves"
-    others = zip(study.range.names[max(study.groups) + 1 :], design.others, strict=True)
-    named = ", ".join(f"{name} {value:.4g}" for name, value in others)
+    named = ", ".join(others_in_words(study, design.others))
     lines = [
         f"{study.title}: {len(design.scenarios)} scenarios",
         f"k_s = [{', '.join(f'{k:.0f}' for k in design.springs)}] N·m/rad",
         *([named] if named else []),
         *_bought_in_words(design.bought),
         f"{objective.kind.replace('_', ' ').capitalize()}: {worst.value:.4g} {objective.unit}",
-        f"Worst: {worst.force:.1f} N, {worst.share:.2f} times its limit: {_place(design, worst)}",
+        f"Worst: {worst.force:.1f} N, {worst.share:.2f} times its limit: "
+        f"{place_in_words(design, worst)}",
         *(_kept(each) for each in worst.bounds),
         f"Equal proportions, just accurate (k_s = {_range(springs)}): {equal.force:.1f} N, "
         f"{equal.value:.4g} {objective.unit}; the design {gain} {saved:.1f} %",
@@ -186,6 +219,16 @@ def robust_in_words(design: RobustDesign) -> list[str]:
     return lines
 
 
+def others_in_words(study: Study, others: Array) -> list[str]:
+    """Return the values of the hardware beside the springs, with their names and units."""
+    springs = max(study.groups) + 1
+    names, units = study.range.names[springs:], study.units[springs:]
+    return [
+        f"{name} {figure_in_words(value, unit)}"
+        for name, unit, value in zip(names, units, others.tolist(), strict=True)
+    ]
+
+
 def _bought_in_words(bought: Bought | None) -> list[str]:
     if bought is None:
         return []
@@ -197,12 +240,11 @@ def _bought_in_words(bought: Bought | None) -> list[str]:
 
 
 def _kept(bound: Kept) -> str:
-    scale, unit = (1e3, "mm") if bound.unit == "m" else (1.0, bound.unit)
     words = "at most" if bound.sense == "most" else "at least"
     allowed = "allowed" if bound.sense == "most" else "asked"
     return (
-        f"{bound.name}: {scale * bound.figure:.4g} {unit} {words}, of "
-        f"{scale * bound.limit:.4g} {unit} {allowed}"
+        f"{bound.name}: {figure_in_words(bound.figure, bound.unit)} {words}, of "
+        f"{figure_in_words(bound.limit, bound.unit)} {allowed}"
     )
 
 
@@ -211,8 +253,9 @@ def _broken(worst: Worst) -> str:
     return f", which breaks {' and '.join(broken)}" if broken else ""
 
 
-def _place(design: RobustDesign, worst: Worst) -> str:
-    words = _scenario(design, worst)
+def place_in_words(design: Designed, worst: Worst) -> str:
+    """Return who is hit where in the worst scenario, and how fast."""
+    words = scenario_record(design, worst)
     direction = np.round(np.array(words["direction"], dtype=float), 3).tolist()
     return (
         f"pose {words['pose']}, {words['point']} along {direction} against {words['region']}, "

@@ -34,6 +34,7 @@ from softimpact.symbolic.impact.two_body import moving_mass, two_body
 from softimpact.symbolic.robot.rigid import Array
 
 from . import values
+from .cautions import not_permitted
 from .first_study import first_posture
 from .situation import (
     TypedArm,
@@ -308,11 +309,7 @@ def _words(found: NDArray[np.str_], rows: NDArray[np.intp], count: int) -> NDArr
 
 
 def _cautions(model: ImpactModel, body: Contact, moving: int, directions: Array) -> Iterator[str]:
-    if not body.region.permitted:
-        yield (
-            f"contact with '{body.region.name}' is not to be designed for; its limits are for "
-            "reference"
-        )
+    yield from not_permitted([body.region])
     lost = len(directions) - moving
     if lost:
         yield (

@@ -25,7 +25,7 @@ def select(
     from softimpact.optimize import load_study
     from softimpact.simulate import Fidelity
 
-    from .output import print_json
+    from .output import print_json, print_warnings
     from .selection import Criterion, print_ranking, ranking, record
     from .values import one_of
 
@@ -37,7 +37,9 @@ def select(
         from .report.pareto_pages import write_selection_report
 
         write_selection_report(problem, criterion, ranked, report)
+    told = record(problem, criterion, model, ranked)
+    print_warnings(told["warnings"])
     if json:
-        print_json(record(problem, criterion, model, ranked))
+        print_json(told)
     else:
         print_ranking(problem, criterion, ranked)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import casadi as ca
@@ -16,6 +16,7 @@ from softimpact.simulate import Fidelity
 from softimpact.symbolic import InvalidValue, analyse, directional_giaf, giaf
 from softimpact.symbolic.robot.rigid import Array
 
+from .cautions import study_warnings
 from .checks import simulated
 from .output import Cell, print_table
 
@@ -162,6 +163,7 @@ def record(
         "joint_stiffness": study.nominal,
         "model": fidelity,
         "peak_definition": "peak",
+        "warnings": study_warnings(replace(study, scenarios=None)),  # it ranks by its own impact
         "motors": study.motors,
         "horizon": study.horizon,
         "by": criterion,

@@ -44,7 +44,7 @@ def studio(
     import tempfile
     import webbrowser
 
-    from softimpact.toolchain import cache_folder
+    from softimpact.toolchain import usable_cache
 
     from .output import print_json, print_warnings, say
     from .page.opened import opened
@@ -58,7 +58,7 @@ def studio(
     shown = opened(what, None if asked == TypedArm(what) else asked)
     text = page_of(shown)
     print_warnings(shown.warnings)
-    folder = out or (cache_folder() or Path(tempfile.mkdtemp())) / "studio"
+    folder = out or (usable_cache() or Path(tempfile.mkdtemp())) / "studio"
     with replaced_folder(folder, GENERATOR) as fresh:
         _write(text, fresh, what)
     page = (folder / PAGE).resolve()

@@ -13,7 +13,7 @@ NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Vector3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
 
 
-class Section(BaseModel):
+class FileSection(BaseModel):
     """A table; what it does not know is an error, and numbers are not read from text."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)

@@ -106,7 +106,8 @@ def region_type(real: str) -> type[ctypes.Structure]:
     """Return the struct of a region."""
     names = "stiffness damping effective_mass hertz_stiffness quasi_static_limit force_limit"
     fields = [(name, KINDS[real][0]) for name in names.split()]
-    return type("Region", (ctypes.Structure,), {"_fields_": [*fields, ("clamped", ctypes.c_int)]})
+    law = [("law", ctypes.c_void_p), ("law_points", ctypes.c_int), ("clamped", ctypes.c_int)]
+    return type("Region", (ctypes.Structure,), {"_fields_": [*fields, *law]})
 
 
 def selection(real: str) -> ctypes.Structure:

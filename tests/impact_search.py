@@ -141,18 +141,17 @@ class Robot:
         p = self.package.params(
             real, drives, **motion, motors=case.motors, steps=steps
         ).tobytes()  # fmt: skip
-        region = (
-            np.array(
-                [case.stiffness, case.damping, case.mass or 1.0, HERTZ_STIFFNESS, 0, 0], dtype=kind
-            ).tobytes()
-            + np.array([case.clamped, 0], dtype=np.int32).tobytes()
-        )
+        region = np.zeros(1, self.package.interface.dtype("region", real))
+        region["stiffness"], region["damping"] = case.stiffness, case.damping
+        region["effective_mass"], region["clamped"] = case.mass or 1.0, case.clamped
+        region["hertz_stiffness"] = HERTZ_STIFFNESS
         out = np.full(2, np.nan, dtype=kind)
         q, n = case.q.astype(kind), case.n.astype(kind)
         entry = getattr(library, f"{self.package.manifest.name}_{function}")
         status = entry(
             *(ctypes.c_void_p(v.ctypes.data) for v in (q, n)), c_real(number),
-            ctypes.c_char_p(region), ctypes.c_char_p(p), ctypes.c_void_p(out.ctypes.data),
+            ctypes.c_void_p(region.ctypes.data), ctypes.c_char_p(p),
+            ctypes.c_void_p(out.ctypes.data),
         )  # fmt: skip
         return status, out.astype(float)
 

@@ -102,10 +102,28 @@ def arm_of(model: ImpactModel, approach: Approach, *, full: bool) -> Arm:
     )
 
 
+Skin = Callable[[float], float]
+"""Force [N] of skin and cover over their depth [m]."""
+
+
+def hertz(contact: Contact) -> Skin:
+    """Return Hertz's law of a contact."""
+    return lambda depth: float(contact.hertz_stiffness * max(depth, 0.0) ** 1.5)
+
+
 def force_by_scipy(
-    arm: Arm, contact: Contact, motors: Motors, times: Array, tolerance: float = 1e-9
+    arm: Arm,
+    contact: Contact,
+    motors: Motors,
+    times: Array,
+    tolerance: float = 1e-9,
+    skin: Skin | None = None,
 ) -> Array:
-    """Return the contact force at some times [N], the first of which is first touch."""
+    """Return the contact force at some times [N], the first of which is first touch.
+
+    ``skin`` is the law of skin and cover where that is not Hertz's.
+    """
+    law_of = hertz(contact) if skin is None else skin
     n = len(arm.velocity)
     state = np.concatenate([np.zeros(2 * n), arm.velocity, arm.velocity, np.zeros(3)])
     found = [np.zeros((len(state), 0))]
@@ -115,7 +133,7 @@ def force_by_scipy(
         until = min(end, float(times[-1]))
         if until <= begin:
             continue
-        rate = _rate(arm, contact, law, state[3 * n : 4 * n].copy(), motors)
+        rate = _rate(arm, contact, law_of, law, state[3 * n : 4 * n].copy(), motors)
         inside = times[(times >= begin) & (times < until)]
         solved = solve_ivp(
             rate,
@@ -131,17 +149,17 @@ def force_by_scipy(
         state = solved.y[:, -1]
         found.append(solved.y[:, :-1])
     states = np.column_stack([*found, state])
-    return np.array([_force(arm, contact, s) for s in states.T])
+    return np.array([_force(arm, law_of, s) for s in states.T])
 
 
-def _force(arm: Arm, contact: Contact, state: Array) -> float:
+def _force(arm: Arm, skin: Skin, state: Array) -> float:
     n = len(arm.velocity)
     x_c = arm.dynamics(state[:n], state[2 * n : 3 * n])[3]
-    return float(contact.hertz_stiffness * max(x_c - state[-1], 0.0) ** 1.5)
+    return skin(x_c - state[-1])
 
 
 def _rate(
-    arm: Arm, contact: Contact, law: str, at_begin: Array, motors: Motors
+    arm: Arm, contact: Contact, skin: Skin, law: str, at_begin: Array, motors: Motors
 ) -> Callable[[float, Array], Array]:
     """Return the rate of y, θ, ẏ, θ̇, x_h, ẋ_h and x_0; ``at_begin`` is θ̇ as the law begins."""
     n, v, E = len(arm.velocity), arm.velocity, arm.elastic
@@ -164,7 +182,7 @@ def _rate(
         y, theta, dy, dtheta = state[: 4 * n].reshape(4, n)
         x_h, v_h, x_0 = state[4 * n :]
         M, h, push, x_c = arm.dynamics(y, dy)
-        f = contact.hertz_stiffness * max(x_c - x_0, 0.0) ** 1.5
+        f = skin(x_c - x_0)
         spring = np.where(E, arm.springs * (y - theta), 0.0)
         tau = torque(t, theta, dtheta)
         forces = -h - spring - arm.damping * (dy - v) - push * f

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -68,3 +70,24 @@ def test_sources_say_their_licence() -> None:
         path for path in tracked("*.py", "*.toml", "*.xml", "Makefile") if path.stat().st_size
     ]
     assert [p for p in sources if "SPDX-License-Identifier" not in p.read_text("utf-8")[:200]] == []
+
+
+def public_types(path: Path) -> Iterator[str]:
+    """Yield the public classes and types that a module defines, but not a command's options."""
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+            yield node.name
+        elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            called = isinstance(node.value, ast.Call)  # a TypeVar is its module's own
+            option = node.targets[0].id.endswith(("Option", "Argument"))
+            if not called and not option and re.fullmatch("[A-Z][a-z]\\w*", node.targets[0].id):
+                yield node.targets[0].id
+
+
+def test_a_type_has_a_name_of_its_own() -> None:
+    places = defaultdict(list)
+    for path in tracked(*(f"{folder}/*.py" for folder in MAY_IMPORT), "src/*.py"):
+        for name in public_types(path):
+            places[name].append(path.relative_to(ROOT).as_posix())
+    assert len(places) > 200
+    assert {name: found for name, found in places.items() if len(found) > 1} == {}

@@ -17,7 +17,7 @@ IMMOVABLE = 1e3
 LOOP_OPEN = 1e-3
 """Gap of a loop, over the size of the robot, from which on a configuration is refused."""
 
-FASTEST = 100.0
+FASTEST_APPROACH = 100.0
 """Joint velocity for 1 m/s, times the largest entry of J, from which on an approach is singular."""
 
 
@@ -51,4 +51,4 @@ def fastest_arrival(model: ImpactModel) -> float:
     """Return the squared joint velocity [rad²/s²] from which on an arrival at 1 m/s is singular."""
     seen = some_configurations(model.robot, seed=3)
     arm = max(float(abs(np.array(model.jacobian(ca.DM(q)))).max()) for q in seen)
-    return float(f"{(FASTEST / arm) ** 2:.2g}")
+    return float(f"{(FASTEST_APPROACH / arm) ** 2:.2g}")

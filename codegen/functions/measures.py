@@ -12,7 +12,7 @@ from softimpact.symbolic.matrices import symmetric
 from ..description import CFunction, Guard, Output
 from .symbols import Symbols, function_over
 
-FLAT = 1e-3
+LEAST_MANIPULABILITY = 1e-3
 """Share of the product of the lengths of J's rows below which ω_m counts as zero."""
 
 
@@ -51,4 +51,6 @@ def impact_measure(s: Symbols) -> CFunction:
 
 def _upright(J: Matrix) -> Guard:
     """Guard the rank of J."""
-    return Guard(ellipsoids.manipulability(J) / ellipsoids.longest_manipulability(J), FLAT)
+    return Guard(
+        ellipsoids.manipulability(J) / ellipsoids.longest_manipulability(J), LEAST_MANIPULABILITY
+    )

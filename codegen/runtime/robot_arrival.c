@@ -4,6 +4,8 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE ROBOT_R(1e-6)
+/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+#define ASTRAY ROBOT_R(1e-3)
 #define MOST_STEPS 1000000
 
 int robot_check_impact(const robot_region *region, const robot_params *p)
@@ -11,13 +13,14 @@ int robot_check_impact(const robot_region *region, const robot_params *p)
     if (p->layout != ROBOT_LAYOUT) {
         return ROBOT_FOREIGN_PARAMS;
     }
-    const robot_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
+    const robot_real numbers[4] = {region->stiffness, region->damping,
+        region->law != NULL ? ROBOT_R(1.0) : region->hertz_stiffness,
         region->clamped != 0 ? ROBOT_R(1.0) : region->effective_mass};
     if (!robot_all_finite(numbers, 4)) {
         return ROBOT_NOT_FINITE;
     }
     const bool body = region->stiffness > ROBOT_R(0.0) && region->damping >= ROBOT_R(0.0)
-        && region->hertz_stiffness > ROBOT_R(0.0) && numbers[3] > ROBOT_R(0.0);
+        && numbers[3] > ROBOT_R(0.0) && robot_law_is_one(region);
     const robot_real horizon = ROBOT_HORIZON(p);
     const robot_real reaction = ROBOT_REACTION_TIME(p);
     int status = robot_check_positive(&horizon, 1);
@@ -77,6 +80,7 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
     robot_forward(ROBOT_REACH, square, share);
     robot_backward(ROBOT_REACH, square, share);
     robot_real fast = ROBOT_R(0.0);
+    robot_real along = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_N; ++i) {
         robot_real rate = ROBOT_R(0.0);
         for (int k = 0; k < ROBOT_REACH; ++k) {
@@ -84,8 +88,29 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
+        along += rate*arrival->row[i];
     }
-    return fast < ROBOT_FASTEST ? ROBOT_OK : ROBOT_SINGULAR;
+    return fast < ROBOT_FASTEST && ROBOT_FABS(along - ROBOT_R(1.0)) < ASTRAY ? ROBOT_OK : ROBOT_SINGULAR;
+}
+
+robot_real robot_arrive_as_it_moves(int point, const robot_real rates[ROBOT_N], robot_arrival *arrival)
+{
+    robot_real v[3];
+    for (int k = 0; k < 3; ++k) {
+        v[k] = ROBOT_R(0.0);
+        for (int i = 0; i < ROBOT_N; ++i) {
+            v[k] += arrival->links.J[3*point + k][i]*rates[i];
+        }
+    }
+    const robot_real speed = ROBOT_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    for (int i = 0; i < ROBOT_N && speed > ROBOT_R(0.0); ++i) {
+        arrival->row[i] = ROBOT_R(0.0);
+        for (int k = 0; k < 3; ++k) {
+            arrival->row[i] += v[k]/speed*arrival->links.J[3*point + k][i];
+        }
+        arrival->rates[i] = rates[i]/speed;
+    }
+    return speed;
 }
 
 void robot_kinds_of_motors(const robot_params *p, int *first, int *last)

@@ -14,6 +14,8 @@
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
  * y^2 v with y^2 <= y sqrt(2 t K) + c, K = k + c^2 mobility. Released after t, the robot has at most
  * (sqrt(E) + sqrt(v^2/2 r'(M + B)r))^2, as the energies of both motions add like squares of lengths.
+ * Joints with damping of their own: motors are taken to go on with what that needed before, so the same holds
+ * whatever motors do, to the horizon.
  */
 #include "robot_impact.h"
 
@@ -88,12 +90,15 @@ robot_real robot_bound(const robot_impact *impact)
     }
     const robot_real hold = impact->hold;
     const robot_real twice = robot_twice_energy(impact);
+    const robot_real horizon = ROBOT_HORIZON(impact->p);
+    const robot_real always = while_driven(horizon, hold, impact->region->damping);
+    if (ROBOT_DAMPED) {
+        return always;
+    }
     if (impact->first == ROBOT_LOOSE) {
         return ROBOT_SQRT(twice*hold);
     }
-    const robot_real horizon = ROBOT_HORIZON(impact->p);
     const robot_real reaction = ROBOT_FMIN(ROBOT_REACTION_TIME(impact->p), horizon);
-    const robot_real always = while_driven(horizon, hold, impact->region->damping);
     const robot_real until = while_driven(reaction, hold, impact->region->damping);
     const robot_real root = ROBOT_SQRT(ROBOT_R(2.0)*until*reaction) + ROBOT_SQRT(twice);
     return ROBOT_FMIN(always, ROBOT_FMAX(until, root*ROBOT_SQRT(hold)));

@@ -40,15 +40,15 @@ static void scale_by_springs(const robot_arrival *arrival, const robot_params *p
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int spring_modes(robot_square C, const robot_real b[ROBOT_N], robot_modes *modes)
+static int spring_modes(robot_matrix C, const robot_real b[ROBOT_N], robot_modes *modes)
 {
     robot_real squares[ROBOT_N];
-    robot_square vectors;
+    robot_matrix vectors;
     robot_real all = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_N; ++i) {
         all += C[i][i];
     }
-    if (!robot_spectrum(C, squares, vectors)) {
+    if (!robot_spectrum(ROBOT_N, C, squares, vectors)) {
         return ROBOT_SINGULAR;
     }
     const robot_real least = NOISE*all;
@@ -78,7 +78,7 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     robot_real *drift)
 {
     spring_scaled s;
-    robot_square C;
+    robot_matrix C;
     scale_by_springs(arrival, p, &s);
     for (int i = 0; i < ROBOT_N; ++i) {
         for (int j = 0; j <= i; ++j) {
@@ -96,8 +96,8 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
 {
     spring_scaled s;
     robot_matrix G;
-    robot_square Y; /* columns of L_G^-1 L' */
-    robot_square C;
+    robot_matrix Y; /* columns of L_G^-1 L' */
+    robot_matrix C;
     robot_real z[ROBOT_N];
     scale_by_springs(arrival, p, &s);
     if (!robot_cholesky(ROBOT_N, s.S)) {

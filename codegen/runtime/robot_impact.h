@@ -17,6 +17,7 @@
 #else
 #define ROBOT_SYSTEM ROBOT_N
 #endif
+#define ROBOT_DAMPERS (ROBOT_DAMPED ? ROBOT_SYSTEM : ROBOT_N) /* of the last ones of these */
 #define ROBOT_MODES (ROBOT_SYSTEM + 1) /* one for a body that gives way */
 #define ROBOT_LEVELS 7 /* lengths of steps, each half the one before */
 
@@ -27,8 +28,7 @@ typedef struct {
     robot_real rates[ROBOT_N]; /* joint velocities for an approach of 1 m/s */
 } robot_arrival;
 
-/* Matrices over the links alone, and of up to ROBOT_SYSTEM rows. */
-typedef robot_real robot_square[ROBOT_N][ROBOT_N];
+/* Matrices of up to ROBOT_SYSTEM rows. */
 typedef robot_real robot_matrix[ROBOT_SYSTEM][ROBOT_SYSTEM];
 
 /*
@@ -76,8 +76,8 @@ typedef struct {
     robot_real compliance; /* of those that stand, m/N */
     robot_real reach; /* of all that vibrate, m/N */
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
-    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
-    robot_real damping[ROBOT_N];
+    bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
+    robot_real damping[ROBOT_DAMPERS];
     int steps; /* of the longest level until the time is over */
     robot_level level[ROBOT_LEVELS];
 } robot_phase;
@@ -105,11 +105,14 @@ typedef struct {
 #define ROBOT_LED 0
 #define ROBOT_LOOSE 1
 
+typedef struct robot_watch robot_watch;
+
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
     bool rough; /* longer steps do */
     robot_real stop_above; /* force after whose passing the rest does not matter, N */
+    robot_watch *watch; /* who sees each step and ends the impact, or NULL; robot_state.h */
 } robot_budget;
 
 typedef struct {
@@ -125,6 +128,9 @@ int robot_check_impact(const robot_region *region, const robot_params *p);
 
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival);
+
+/* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
+robot_real robot_arrive_as_it_moves(int point, const robot_real rates[ROBOT_N], robot_arrival *arrival);
 
 /* Checks and links of an impact of one of the contact points. */
 int robot_approach(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
@@ -154,6 +160,21 @@ robot_real robot_bound(const robot_impact *impact);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void robot_kinds_of_motors(const robot_params *p, int *first, int *last);
+
+/*
+ * What is known of a region's law of contact: its depth under a force, twice the work done by then, and the
+ * largest stiffness up to it.
+ */
+robot_real robot_law_depth(const robot_region *region, robot_real force);
+robot_real robot_law_twice_work(const robot_region *region, robot_real force);
+robot_real robot_law_stiffness(const robot_region *region, robot_real force);
+
+/* Force of a law through points whose depth d makes hold d + soft f(d) = pressed > 0; and that depth. */
+robot_real robot_law_press(const robot_region *region, robot_real hold, robot_real soft, robot_real pressed,
+    robot_real *depth);
+
+/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+bool robot_law_is_one(const robot_region *region);
 
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 robot_real robot_two_body_force(const robot_region *region, robot_real mobility, robot_real speed);
@@ -197,7 +218,7 @@ void robot_backward(int size, robot_matrix L, robot_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool robot_diagonalise(int size, robot_matrix A, robot_matrix X, robot_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
-bool robot_spectrum(robot_square A, robot_real values[ROBOT_N], robot_square vectors);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
+bool robot_spectrum(int size, robot_matrix A, robot_real *values, robot_matrix vectors);
 
 #endif

@@ -16,7 +16,7 @@ int robot_peak_force_at(const robot_real q[ROBOT_JOINTS], int point, const robot
     if (status != ROBOT_OK) {
         return status;
     }
-    robot_budget budget = {p->steps, false, ROBOT_REAL_MAX};
+    robot_budget budget = {p->steps, false, ROBOT_REAL_MAX, NULL};
     robot_peak_force_t found = {ROBOT_R(0.0), ROBOT_R(0.0)};
     bool bounded = false;
     int first;

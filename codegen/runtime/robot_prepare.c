@@ -5,27 +5,6 @@
 /* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
 #define BLURS ROBOT_R(1.6e-2)
 
-/* Largest stiffness of the skin up to a force. */
-static robot_real skin_stiffness(const robot_region *region, robot_real force)
-{
-    const robot_real third = ROBOT_R(1.0)/ROBOT_R(3.0);
-    return ROBOT_R(1.5)*ROBOT_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
-}
-
-robot_real robot_two_body_force(const robot_region *region, robot_real mobility, robot_real speed)
-{
-    const robot_real spring = speed*ROBOT_SQRT(region->stiffness/mobility);
-    const robot_real energy = ROBOT_R(1.25)*speed*speed/mobility;
-    const robot_real skin = ROBOT_POW(energy, ROBOT_R(0.6))*ROBOT_POW(region->hertz_stiffness, ROBOT_R(0.4));
-    return ROBOT_R(1.0)/(ROBOT_R(1.0)/spring + ROBOT_R(1.0)/skin);
-}
-
-robot_real robot_two_body_speed(const robot_region *region, robot_real mobility, robot_real force)
-{
-    const robot_real depth = ROBOT_POW(force/region->hertz_stiffness, ROBOT_R(2.0)/ROBOT_R(3.0));
-    return ROBOT_SQRT(mobility*force*(force/region->stiffness + ROBOT_R(0.8)*depth));
-}
-
 void robot_impact_forget(robot_impact *impact)
 {
     impact->phase[ROBOT_LED].known = false;
@@ -56,8 +35,9 @@ static int led_modes(robot_impact *impact, robot_phase *phase)
         return robot_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < ROBOT_N; ++i) {
-        phase->damping[i] = ROBOT_DAMPING_GAIN(impact->p, i);
-        phase->damped = phase->damped || phase->damping[i] > ROBOT_R(0.0);
+        const robot_real gain = ROBOT_DAMPING_GAIN(impact->p, i);
+        phase->damping[ROBOT_DAMPERS - ROBOT_N + i] += gain;
+        phase->damped = phase->damped || gain > ROBOT_R(0.0);
     }
     return robot_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
@@ -72,11 +52,16 @@ static int modes_of(robot_impact *impact, int which)
     }
     phase->has_body = false;
     phase->drift = ROBOT_R(0.0);
-    phase->damped = false;
+    phase->damped = ROBOT_DAMPED != 0;
     phase->modes.noise = ROBOT_R(0.0);
-    for (int i = 0; i < ROBOT_N; ++i) {
+    for (int i = 0; i < ROBOT_DAMPERS; ++i) {
         phase->damping[i] = ROBOT_R(0.0);
     }
+#if ROBOT_DAMPED
+    for (int i = 0; i < ROBOT_N; ++i) {
+        phase->damping[i] = robot_joint_damping[i];
+    }
+#endif
     const int status = which == ROBOT_LED ? led_modes(impact, phase)
         : robot_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     phase->known = status == ROBOT_OK;
@@ -166,11 +151,11 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
     }
     const robot_real size =
         force > ROBOT_R(0.0) ? force : robot_two_body_force(region, impact->mobility, -force);
-    impact->scale = ROBOT_R(0.2)*size;
+    impact->scale = ROBOT_R(0.5)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
     impact->smooth = ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped);
-    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    impact->skin_rate = robot_law_stiffness(region, size)*impact->mobility;
     const robot_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!robot_all_finite(numbers, 3) || robot_check_positive(numbers, 3) != ROBOT_OK) {
         return ROBOT_SINGULAR;

@@ -2,8 +2,8 @@
 /* What is left of an impact of robot_ when its motors are let go, in modes of loose motors. */
 #include "robot_state.h"
 
-/* Levels by which the first step is shorter than the last: the bend of the force jumps. */
-#define AFTER 2
+/* Levels by which the first step is shorter than the last: other modes stand. */
+#define AFTER 1
 
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const robot_state *s, int size, robot_real *place, robot_real *rate)
@@ -24,6 +24,25 @@ static void coordinates_of(const robot_state *s, int size, robot_real *place, ro
             rate[j] += shape[j]*b;
         }
     }
+}
+
+/*
+ * Most that modes that stand, bent by the force, add to it as they swing about that: springs that
+ * motors wound up may hold more energy than the body does.
+ */
+static robot_real swings_of(const robot_state *s, const robot_phase *next, const robot_real *a,
+    const robot_real *b)
+{
+    const robot_region *const region = s->impact->region;
+    const robot_modes *const modes = &next->modes;
+    robot_real sum = ROBOT_R(0.0);
+    for (int i = next->active; i < modes->count; ++i) {
+        const robot_real rate = ROBOT_SQRT(modes->squared[i]);
+        const robot_real away = a[i] + modes->row[i]/modes->squared[i]*s->f;
+        const robot_real swing = ROBOT_SQRT(away*away + b[i]*b[i]/modes->squared[i]);
+        sum += (region->stiffness + region->damping*rate)*ROBOT_FABS(modes->row[i])*swing;
+    }
+    return sum;
 }
 
 void robot_release(robot_state *s)
@@ -56,7 +75,7 @@ void robot_release(robot_state *s)
     }
     a[0] = x/modes->row[0];
     b[0] = v/modes->row[0];
-    for (int i = 1; i < next->active; ++i) {
+    for (int i = 1; i < modes->count; ++i) {
         a[i] = ROBOT_R(0.0);
         b[i] = ROBOT_R(0.0);
         for (int j = 0; j < ROBOT_N; ++j) {
@@ -92,7 +111,7 @@ void robot_release(robot_state *s)
         }
 #endif
     }
-    for (int i = 0; i < next->active; ++i) {
+    for (int i = 0; i < modes->count; ++i) {
         a[i] = ROBOT_R(0.0);
         b[i] = ROBOT_R(0.0);
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
@@ -101,6 +120,7 @@ void robot_release(robot_state *s)
         }
     }
 #endif
+    s->swings = swings_of(s, next, a, b);
     /* The body is the last of the modes that move: at least one does. */
     if (impact->gives_way && next->active > 0 && s->phase->active > 0) {
         a[next->active - 1] = s->amplitude[s->phase->active - 1];
@@ -111,6 +131,10 @@ void robot_release(robot_state *s)
         s->rate[i] = b[i];
     }
     const robot_real h = s->phase->level[s->level].h;
+    const robot_real more = next->compliance - s->phase->compliance; /* of modes that stand from now on */
+    s->x += more*s->f;
+    s->u += more*s->f;
+    s->u_before += more*(s->f - s->rise);
     s->phase = next;
     s->drifted = ROBOT_R(0.0);
     s->level = 0;
@@ -119,6 +143,7 @@ void robot_release(robot_state *s)
     }
     s->level = s->level + AFTER < ROBOT_LEVELS ? s->level + AFTER : ROBOT_LEVELS - 1;
     s->past = s->past > 1 ? 1 : s->past;
+    s->even = 0;
     s->ticks = next->steps*(1 << (ROBOT_LEVELS - 1));
 }
 

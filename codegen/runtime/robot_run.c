@@ -3,10 +3,12 @@
 #include "robot_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS ROBOT_R(0.0125)
+#define BENDS ROBOT_R(0.03)
 #define BENDS_ROUGH ROBOT_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
-#define STRAIGHT ROBOT_R(0.12)
+#define STRAIGHT ROBOT_R(0.22)
+/* Force from which robot and body may part within a step, over the bend that is allowed. */
+#define PARTS ROBOT_R(4.0)
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (ROBOT_LEVELS - 1)
 #define SHORTEST_ROUGH 2
@@ -14,35 +16,50 @@
 #define LOOKS 2
 /* Share of what a harder contact takes up to which rough runs take it to be out of reach. */
 #define ROUGHLY ROBOT_R(1.3)
+/* Changes the length of the next step. */
+static void change_level(robot_state *s, int level)
+{
+    s->level = level;
+    s->even = 0;
+}
+
 /* Advances the clock, and lengthens the next step where it may. */
 static void tick(robot_state *s, bool longer)
 {
-    const robot_level *const level = &s->phase->level[s->level];
     s->h_before = s->h;
-    s->h = level->h;
-    s->time += level->h;
-    s->drifted += s->phase->drift*s->speed*level->h;
+    s->h = s->phase->level[s->level].h;
+    s->time += s->h;
+    s->drifted += s->phase->drift*s->speed*s->h;
     s->ticks -= 1 << (ROBOT_LEVELS - 1 - s->level);
+    ++s->even;
     if (longer && s->level > 0 && s->ticks % (1 << (ROBOT_LEVELS - s->level)) == 0) {
-        --s->level;
+        change_level(s, s->level - 1);
     }
 }
 
-/* Notes a top of the parabola through the last three forces. */
-static void see(const robot_state *s, robot_real f, robot_real h, robot_peak *peak)
+/* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
+static void see(robot_state *s, const robot_trial *t, robot_peak *peak)
 {
-    robot_real force = f;
+    const robot_real h = s->phase->level[s->level].h;
+    robot_real force = t->f;
     robot_real time = s->time + h;
-    if (s->past > 0 && s->rise >= ROBOT_R(0.0) && f < s->f) {
+    if (t->f < s->f && s->past > 0 && s->rise >= ROBOT_R(0.0)) {
         const robot_real before = s->rise/s->h;
-        const robot_real after = (f - s->f)/h;
+        const robot_real after = (t->f - s->f)/h;
         const robot_real bend = (after - before)/(h + s->h);
         const robot_real slope = before + bend*s->h;
-        force = s->f - ROBOT_R(0.25)*slope*slope/bend;
-        time = s->time - ROBOT_R(0.5)*slope/bend;
+        const robot_real since = ROBOT_R(-0.5)*slope/bend; /* the last node */
+        force = s->f + ROBOT_R(0.5)*slope*since;
+        time = s->time + since;
+        if (s->past > 1) {
+            const robot_real bent = ROBOT_R(-6.0)*s->bump/(s->h*s->h); /* at the last node */
+            const robot_real twist = (bend - bent)/(h + s->h + s->h_before);
+            force += twist*since*(since + s->h)*(since - h);
+        }
     }
-    if (force > peak->force) {
-        peak->force = force;
+    if (force + s->swings > peak->force) {
+        s->depth = t->f > peak->force ? t->depth : s->depth;
+        peak->force = force + s->swings;
         peak->time = time;
         peak->contact = peak->contacts;
     }
@@ -52,48 +69,56 @@ static void see(const robot_state *s, robot_real f, robot_real h, robot_peak *pe
 static bool step_pressed(robot_state *s, robot_trial *t, robot_real bends, int shortest, robot_peak *peak)
 {
     robot_press(s, t);
-    const robot_real size = ROBOT_FMAX(s->scale, peak->force);
+    const robot_real allowed = bends*ROBOT_FMAX(s->scale, peak->force);
     const robot_real bent = ROBOT_R(6.0)*ROBOT_FABS(t->bump);
-    if (s->level < shortest && !(bent <= bends*size)) {
-        ++s->level;
+    const bool parts = !(t->f > ROBOT_R(0.0));
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+        change_level(s, s->level + 1);
         return false;
     }
-    const robot_level *const level = &s->phase->level[s->level];
     robot_take(t, s);
-    s->depth = t->f > peak->force ? t->root*t->root : s->depth;
-    see(s, t->f, level->h, peak);
-    const robot_real rest = (s->x - s->u)*level->relax;
+    see(s, t, peak);
+    if (parts) {
+        s->touching = false;
+        s->rest = ROBOT_FMAX(t->x, (s->x - s->u)*s->phase->level[s->level].relax);
+    }
+    const bool straight = bent <= STRAIGHT*allowed && ROBOT_R(6.0)*ROBOT_FABS(s->bump) <= STRAIGHT*allowed;
     s->bump = t->bump;
     s->rise = t->f - s->f;
     s->f = t->f;
     s->u_before = s->u;
     s->u = t->u;
+    s->now = t->depth;
     s->root = t->root;
     s->x = t->x;
     ++s->past;
-    if (!(t->f > ROBOT_R(0.0))) {
-        s->touching = false;
-        s->rest = ROBOT_FMAX(s->x, rest);
-    }
-    tick(s, bent <= STRAIGHT*bends*size && s->past > 1);
+    tick(s, straight && s->past > 1);
     return true;
 }
 
 /* A step out of contact; false if it must be shorter, or is one in contact. */
-static bool step_apart(robot_state *s, robot_trial *t, int shortest, robot_peak *peak)
+static bool step_apart(robot_state *s, const robot_trial *t, int shortest, robot_peak *peak)
 {
-    const robot_level *const level = &s->phase->level[s->level];
-    const robot_real rest = s->rest*level->relax;
+    const robot_real rest = s->rest*s->phase->level[s->level].relax;
     if (t->x > rest) {
-        if (s->level < shortest) {
-            ++s->level;
+        if (s->level < shortest) { /* to a step that ends before they touch, if both approach evenly */
+            robot_real share = (s->rest - s->x)/(s->rest - s->x + t->x - rest);
+            int level = s->level;
+            do {
+                ++level;
+                share += share;
+            } while (level < shortest && !(share >= ROBOT_R(1.0)));
+            change_level(s, level);
             return false;
         }
         s->touching = true;
         s->past = 0;
+        s->even = 0;
         s->u = s->x - s->rest;
         s->f = ROBOT_R(0.0);
         s->rise = ROBOT_R(0.0);
+        s->bump = ROBOT_R(0.0);
+        s->now = ROBOT_R(0.0);
         s->root = ROBOT_R(0.0);
         ++peak->contacts;
         return false;
@@ -116,7 +141,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->phase = phase;
     s->speed = speed;
     s->scale = impact->scale;
-    s->level = rough ? SHORTEST_ROUGH : SHORTEST;
+    change_level(s, rough ? SHORTEST_ROUGH : SHORTEST);
     s->ticks = phase->steps*(1 << (ROBOT_LEVELS - 1));
     s->time = zero;
     s->drifted = zero;
@@ -134,12 +159,14 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->rise = zero;
     s->u = zero;
     s->u_before = zero;
+    s->now = zero;
     s->root = zero;
     s->rest = zero;
     s->depth = zero;
+    s->swings = zero;
 }
 
-/* Steps through a phase; false if the steps do not do. */
+/* Steps through a phase, a rough run until they part; false if the steps do not do. */
 static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
 {
     const robot_real bends = s->impact->smooth*(budget->rough ? BENDS_ROUGH : BENDS);
@@ -157,10 +184,14 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
         if (taken && s->phase->damped) {
             robot_damp(s->phase, s->speed, ROBOT_R(0.5)*s->h, s->rate);
         }
+        if (taken && budget->watch != NULL && robot_pass(s, budget->watch)) {
+            peak->ended = true;
+            return true;
+        }
         const bool falls = taken && s->f < peak->force;
-        const bool looks = falls && (s->past % LOOKS == 0 || !s->touching);
-        if ((falls && peak->force > budget->stop_above)
-            || (looks && robot_is_settled(s, peak->force, share))) {
+        const bool looks = falls && budget->watch == NULL && (s->past % LOOKS == 0 || !s->touching);
+        if ((falls && peak->force > budget->stop_above) || (budget->rough && taken && !s->touching)
+            || (looks && robot_is_settled(s, peak->force - s->swings, s->depth, share))) {
             peak->ended = true;
             return true;
         }

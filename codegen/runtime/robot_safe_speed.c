@@ -6,9 +6,9 @@
  * Share of the limit at which trials aim, the share from which on one is near enough, and the largest
  * that counts as kept: forces are within 2e-3 of the right ones, in the worst of 100,000 within 5e-3.
  */
-#define AIM ROBOT_R(0.9875)
+#define AIM ROBOT_R(0.987)
 #define NEAR ROBOT_R(0.98)
-#define KEPT ROBOT_R(0.995)
+#define KEPT ROBOT_R(0.994)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 24
 #define APART ROBOT_R(4e-3)
@@ -93,16 +93,14 @@ static bool find(robot_impact *impact, robot_real guess, robot_real cap, search 
 /* Whether loose motors bring too little energy for a force: robot_settled.c, w = 0 at first touch. */
 static bool are_weak(const robot_impact *impact, robot_real speed, robot_real force)
 {
-    const robot_real depth =
-        ROBOT_POW(force/impact->region->hertz_stiffness, ROBOT_R(2.0)/ROBOT_R(3.0));
-    const robot_real needed = force*force/impact->hold + ROBOT_R(0.8)*force*depth;
+    const robot_real needed = force*force/impact->hold + robot_law_twice_work(impact->region, force);
     return ROBOT_STRUCTURED && speed*speed*robot_twice_energy(impact) <= needed;
 }
 
 int robot_find_speed(const robot_region *region, const robot_params *p, robot_real limit,
     robot_real cap, robot_impact *impact, robot_safe_speed_t *found)
 {
-    robot_budget budget = {p->steps, false, limit};
+    robot_budget budget = {p->steps, false, limit, NULL};
     bool bounded = false;
     int first;
     int last;

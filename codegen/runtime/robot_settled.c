@@ -6,15 +6,15 @@
  * body's own mass; w the part of what vibrates, of energy E. The contact force only pushes r back, so once
  * r' < 0 it stays so, r does not grow, and with the energy V of skin, body and standing modes, E + V does
  * not either: (E + V)' = f r' - c s'^2 <= 0. At the largest force F of a later contact f = k s + c x' with
- * x' <= w', which takes F^2/(2 K) in w' and s (robot_bound.c), 0.4 F depth in the skin, and depth + s - r = w
- * takes w^2/(2 reach) in the vibration. With less than that there is no such F.
+ * x' <= w', which takes F^2/(2 K) in w' and s (robot_bound.c), its work in the skin (0.4 F depth in
+ * Hertz's), and depth + s - r = w takes w^2/(2 reach) in the vibration. With less than that there is no such F.
  *
  * Driven motors that are let go later: seen from their motion before, E is of links and rotors, these
  * move at most sqrt(2 E rotors) on, and the rest holds if r' < 0 by more than that.
  */
 #include "robot_state.h"
 
-bool robot_is_settled(const robot_state *s, robot_real force, robot_real share)
+bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share)
 {
     const robot_impact *const impact = s->impact;
     const robot_phase *const phase = s->phase;
@@ -34,9 +34,10 @@ bool robot_is_settled(const robot_state *s, robot_real force, robot_real share)
     if (!phase->settles || !(away < ROBOT_R(0.0))) {
         return false;
     }
+    const bool is_hertz = region->law == NULL;
     const robot_real bent = s->touching ? s->x - s->u : s->rest;
     robot_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
-        + ROBOT_R(0.8)*s->f*s->root*s->root;
+        + (is_hertz ? ROBOT_R(0.8) : ROBOT_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
         twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
     }
@@ -46,7 +47,8 @@ bool robot_is_settled(const robot_state *s, robot_real force, robot_real share)
     }
     const robot_real slip = region->damping*ROBOT_SQRT(twice*impact->mobility);
     const robot_real pressed = ROBOT_FMAX(force - slip, ROBOT_R(0.0))/region->stiffness;
-    const robot_real gap = ROBOT_FMAX(s->depth + pressed - r, ROBOT_R(0.0));
-    const robot_real needed = force*force/impact->hold + ROBOT_R(0.8)*force*s->depth;
+    const robot_real gap = ROBOT_FMAX(depth + pressed - r, ROBOT_R(0.0));
+    const robot_real skin = is_hertz ? ROBOT_R(0.8)*force*depth : robot_law_twice_work(region, force);
+    const robot_real needed = force*force/impact->hold + skin;
     return twice*phase->reach <= share*(needed*phase->reach + gap*gap);
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * Eigenvectors of a symmetric matrix of robot_ of N rows: Householder's reflections to three diagonals,
- * then QL steps with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
+ * Eigenvectors of a symmetric matrix of robot_: Householder's reflections to three diagonals, then QR steps
+ * with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
  *
  * Of a compliance the slow modes, which count, come out with all their digits; the fastest keep few
- * when there are frequencies a thousand times lower.
+ * when there are frequencies a thousand times lower. Joints come in the order from the base, so that
+ * compliances fall from the first row on, and small eigenvalues are found first, at the end.
  */
 #include "robot_impact.h"
 
@@ -13,48 +14,50 @@
  * as none: energies change by less than its root.
  */
 #define SMALL ROBOT_R(1e-8)
-/* QL takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
-#define MOST_STEPS (12*ROBOT_N)
+/* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
+#define MOST_STEPS 4
 
-/* One reflection I - scale v v' of rows and columns first to last: A - v w' - w v'. */
-static void turn(int first, const robot_real v[ROBOT_N], robot_real scale, robot_square A)
+/* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
+static void turn(int first, int size, const robot_real *v, robot_real scale, robot_matrix A)
 {
-    robot_real w[ROBOT_N];
+    robot_real w[ROBOT_SYSTEM];
     robot_real along = ROBOT_R(0.0);
-    for (int i = first; i < ROBOT_N; ++i) {
+    for (int i = first; i < size; ++i) {
         robot_real sum = ROBOT_R(0.0);
-        for (int j = first; j < ROBOT_N; ++j) {
+        for (int j = first; j < size; ++j) {
             sum += A[i][j]*v[j];
         }
         w[i] = scale*sum;
         along += w[i]*v[i];
     }
     along *= ROBOT_R(0.5)*scale;
-    for (int i = first; i < ROBOT_N; ++i) {
+    for (int i = first; i < size; ++i) {
         w[i] -= along*v[i];
         const robot_real vi = v[i];
         const robot_real wi = w[i];
         for (int j = first; j <= i; ++j) {
-            A[i][j] -= vi*w[j] + wi*v[j];
-            A[j][i] = A[i][j];
+            const robot_real entry = A[i][j] - vi*w[j] - wi*v[j];
+            A[i][j] = entry;
+            A[j][i] = entry;
         }
     }
 }
 
-/* Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. */
-static void reflect(robot_square A, robot_real d[ROBOT_N], robot_real e[ROBOT_N], robot_square Q)
+/*
+ * Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. Of each
+ * reflection, v stays in A's own row.
+ */
+static void reflect(int size, robot_matrix A, robot_real *d, robot_real *e, robot_matrix Q)
 {
-    robot_square vectors; /* of each reflection */
-    robot_real scale[ROBOT_N]; /* 2/v'v */
-    for (int k = 0; k + 1 < ROBOT_N; ++k) {
-        robot_real *const v = vectors[k];
-        const robot_real first = A[k][k + 1];
+    robot_real scale[ROBOT_SYSTEM]; /* 2/v'v */
+    for (int k = 0; k + 1 < size; ++k) {
+        robot_real *const v = A[k];
+        const robot_real first = v[k + 1];
         robot_real square = ROBOT_R(0.0);
-        for (int i = k + 2; i < ROBOT_N; ++i) {
-            v[i] = A[k][i];
+        for (int i = k + 2; i < size; ++i) {
             square += v[i]*v[i];
         }
-        d[k] = A[k][k];
+        d[k] = v[k];
         e[k] = first;
         scale[k] = ROBOT_R(0.0);
         if (square > ROBOT_R(0.0)) {
@@ -62,103 +65,99 @@ static void reflect(robot_square A, robot_real d[ROBOT_N], robot_real e[ROBOT_N]
             e[k] = first > ROBOT_R(0.0) ? -length : length;
             v[k + 1] = first - e[k];
             scale[k] = ROBOT_R(1.0)/(length*(length + ROBOT_FABS(first)));
-            turn(k + 1, v, scale[k], A);
+            turn(k + 1, size, v, scale[k], A);
         }
     }
-    d[ROBOT_N - 1] = A[ROBOT_N - 1][ROBOT_N - 1];
-    e[ROBOT_N - 1] = ROBOT_R(0.0);
-    for (int i = 0; i < ROBOT_N; ++i) {
-        for (int j = 0; j < ROBOT_N; ++j) {
+    d[size - 1] = A[size - 1][size - 1];
+    for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) {
             Q[i][j] = ROBOT_R(0.0);
         }
         Q[i][i] = ROBOT_R(1.0);
     }
-    for (int k = ROBOT_N - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
-        const robot_real *const v = vectors[k];
-        for (int i = k + 1; i < ROBOT_N && scale[k] > ROBOT_R(0.0); ++i) {
+    for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
+        const robot_real *const v = A[k];
+        for (int i = k + 1; i < size && scale[k] > ROBOT_R(0.0); ++i) {
             robot_real along = ROBOT_R(0.0);
-            for (int j = k + 1; j < ROBOT_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 along += Q[i][j]*v[j];
             }
             along *= scale[k];
-            for (int j = k + 1; j < ROBOT_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 Q[i][j] -= along*v[j];
             }
         }
     }
 }
 
-/* One QL step on rows first to last; turns the rows of Q, too. */
-static void chase(int first, int last, robot_real d[ROBOT_N], robot_real e[ROBOT_N], robot_square Q)
+/* Turns two rows of Q by an angle. */
+static void turn_rows(int size, robot_real c, robot_real s, robot_real *upper, robot_real *lower)
 {
-    const robot_real one = ROBOT_R(1.0);
-    const robot_real half = ROBOT_R(0.5)*(d[first + 1] - d[first])/e[first];
-    const robot_real length = ROBOT_FABS(half) + ROBOT_SQRT(half*half + one);
-    robot_real g = d[last] - d[first] + e[first]/(half < ROBOT_R(0.0) ? -length : length);
-    robot_real s = one;
-    robot_real c = one;
-    robot_real p = ROBOT_R(0.0);
-    for (int i = last - 1; i >= first; --i) {
-        const robot_real f = s*e[i];
-        const robot_real b = c*e[i];
-        const robot_real r = ROBOT_SQRT(f*f + g*g);
-        e[i + 1] = r;
-        if (!(r > ROBOT_R(0.0))) {
-            d[i + 1] -= p;
-            e[last] = ROBOT_R(0.0);
-            return;
-        }
-        s = f/r;
-        c = g/r;
-        g = d[i + 1] - p;
-        const robot_real t = (d[i] - g)*s + ROBOT_R(2.0)*c*b;
-        p = s*t;
-        d[i + 1] = g + p;
-        g = c*t - b;
-        for (int j = 0; j < ROBOT_N; ++j) {
-            const robot_real x = Q[i][j];
-            const robot_real y = Q[i + 1][j];
-            Q[i + 1][j] = s*x + c*y;
-            Q[i][j] = c*x - s*y;
-        }
+    for (int j = 0; j < size; ++j) {
+        const robot_real x = upper[j];
+        const robot_real y = lower[j];
+        upper[j] = c*x + s*y;
+        lower[j] = c*y - s*x;
     }
-    d[first] -= p;
-    e[first] = g;
-    e[last] = ROBOT_R(0.0);
 }
 
-/* Whether an entry between two of the diagonal is more than none. */
-static bool counts(robot_real before, robot_real after, robot_real entry)
+/* One QR step on rows first to last; turns the rows of Q, too. */
+static void chase(int first, int last, int size, robot_real *d, robot_real *e, robot_matrix Q)
 {
-    const robot_real noise = ROBOT_EPSILON*(ROBOT_FABS(before) + ROBOT_FABS(after));
-    return entry*entry > ROBOT_FMAX(SMALL*ROBOT_FABS(before*after), noise*noise);
-}
-
-/* Last row of the block that begins at a row. */
-static int end_of_block(int first, const robot_real values[ROBOT_N], const robot_real e[ROBOT_N])
-{
-    int last = first;
-    while (last + 1 < ROBOT_N && counts(values[last], values[last + 1], e[last])) {
-        ++last;
-    }
-    return last;
-}
-
-bool robot_spectrum(robot_square A, robot_real values[ROBOT_N], robot_square vectors)
-{
-    robot_real e[ROBOT_N];
-    reflect(A, values, e, vectors);
-    int first = 0;
-    for (int step = 0; step <= MOST_STEPS; ++step) {
-        while (first < ROBOT_N && end_of_block(first, values, e) == first) {
-            ++first;
+    const robot_real end = e[last - 1];
+    const robot_real half = ROBOT_R(0.5)*(d[last - 1] - d[last]);
+    const robot_real length = ROBOT_SQRT(half*half + end*end);
+    robot_real x = d[first] - d[last] + end*end/(half < ROBOT_R(0.0) ? half - length : half + length);
+    robot_real z = e[first];
+    for (int k = first; k < last; ++k) {
+        const robot_real r = ROBOT_SQRT(x*x + z*z);
+        const robot_real inverse = ROBOT_R(1.0)/r;
+        const bool turns = r > ROBOT_R(0.0);
+        const robot_real c = turns ? x*inverse : ROBOT_R(1.0);
+        const robot_real s = turns ? z*inverse : ROBOT_R(0.0);
+        if (k > first) {
+            e[k - 1] = r;
         }
-        if (first == ROBOT_N) {
+        const robot_real u = s*(d[k + 1] - d[k]) + ROBOT_R(2.0)*c*e[k];
+        d[k] += s*u;
+        d[k + 1] -= s*u;
+        e[k] = c*u - e[k];
+        if (k + 1 < last) {
+            x = e[k];
+            z = s*e[k + 1];
+            e[k + 1] *= c;
+        }
+        turn_rows(size, c, s, Q[k], Q[k + 1]);
+    }
+}
+
+bool robot_spectrum(int size, robot_matrix A, robot_real *values, robot_matrix vectors)
+{
+    robot_real e[ROBOT_SYSTEM];
+    robot_real all = ROBOT_R(0.0);
+    reflect(size, A, values, e, vectors);
+    for (int i = 0; i < size; ++i) {
+        all += ROBOT_FABS(values[i]);
+    }
+    const robot_real noise = ROBOT_EPSILON*ROBOT_EPSILON*all*all;
+    int last = size - 1;
+    for (int step = 0; step < MOST_STEPS*size; ++step) {
+        int first = last;
+        while (first > 0) {
+            const robot_real square = e[first - 1]*e[first - 1];
+            if (square > noise + SMALL*ROBOT_FABS(values[first - 1]*values[first])) {
+                --first;
+            } else if (first == last) {
+                --last;
+                first = last;
+            } else {
+                break;
+            }
+        }
+        if (last == 0) {
             return true;
         }
-        if (step < MOST_STEPS) {
-            chase(first, end_of_block(first, values, e), values, e, vectors);
-        }
+        chase(first, last, size, values, e, vectors);
     }
     return false;
 }

@@ -5,12 +5,22 @@
 
 #include "robot_impact.h"
 
+/* What the next step takes of those before it, and of its own length. */
+typedef struct {
+    robot_real ratio; /* of its length to the last one's */
+    robot_real share, more, before; /* of the bend, see robot_press */
+    robot_real u, u_before; /* in u', 1/s */
+    robot_real hold, soft, yields; /* depth hold + soft f = what presses; x gives way by yields f */
+} robot_pace;
+
 typedef struct {
     robot_impact *impact;
     const robot_phase *phase;
     robot_real speed;
     robot_real scale; /* of forces, N */
     int level;
+    int even; /* steps in a row of this length */
+    robot_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     robot_real time;
     robot_real drifted; /* by the motors, m */
@@ -20,27 +30,40 @@ typedef struct {
     robot_real h, h_before, x; /* last steps, contact point */
     robot_real bump; /* what the bend adds to the force on average of the last step */
     robot_real f, rise; /* force, and by how much it grew in the last step */
-    robot_real u, u_before, root; /* deformation of the skin; root of its depth */
+    robot_real u, u_before; /* deformation of the skin and of what stands */
+    robot_real now, root; /* depth of the skin, and its root where it is Hertz's */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
+    robot_real swings; /* most that modes that stand add to the force as they swing, N */
 } robot_state;
+
+/* What is looked for in the steps of an impact that goes on after its peak. */
+struct robot_watch {
+    robot_real matters; /* force that may still come, N */
+    robot_real depth; /* of the skin under it, m */
+    robot_real late; /* the largest force from 0.5 s on, N */
+    robot_real before, last; /* forces of the last steps, N */
+};
+
+/* Notes a step that was taken: the late force; says whether none that matters can come. */
+bool robot_pass(const robot_state *s, robot_watch *watch);
 
 /* A step on trial. */
 typedef struct {
     robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
     robot_real x, v; /* of the contact point without the force at the end */
     robot_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    robot_real u, root;
+    robot_real u, depth, root;
 } robot_trial;
 
-/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+/* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate);
 
 /* Moves all modes by a step without forces. */
 void robot_glide(const robot_state *s, robot_trial *t);
 
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
-void robot_press(const robot_state *s, robot_trial *t);
+void robot_press(robot_state *s, robot_trial *t);
 
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void robot_take(const robot_trial *t, robot_state *s);
@@ -49,9 +72,9 @@ void robot_take(const robot_trial *t, robot_state *s);
 void robot_release(robot_state *s);
 
 /*
- * Whether no later force exceeds the largest so far: proven, but for a share by which the energy may
- * exceed what that takes.
+ * Whether no later force exceeds one, the present one being less, under which the skin is so deep: proven,
+ * but for a share by which the energy may exceed what that takes.
  */
-bool robot_is_settled(const robot_state *s, robot_real force, robot_real share);
+bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share);
 
 #endif

@@ -5,7 +5,7 @@
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
 #define CONTACT_STEP ROBOT_R(1.0)
 #define MODE_STEP ROBOT_R(5.6)
-/* Most damping of a servo in the longest step, as a share of what it acts on. */
+/* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP ROBOT_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
@@ -17,8 +17,14 @@
  * through the damper, by more than this share of the force.
  */
 #define FELT ROBOT_R(2e-4)
-/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+/* Nor may it swing as motors are released so that spring and damper feel more than this share of it. */
 #define LEFT ROBOT_R(5e-5)
+/*
+ * Where the damper's jump at first touch is more than this share of the force, squared, the longest
+ * step is at most so many times as long as the skin takes for it, c over its stiffness.
+ */
+#define JUMPS ROBOT_R(0.1)
+#define JUMP_STEP ROBOT_R(24.0)
 /* Steps counted; more than any budget has. */
 #define MOST ROBOT_R(1e6)
 
@@ -62,9 +68,11 @@ static void let_stand(const robot_impact *impact, robot_real contact, bool relea
         const bool body = impact->gives_way && i == modes->count - 1;
         const robot_real weight = modes->row[i]*modes->row[i];
         const robot_real along = modes->row[i]*modes->start[i];
+        const robot_real held = region->stiffness
+            + region->damping*ROBOT_SQRT(ROBOT_FMAX(modes->squared[i], ROBOT_R(0.0)));
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
-            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && (!released || weight*held < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
         if (i >= modes->rigid && !body) {
             phase->settles = phase->settles && modes->squared[i] > ROBOT_R(0.0);
@@ -116,14 +124,14 @@ static void mode_steps(robot_phase *phase, int i)
     }
 }
 
-/* Most that a servo's gains damp a mode, 1/s. */
+/* Most that joints and a servo's gains damp a mode, 1/s. */
 static robot_real damping_rate(const robot_phase *phase)
 {
     robot_real rate = ROBOT_R(0.0);
-    for (int i = 0; i < ROBOT_N && phase->damped; ++i) {
+    for (int i = 0; i < ROBOT_DAMPERS && phase->damped; ++i) {
         robot_real of_motor = ROBOT_R(0.0);
         for (int k = 0; k < phase->modes.count; ++k) {
-            const robot_real shape = phase->modes.shape[k][ROBOT_SYSTEM - ROBOT_N + i];
+            const robot_real shape = phase->modes.shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS + i];
             of_motor += shape*shape;
         }
         rate = ROBOT_FMAX(rate, phase->damping[i]*of_motor);
@@ -159,7 +167,10 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
     }
     const robot_real share = ROBOT_FMIN(moving/impact->mobility, ROBOT_R(1.0));
     rate2 = ROBOT_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
-    const robot_real slowest = ROBOT_R(1.0)/time;
+    const robot_real jump = region->damping*impact->mobility;
+    const robot_real rise = jump*region->damping > JUMPS*region->stiffness
+        ? impact->skin_rate/(JUMP_STEP*jump) : ROBOT_R(0.0);
+    const robot_real slowest = ROBOT_FMAX(ROBOT_R(1.0)/time, rise);
     const robot_real rate = ROBOT_FMAX(slowest, ROBOT_FMAX(ROBOT_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const robot_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;

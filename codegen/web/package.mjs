@@ -6,7 +6,7 @@
 //     const region = panda.body_region({ part: panda.enums.body_part.CHEST, clamped: 1 });
 //     const { status, speed } = panda.safe_speed({ q, n, limit: region.force_limit, region, p });
 //
-// A function takes its C arguments by name and returns what it writes, with `status` beside it;
+// A law of contact is an array of rows. A function takes its C arguments by name and returns what it writes, with `status` beside it;
 // matrices are arrays of rows. Where it writes nothing the result holds nothing but the status.
 
 const SECTION = "softimpact";
@@ -115,9 +115,10 @@ function shaped(values, shape) {
 
 function readStruct(about, memory, struct, at) {
   return Object.fromEntries(
-    struct.fields.map(({ name, type, shape, offset }) => [
+    struct.fields.map(({ name, type, shape, offset, pointer }) => [
       name,
-      shaped(read(about, memory, type, at + offset, count(shape)), shape),
+      // what is written holds no address but NULL
+      pointer ? null : shaped(read(about, memory, type, at + offset, count(shape)), shape),
     ]),
   );
 }
@@ -136,8 +137,15 @@ function write(about, memory, place, argument, value) {
     return at;
   }
   const at = place(struct.size);
-  for (const { name, type, shape, offset } of struct.fields) {
+  for (const { name, type, shape, offset, pointer } of struct.fields) {
     const numbers = flat(value[name], `${argument.name}.${name}`);
+    if (pointer) {
+      // rows of numbers; none is NULL
+      const rows = numbers.length === 0 ? 0 : place(about.sizes.real * numbers.length);
+      if (rows) view(about, memory, "real", rows, numbers.length).set(numbers);
+      view(about, memory, "unsigned int", at + offset, 1)[0] = rows;
+      continue;
+    }
     if (numbers.length !== count(shape)) {
       throw new TypeError(`${argument.name}.${name} must hold ${count(shape)} numbers, not ${numbers.length}`);
     }

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal, Protocol
+from dataclasses import replace
+from typing import Any, ClassVar, Literal, Protocol, Self
 
 from softimpact.symbolic import Matrix
 
@@ -37,6 +38,11 @@ class Bound(Protocol):
     def name(self) -> str:
         """The field of a study file that it stands in."""
         return f"bounds.{self.kind}.{self.sense}"
+
+    def at(self, limit: float) -> Self:
+        """Return the bound with another limit."""
+        changed: dict[str, Any] = {self.sense: limit}
+        return replace(self, **changed)  # type: ignore[type-var]
 
     def figures(self, machine: Machine, q: Matrix) -> Matrix:
         """Return the figures that are bounded, a column in ``unit``; differentiable.

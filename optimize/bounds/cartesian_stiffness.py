@@ -34,7 +34,8 @@ class CartesianStiffness(AtLeast):
     def figures(self, machine: Machine, q: Matrix) -> Matrix:
         """Return the stiffness [N/m]; the least one 0.5 % too small at worst."""
         J = machine.jacobian(q)
-        compliance = ca.mtimes(J, J.T / ca.repmat(machine.softest_springs, 1, 3))
+        soft = machine.compliance(-machine.margin)
+        compliance = ca.mtimes(J, J.T * ca.repmat(soft, 1, 3))
         if self.direction is None:
             return 1 / largest_eigenvalue(compliance)
         n = ca.DM(np.asarray(unit_direction(self.direction)))

@@ -10,13 +10,14 @@ import casadi as ca
 
 from softimpact.symbolic import STANDARD_GRAVITY, Matrix, frame_jacobian
 
+from ..coordinates import onto
 from ..hardware import Machine
 from .bound import AtMost
 
 ROUNDED = 1e-30
 """Square of a length [m²] that keeps the slope of a deflection of zero finite."""
 
-Load = tuple[float, float, float]
+TipLoad = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,8 @@ class Deflection(AtMost):
     unit: ClassVar[str] = "m"
 
     most: float
-    forces: tuple[Load, ...]
-    moments: tuple[Load, ...] = ()
+    forces: tuple[TipLoad, ...]
+    moments: tuple[TipLoad, ...] = ()
     payload: float = 0.0
     sag: bool = False
 
@@ -53,8 +54,8 @@ class Deflection(AtMost):
         """Return the displacement under each load [m]."""
         J = machine.jacobian(q)
         torques = self.torques(machine, q)
-        compliance, x = 1 / machine.hardware.springs, machine.margin
-        soft, stiff = compliance / (1 - x), compliance / (1 + x)
+        x = machine.margin
+        soft, stiff = machine.compliance(-x), machine.compliance(x)
         found = []
         for k in range(torques.shape[1]):
             torque = torques[:, k]
@@ -68,7 +69,7 @@ class Deflection(AtMost):
         return ca.vertcat(*found)
 
     def torques(self, machine: Machine, q: Matrix) -> Matrix:
-        """Return what each load does to the springs, n×k [N·m]."""
+        """Return what each load does to the coordinates, m×k [N·m]."""
         J = machine.jacobian(q)
         forces = ca.DM(self.forces).T
         if self.payload:
@@ -76,7 +77,8 @@ class Deflection(AtMost):
         torques = ca.mtimes(J.T, forces)
         if any(any(moment) for moment in self.moments):
             turning = frame_jacobian(machine.robot, machine.model.tip, q)[3:, :]
-            torques = torques + ca.mtimes(turning.T, ca.DM(self.moments).T)
+            moments = ca.mtimes(turning.T, ca.DM(self.moments).T)
+            torques = torques + onto(machine.model, q, moments)
         if self.sag:  # the weight pulls with the opposite of what holds the links
             own = machine.gravity_torques(q)
             torques = torques - ca.repmat(own, 1, torques.shape[1])

@@ -35,7 +35,7 @@ class Energy(AtMost):
     def figures(self, machine: Machine, q: Matrix) -> Matrix:
         """Return the energy of each motion [J]."""
         J = machine.jacobian(q)
-        mass = machine.mass_matrix(q) + ca.diag(machine.hardware.reflected_rotors)
+        mass = machine.mass_matrix(q) + machine.rotor_matrix(q)
         mass = mass + self.payload * ca.mtimes(J.T, J)
-        velocities = machine.joint_velocities(q)
+        velocities = machine.velocities(q)
         return ca.sum1(velocities * ca.mtimes(mass, velocities)).T / 2

@@ -39,7 +39,7 @@ class Giaf(AtLeast):
         """Return ζ."""
         J, M = machine.jacobian(q), machine.mass_matrix(q)
         free = contact_mobility(M, J)
-        real = contact_mobility(M + ca.diag(machine.hardware.reflected_rotors), J)
+        real = contact_mobility(M + machine.rotor_matrix(q), J)
         if self.direction is None:
             return giaf(free, real)
         return directional_giaf(free, real, ca.DM(unit_direction(self.direction)))

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 from softimpact.symbolic import Matrix, manipulability
 
+from ..coordinates import moved_by_motors
 from ..hardware import Machine
 from .bound import AtLeast
 
@@ -27,4 +28,4 @@ class Manipulability(AtLeast):
 
     def figures(self, machine: Machine, q: Matrix) -> Matrix:
         """Return ω_m [m³]."""
-        return manipulability(machine.jacobian(q))
+        return manipulability(moved_by_motors(machine.model, machine.jacobian(q)))

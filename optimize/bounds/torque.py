@@ -11,6 +11,7 @@ import numpy as np
 
 from softimpact.symbolic import STANDARD_GRAVITY, Matrix
 
+from ..coordinates import at_coordinates
 from ..hardware import Machine
 from .bound import AtMost
 
@@ -37,10 +38,11 @@ class Torque(AtMost):
     def figures(self, machine: Machine, q: Matrix) -> Matrix:
         """Return the share of the limit, a row a joint that has one, and force."""
         limits = machine.model.drives.torque_limits
-        limits = machine.robot.torque_limits if limits is None else limits
+        limits = np.array(machine.robot.torque_limits if limits is None else limits)
+        limits = limits[list(machine.model.independent)]
         known = [int(i) for i in np.flatnonzero(np.isfinite(limits))]
         at_tip = ca.DM(self.forces).T - self.payload * ca.DM(STANDARD_GRAVITY)
         own = ca.repmat(machine.gravity_torques(q), 1, len(self.forces))
         torques = own + ca.mtimes(machine.jacobian(q).T, at_tip)
-        strength = machine.hardware.gears * ca.DM(limits)
+        strength = at_coordinates(machine.model, machine.hardware.gears) * ca.DM(limits)
         return ca.vec((ca.fabs(torques) / ca.repmat(strength, 1, len(self.forces)))[known, :])

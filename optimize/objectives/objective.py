@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from softimpact.symbolic import Matrix
 from softimpact.symbolic.robot.rigid import Array, Indices
+
+if TYPE_CHECKING:
+    from ..scenarios import Scenarios
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,8 @@ class Objective(Protocol):
         more_is_better: whether ``value`` is to be large.
         scales_speed: whether it changes how fast impacts are.
         all_scenarios: whether every scenario counts, and not the worst alone.
+        span: values between which a front holds it unless it is told others; None where it can
+            only be sought.
     """
 
     kind: ClassVar[str] = ""
@@ -40,6 +45,7 @@ class Objective(Protocol):
     scales_speed: ClassVar[bool] = False
     more_is_better: ClassVar[bool] = False
     all_scenarios: ClassVar[bool] = False
+    span: ClassVar[tuple[float, float] | None] = None
 
     def own(self, scenarios: Indices, shares: Array, speeds: Array) -> Own:
         """Return the objective's variables.
@@ -66,3 +72,10 @@ class Objective(Protocol):
     def cost(self, own: Matrix, scenarios: Indices, speeds: Matrix) -> Matrix:
         """Return what is made small, in a unit in which one is much and 1e-4 is little."""
         ...
+
+    def held(self, scenarios: Scenarios, value: float) -> Scenarios:
+        """Return scenarios in which another objective is sought while this one has a value.
+
+        Only asked of objectives with a ``span``.
+        """
+        raise NotImplementedError

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import casadi as ca
 import numpy as np
@@ -13,6 +13,9 @@ from softimpact.symbolic import Matrix
 from softimpact.symbolic.robot.rigid import Array, Indices
 
 from .objective import Objective, Own
+
+if TYPE_CHECKING:
+    from ..scenarios import Scenarios
 
 SLOWEST = 1e-3
 """Least factor on the speeds that is looked at."""
@@ -30,6 +33,7 @@ class SafeSpeed(Objective):
     unit: ClassVar[str] = "of the speeds"
     scales_speed: ClassVar[bool] = True
     more_is_better: ClassVar[bool] = True
+    span: ClassVar[tuple[float, float] | None] = (0.5, 2.0)
 
     fastest: float = 2.0
 
@@ -54,3 +58,7 @@ class SafeSpeed(Objective):
     def cost(self, own: Matrix, scenarios: Indices, speeds: Matrix) -> Matrix:
         """Return the logarithm of 1 over the factor."""
         return -own
+
+    def held(self, scenarios: Scenarios, value: float) -> Scenarios:
+        """Return the scenarios with speeds times this factor."""
+        return scenarios.faster(value)

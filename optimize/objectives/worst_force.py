@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import casadi as ca
 import numpy as np
@@ -14,6 +14,9 @@ from softimpact.symbolic.robot.rigid import Array, Indices
 
 from .objective import Objective, Own
 
+if TYPE_CHECKING:
+    from ..scenarios import Scenarios
+
 
 @dataclass(frozen=True)
 class WorstForce(Objective):
@@ -21,6 +24,7 @@ class WorstForce(Objective):
 
     kind: ClassVar[str] = "worst_force"
     unit: ClassVar[str] = "of the limit"
+    span: ClassVar[tuple[float, float] | None] = (0.5, 1.0)
 
     def own(self, scenarios: Indices, shares: Array, speeds: Array) -> Own:
         """Return F, which no share exceeds."""
@@ -41,3 +45,7 @@ class WorstForce(Objective):
     def cost(self, own: Matrix, scenarios: Indices, speeds: Matrix) -> Matrix:
         """Return F."""
         return own
+
+    def held(self, scenarios: Scenarios, value: float) -> Scenarios:
+        """Return the scenarios with this share of the limits allowed."""
+        return scenarios.within(value)

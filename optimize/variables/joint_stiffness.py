@@ -9,8 +9,10 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, InvalidValue, Matrix, Robot, UnknownName
+from softimpact.symbolic import ImpactModel, InvalidValue, Matrix, UnknownName
+from softimpact.symbolic.robot.rigid import Array
 
+from ..coordinates import spring_names
 from ..hardware import Hardware
 from .variable import Range, Variable
 
@@ -23,9 +25,9 @@ class JointStiffness(Variable):
     """k_s of each group of joints.
 
     Attributes:
-        groups: of each joint, length n; joints of the same group share their spring.
-        lower, upper: ends of the range of each joint, length n [N·m/rad].
-        nominal: stiffness as it is, length n [N·m/rad].
+        groups: of each spring; those of the same group have the same stiffness.
+        lower, upper: ends of the range of each spring [N·m/rad].
+        nominal: stiffness as it is, of each spring [N·m/rad].
     """
 
     kind: ClassVar[str] = "joint_stiffness"
@@ -38,11 +40,12 @@ class JointStiffness(Variable):
     nominal: tuple[float, ...]
 
     def range(self, model: ImpactModel) -> Range:
-        """Return the range that all joints of a group keep."""
+        """Return the range that all springs of a group keep."""
         names, ends = [], []
+        joint_names = spring_names(model)
         for group in range(max(self.groups) + 1):
             joints = [i for i, g in enumerate(self.groups) if g == group]
-            names.append(", ".join(model.robot.joint_names[i] for i in joints))
+            names.append(", ".join(joint_names[i] for i in joints))
             low, high = max(self.lower[i] for i in joints), min(self.upper[i] for i in joints)
             ends.append((low, high, self.nominal[joints[0]]))
         lower, upper, start = np.array(ends).T
@@ -53,27 +56,47 @@ class JointStiffness(Variable):
         return replace(hardware, springs=values[list(self.groups), 0])
 
 
-def joint_groups(robot: Robot, grouping: Grouping) -> tuple[int, ...]:
-    """Return the group of each joint, length n; groups are numbered as they first occur.
+def require_common_stiffness(
+    model: ImpactModel, groups: Sequence[int], lower: Array, upper: Array
+) -> None:
+    """Raise InvalidValue for joints that share a spring but no stiffness within their bounds."""
+    names = spring_names(model)
+    for group in range(max(groups) + 1):
+        joints = [i for i, g in enumerate(groups) if g == group]
+        low, high = max(joints, key=lambda i: lower[i]), min(joints, key=lambda i: upper[i])
+        if lower[low] > upper[high]:
+            raise InvalidValue(
+                "joint_stiffness",
+                f"joints '{names[low]}' and '{names[high]}' share a spring, but '{names[low]}' "
+                f"needs {lower[low]:g} at least and '{names[high]}' {upper[high]:g} at most; part "
+                "them, or change stiffness.lower or upper",
+            )
+
+
+def joint_groups(model: ImpactModel, grouping: Grouping) -> tuple[int, ...]:
+    """Return the group of each spring; groups are numbered as they first occur.
 
     Raises:
         InvalidValue: a joint in two groups, or in none.
         UnknownName: there is no such joint.
     """
+    known = spring_names(model)
     if grouping == "each":
-        return tuple(range(robot.n))
+        return tuple(range(len(known)))
     if grouping == "equal":
-        return (0,) * robot.n
+        return (0,) * len(known)
     group_of: dict[str, int] = {}
     for i, names in enumerate(grouping):
+        if not names:
+            raise InvalidValue("joint_stiffness", f"group {i + 1} names no joint; leave it out")
         for name in names:
-            if name not in robot.joint_names:
-                raise UnknownName("joint", name, robot.joint_names)
+            if name not in known:
+                raise UnknownName("joint with a spring", name, known)
             if name in group_of:
                 raise InvalidValue("joint_stiffness", f"joint '{name}' is in two groups")
             group_of[name] = i
-    missing = [name for name in robot.joint_names if name not in group_of]
+    missing = [name for name in known if name not in group_of]
     if missing:
         raise InvalidValue("joint_stiffness", f"joint '{missing[0]}' is in no group")
-    order = list(dict.fromkeys(group_of[name] for name in robot.joint_names))
-    return tuple(order.index(group_of[name]) for name in robot.joint_names)
+    order = list(dict.fromkeys(group_of[name] for name in known))
+    return tuple(order.index(group_of[name]) for name in known)

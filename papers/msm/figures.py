@@ -30,7 +30,7 @@ from .ladder import LADDER, REGIONS
 from .ladder_figures import COLOURS, error_figure, ladder_figure
 from .scenarios import SCENARIOS
 
-Drawing = tuple[str, str, Callable[[], Figure]]
+PaperFigure = tuple[str, str, Callable[[], Figure]]
 """File name, caption, and how to draw it."""
 
 STYLES = {"full": "-", "two_mass": "--", "chain_controlled": ":"}
@@ -67,10 +67,10 @@ def draw(results: Results, folder: Path) -> dict[str, str]:
     return drawn
 
 
-def _figures(results: Results) -> list[Drawing]:
+def _figures(results: Results) -> list[PaperFigure]:
     r_r = [s for s in results.sweeps if SCENARIOS[s].arm.robot == "rr"]
     r_min = [s for s in results.sweeps if SCENARIOS[s].arm.robot == "rmin"]
-    wanted: list[Drawing] = []
+    wanted: list[PaperFigure] = []
     for numbers, group in (((5, 6, 8), r_r), ((13, 12, 15), r_min)):
         if not group:
             continue

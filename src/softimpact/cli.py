@@ -6,6 +6,7 @@ Commands import what they need when they run, so that ``--help`` answers at once
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 from collections.abc import Sequence
@@ -78,6 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: default the process's own.
     """
     os.environ.setdefault("MUJOCO_GL", "disable")  # nothing is drawn, and its graphics load slowly
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # where no home keeps its fonts
     words = list(sys.argv[1:] if arguments is None else arguments)
     accept_any_console()
     try:

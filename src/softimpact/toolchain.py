@@ -43,3 +43,15 @@ def cache_folder() -> Path | None:
     except RuntimeError:
         return None
     return found if found.is_absolute() else None  # older versions of platformdirs return ~
+
+
+def usable_cache() -> Path | None:
+    """Return ``cache_folder``, made if need be; None where there is none or it cannot be written."""
+    folder = cache_folder()
+    if folder is None:
+        return None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return folder if os.access(folder, os.W_OK) else None

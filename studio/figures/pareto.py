@@ -9,7 +9,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from softimpact.studio.pareto_report import CheckedPoint, ParetoReport
+from softimpact.studio.pareto_report import CheckedFrontPoint, ParetoReport
 
 from .pareto_designs import figure_of_designs
 from .style import (
@@ -156,7 +156,7 @@ def _draw_fronts(axes: Any, report: ParetoReport, height: Any) -> list[Any]:
     }
     handles = []
     for name, looks in LOOKS.items():
-        points: Sequence[CheckedPoint] = report.fronts[name]
+        points: Sequence[CheckedFrontPoint] = report.fronts[name]
         if not points or (name == "given" and poses == 1):
             continue
         deflections = [MM * checked.point.deflection for checked in points]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from softimpact.optimize.coordinates import sprung
 from softimpact.studio.pareto_report import ParetoReport
 from softimpact.symbolic import JointKind
 
@@ -40,13 +41,15 @@ def figure_of_designs(report: ParetoReport) -> Figure:
     deflection = [1e3 * point.deflection for point in points]
     springs = np.array([point.outcome.springs for point in points])
     robot = report.study.robot
-    handles = []
+    handles, places = [], sprung(report.study.model)
     for i, joint in enumerate(robot.joints):
         style = _style(i)
-        handles += stiffness.plot(deflection, springs[:, i], label=joint.name, **style)
+        if i in places:
+            found = springs[:, places.index(i)]
+            stiffness.plot(deflection, found, **style)
         scale = 180 / np.pi if joint.kind is JointKind.HINGE else 1e3
         change = [scale * (p.outcome.q[i] - report.pareto.reference.q[i]) for p in points]
-        angles.plot(deflection, change, label=joint.name, **style)
+        handles += angles.plot(deflection, change, label=joint.name, **style)
     for axes in (stiffness, angles):
         axes.set_xscale("log")
         plain_log_ticks(axes)
@@ -62,12 +65,15 @@ def figure_of_designs(report: ParetoReport) -> Figure:
 
 def _finish(stiffness: Any, angles: Any, report: ParetoReport) -> None:
     study = report.study
-    kinds = {joint.kind for joint in study.robot.joints}
+    joints = study.robot.joints
     units = {JointKind.HINGE: ("N·m/rad", "deg"), JointKind.SLIDE: ("N/m", "mm")}
-    shown = [units[kind] for kind in units if kind in kinds]
+    kinds = {joint.kind for joint in joints}, {joints[i].kind for i in sprung(study.model)}
+    of_joints, of_springs = (
+        ", ".join(units[kind][which] for kind in units if kind in some)
+        for which, some in zip((1, 0), kinds, strict=True)
+    )
     stiffness.set_yscale("log")
     stiffness.set_ylim(study.lower.min() / 1.3, study.upper.max() * 1.3)
-    of_springs, of_joints = (", ".join(each) for each in zip(*shown, strict=True))
     stiffness.set_ylabel(f"joint stiffness $k_s$ [{of_springs}]", fontsize=TEXT)
     angles.set_ylabel(f"posture, from {study.task_pose.name}'s [{of_joints}]", fontsize=TEXT)
 

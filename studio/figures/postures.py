@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from softimpact.studio.design_report import DesignReport
-from softimpact.symbolic import Robot
+from softimpact.symbolic import Loop, Matrix, Robot
 from softimpact.symbolic.dynamics.kinematics import motions, poses
 from softimpact.symbolic.robot.rigid import Array
 
@@ -33,8 +33,12 @@ from .style import (
     winner_in_words,
 )
 
-VIEWS = ((0, 1, "from above"), (1, 2, "from the front (+x)"))
-"""Flat views: axes to the right and up, and their name."""
+VIEWS = ((0, 1, "from above"), (1, 2, "from the front (+x)"), (0, 2, "from the side (−y)"))
+"""Flat views: axes to the right and up, and their name. The first two are shown; the last takes the
+front's place for an arm in a plane that the front sees edge on."""
+
+FLAT = 0.05
+"""Share of its size by which an arm may leave a plane to count as in it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +73,9 @@ def figure_of_postures(report: DesignReport) -> Figure:
     grid = figure.add_gridspec(1, 3, width_ratios=(1.4, 1.0, 1.0))
     drawing = _drawing(report)
     _draw_in_space(figure.add_subplot(grid[0], projection=Axes3D.name), drawing)
-    for column, view in enumerate(VIEWS):
+    width = np.ptp(np.hstack([stick.points for stick in drawing.sticks]), axis=1)
+    above, front, side = VIEWS
+    for column, view in enumerate((above, side if width[1] < FLAT * width.max() else front)):
         _draw_flat(figure.add_subplot(grid[1 + column]), drawing, view)
     one = len(report.poses) == 1
     whose = "Posture as given and as designed" if one else "Postures of all poses"
@@ -82,15 +88,25 @@ def figure_of_postures(report: DesignReport) -> Figure:
 def stick_points(robot: Robot, tip: str, postures: Sequence[Array]) -> list[Array]:
     """Return the base, the origins of the joints' own frames and the tip, 3×(n+2) [m] a posture.
 
-    The joints' frames are the file's: the dynamics slide theirs along the axes.
+    The joints' frames are the file's: the dynamics slide theirs along the axes. Loops come first,
+    each once around, so that the arms that close a chain are drawn, too.
     """
-    frame = robot.frame(tip)
     q = ca.SX.sym("q", robot.n)
     known = poses(robot, motions(robot, q))
-    carrier = known[frame.joint]
-    end = carrier.position + ca.mtimes(carrier.rotation, frame.placement.translation)
-    path = [known[i].position for i in reversed(robot.ancestors(frame.joint))]
-    points = ca.Function("stick", [q], [ca.horzcat(ca.SX.zeros(3), *path, end)])
+
+    def way(name: str) -> list[Matrix]:
+        frame = robot.frame(name)
+        carrier = known[frame.joint]
+        end = carrier.position + ca.mtimes(carrier.rotation, frame.placement.translation)
+        return [*(known[i].position for i in reversed(robot.ancestors(frame.joint))), end]
+
+    around = [
+        point
+        for loop in robot.loops
+        if isinstance(loop, Loop)
+        for point in [*way(loop.second), *reversed(way(loop.first))]
+    ]
+    points = ca.Function("stick", [q], [ca.horzcat(*around, ca.SX.zeros(3), *way(tip))])
     return [np.array(points(posture)) for posture in postures]
 
 

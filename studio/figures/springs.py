@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from softimpact.optimize import Outcome
+from softimpact.optimize.coordinates import sprung
 from softimpact.studio.design_report import DesignReport
 from softimpact.symbolic import JointKind
 
@@ -41,7 +42,7 @@ def figure_of_springs(report: DesignReport) -> Figure:
     figure = new_figure(8.0, 5.0)
     axes = figure.add_subplot()
     axes.set_yscale("log")
-    columns = np.arange(study.robot.n)
+    columns = np.arange(len(study.spring_names))
     axes.bar(
         columns, study.upper - study.lower, 2.4 * HALF_WIDTH, study.lower, color=FAINT, zorder=1
     )
@@ -69,7 +70,8 @@ def figure_of_springs(report: DesignReport) -> Figure:
 
 def _message(report: DesignReport) -> str:
     """Return which joints' stiffness matters, and which does not."""
-    names, ranges = report.study.robot.joint_names, report.design.answers.indifferent
+    study, ranges = report.study, report.design.answers.indifferent[list(report.study.groups)]
+    names = study.spring_names
     loose = [name for name, (low, high) in zip(names, ranges, strict=True) if high > LOOSE * low]
     if not loose:
         return "Joint stiffness of least peak force: every joint matters"
@@ -101,7 +103,7 @@ def _draw_others(axes: Any, report: DesignReport) -> list[Any]:
     if not others:
         return []
     shifts = np.linspace(-HALF_WIDTH, HALF_WIDTH, len(others)) if len(others) > 1 else np.zeros(1)
-    places = shifts[:, None] + np.arange(report.study.robot.n)
+    places = shifts[:, None] + np.arange(len(report.study.spring_names))
     stiffness = np.array([outcome.springs for outcome in others])
     style: dict[str, Any] = {"color": SKY, "markersize": 4, "zorder": 3}
     label = f"other outcomes ({others[0].mode}), by rank from left to right"
@@ -109,7 +111,7 @@ def _draw_others(axes: Any, report: DesignReport) -> list[Any]:
 
 
 def _name_joints(axes: Any, report: DesignReport) -> None:
-    names = report.study.robot.joint_names
+    names = report.study.spring_names
     crowded = sum(map(len, names)) > 70
     turn: dict[str, Any] = {"rotation": 25, "ha": "right"} if crowded else {}
     axes.set_xticks(range(len(names)), names, fontsize=SMALL, **turn)
@@ -117,4 +119,5 @@ def _name_joints(axes: Any, report: DesignReport) -> None:
 
 def _unit(report: DesignReport) -> str:
     units = {JointKind.HINGE: "N·m/rad", JointKind.SLIDE: "N/m"}
-    return ", ".join(dict.fromkeys(units[joint.kind] for joint in report.study.robot.joints))
+    joints = [report.study.robot.joints[i] for i in sprung(report.study.model)]
+    return ", ".join(dict.fromkeys(units[joint.kind] for joint in joints))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 import softimpact
+from softimpact.codegen import region_parameters
 from softimpact.simulate.bracket import unknown_rotors
 from softimpact.simulate.tolerances import Tolerances, error_factors
 from softimpact.simulate.trajectory import passes
@@ -112,11 +113,7 @@ def _points(robot: Robot) -> Iterator[dict[str, Any]]:
 
 
 def _bodies(opened: Opened) -> list[Contact]:
-    """Return the regions of the body, and what is opened where that is another one or is padded.
-
-    Raises:
-        InvalidValue: it follows another law of contact than Hertz's.
-    """
+    """Return the regions of the body, and what is opened where that is another one or is padded."""
     name = opened.body.region.name
     own = {name: opened.body}
     plain = {region.name: Contact(region) for region in REGIONS.values()}
@@ -124,11 +121,12 @@ def _bodies(opened: Opened) -> list[Contact]:
 
 
 def _region(body: Contact) -> dict[str, Any]:
-    region = body.region
+    region, known = body.region, region_parameters(replace(body, clamped=True))
     limits = limits_of(region, clamped=True)
     assert limits.quasi_static is not None
     if limits.transient.force == np.inf:
         raise InvalidValue("region", f"'{region.name}' has no limits to be kept")
+    law = known["law"]
     return {
         "name": region.name,
         "title": region.title,
@@ -136,7 +134,8 @@ def _region(body: Contact) -> dict[str, Any]:
         "stiffness": region.stiffness,
         "damping": region.damping,
         "effective_mass": region.effective_mass,
-        "hertz_stiffness": body.series_stiffness,
+        "hertz_stiffness": known["hertz_stiffness"],
+        "law": None if law is None else law.tolist(),
         "transient": limits.transient.force,
         "quantity": limits.transient.quantity,
         "quasi_static": limits.quasi_static.force,

@@ -15,7 +15,7 @@ import softimpact
 from softimpact.codegen import wasm
 from softimpact.codegen.errors import NoCrossCompiler
 from softimpact.codegen.render import Package, render
-from softimpact.toolchain import cache_folder
+from softimpact.toolchain import usable_cache
 
 from .package import PREFIX
 
@@ -24,9 +24,6 @@ SHIM = Path(__file__).parent / "shim"
 
 HEADER = "robot_page.h"
 """Of the shim: what it adds to the package's header."""
-
-STEPS = f"src/{PREFIX}_run.c", f"src/{PREFIX}_run_steps.h"
-"""The runtime's steps, and the name under which the shim includes them."""
 
 OPTIONAL = ("reduced_model", "giaf")
 """Functions that some robots' packages do not have."""
@@ -39,8 +36,8 @@ def module_of(package: Package) -> bytes:
     files = sources_of(package)
     content = json.dumps([softimpact.__version__, version("ziglang"), wasm.FLAGS, files])
     key = hashlib.sha256(content.encode()).hexdigest()[:32]
-    cache = cache_folder()
-    if cache is None:  # a user without a home
+    cache = usable_cache()
+    if cache is None:  # a user without a home, or one that is read only
         return _compiled(files)
     module = cache / "page" / f"{key}.wasm"
     if not module.is_file():
@@ -64,8 +61,6 @@ def sources_of(package: Package) -> dict[str, str]:
     """Return the package's sources with the shim's among them, by path."""
     rendered, _ = render(package)
     files = {p: text for p, text in rendered.items() if p.startswith(("src/", "include/"))}
-    run, steps = STEPS
-    files[steps] = files.pop(run)
     for path in sorted(SHIM.iterdir()):
         if path.name != HEADER:
             files[f"src/{_named(path.name)}"] = _named(path.read_text(encoding="utf-8"))

@@ -26,7 +26,7 @@ from softimpact.symbolic import (
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
-from .. import design_report, map_files, pareto_record, program_record
+from .. import design_report, map_files, pareto_record, program_record, trade_off_record
 from ..first_study import NOMINAL, first_posture
 from ..motion_file import read_motion
 from ..results_folder import RESULTS
@@ -216,11 +216,22 @@ def _of_results(folder: Path) -> Opened:
 
 
 def _fronts(record: Mapping[str, Any]) -> list[DesignPoint]:
+    if record.get("form") == trade_off_record.FORM:
+        return [
+            DesignPoint(f"design {i + 1}", pose, _deflection(p), None, p["springs"], q)
+            for i, p in enumerate(record["points"])
+            for pose, q in p["postures"].items()
+        ]
     return [
         DesignPoint(front, p["start"], p["deflection"], p["force"], p["springs"], p["q"])
         for front, points in record["fronts"].items()
         for p in points
     ]
+
+
+def _deflection(point: Mapping[str, Any]) -> float:
+    names = (bound for bound in point["bounds"] if bound["name"] == "accuracy.max_deflection")
+    return float(next(names)["figure"])
 
 
 def _winners(record: Mapping[str, Any]) -> list[DesignPoint]:

@@ -21,7 +21,7 @@ from softimpact.codegen.functions.guards import fastest_arrival, heaviest
 from softimpact.codegen.functions.impact_factors import directional_factor, impact_factors
 from softimpact.codegen.functions.reductions import reduced_model, reflected_mass
 from softimpact.codegen.functions.symbols import function_over, symbols_of
-from softimpact.codegen.impact_source import ACCURACY, HORIZON, STEPS, ImpactSource
+from softimpact.codegen.impact_source import DEFAULT_BUDGET, HORIZON, PEAK_ERROR, ImpactSource
 from softimpact.codegen.inputs import ANY, SHARE, Parameter, parameters_of
 from softimpact.codegen.manifest import FunctionRecord, ImpactRecord
 from softimpact.codegen.package import TIP
@@ -62,7 +62,8 @@ class PlacedContact(ImpactModel):
         """Return J of the point in the base's axes, whatever axes are asked for."""
         return placed_point_jacobian(self.robot, q, self.contact, self.moved_by)
 
-    def _direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+    def direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+        """Return nᵀJ over the links, 1×n."""
         return ca.mtimes(ca.reshape(direction, 1, 3), self.jacobian(q))
 
 
@@ -112,7 +113,7 @@ def page_package(robot: Robot, drives: Drives) -> Package:
             potential=has_potential(symbols),
             fastest=fastest_arrival(replace(at_tip, robot=robot)),
             heaviest=heaviest(robot),
-            record=ImpactRecord((TIP,), 0, ACCURACY, HORIZON, REACTION_TIME, STEPS),
+            record=ImpactRecord((TIP,), 0, PEAK_ERROR, HORIZON, REACTION_TIME, DEFAULT_BUDGET),
             golden=(),
         ),
     )

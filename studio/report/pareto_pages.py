@@ -14,7 +14,7 @@ from ..figures.pareto import figure_of_fronts, figure_of_speeds
 from ..figures.pareto_designs import figure_of_designs
 from ..figures.select import figure_of_selection
 from ..pareto_report import ParetoReport
-from ..pareto_words import COLUMNS, in_words, rows
+from ..pareto_words import columns, in_words, rows
 from ..selection import NAMES, Criterion, PoseFigures, figures_table
 from .arms import ORIGIN, arm_picture
 from .page import Hit, Section, TableOfNumbers, write_page
@@ -43,7 +43,7 @@ def write_pareto_report(report: ParetoReport, path: Path) -> Path:
         )
         for point, name in ends
     ]
-    heads = [column.replace("\n", " ") for column in COLUMNS]
+    heads = [column.replace("\n", " ") for column in columns(report)]
     sections = [
         Section(
             "Force by accuracy",

@@ -127,7 +127,9 @@ def _moments(record: dict[str, Any]) -> TableOfNumbers:
             cells.append(None if pressure is None else 1e-6 * pressure)
         rows.append(cells)
     return TableOfNumbers(
-        "At the program's own speed", (*COLUMNS, "by the formula m/s", *more), rows
+        "At the program's own speed",
+        (*(" ".join(head.split()) for head in COLUMNS), "by the formula m/s", *more),
+        rows,
     )
 
 

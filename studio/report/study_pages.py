@@ -8,9 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from softimpact.optimize import Study
-from softimpact.simulate.assessment import unused_of_the_file
+from softimpact.optimize.coordinates import sprung
+from softimpact.optimize.study_scenarios import contacts_of
 from softimpact.symbolic.robot.rigid import Array
 
+from ..cautions import not_permitted, study_warnings
 from ..design_report import peak_in_words, versions
 from ..output import Cell
 from .page import Page, Section, TableOfNumbers
@@ -21,7 +23,9 @@ def study_page(
     study: Study, question: str, answer: str, is_good: bool | None, sections: Sequence[Section]
 ) -> Page:
     """Return the page of a study, which ends with what it rests on."""
-    warnings = [*study.robot.warnings, *unused_of_the_file(study.model)]
+    warnings, regions = study_warnings(study), (c.region for c in contacts_of(study))
+    if is_good and any(not_permitted(regions)):
+        is_good = False
     return Page(
         question=question,
         answer=answer,
@@ -51,8 +55,8 @@ def impact_in_words(study: Study) -> str:
 def joints(
     study: Study, springs: Array | None = None, ranges: Array | None = None
 ) -> TableOfNumbers:
-    """Return the joints' numbers, with springs that were found and what is indifferent."""
-    rotors = np.array(study.model.drives.rotors, dtype=float).ravel()
+    """Return the numbers of joints with springs, with those found and what is indifferent."""
+    rotors = np.array(study.model.drives.rotors, dtype=float).ravel()[list(sprung(study.model))]
     columns = [study.lower, study.nominal, study.upper, rotors]
     heads = ["joint", "k_s from N·m/rad", "nominal", "to", "rotor kg m²"]
     if springs is not None:
@@ -62,7 +66,7 @@ def joints(
         columns += [ranges[:, 0], ranges[:, 1]]
         heads += ["costs < 0.5 % from", "to"]
     numbers = np.transpose(columns).tolist()
-    rows = [(name, *row) for name, row in zip(study.robot.joint_names, numbers, strict=True)]
+    rows = [(name, *row) for name, row in zip(study.spring_names, numbers, strict=True)]
     return TableOfNumbers("Joint stiffness", heads, rows)
 
 

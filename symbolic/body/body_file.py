@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from ..errors import InvalidValue, UnknownName
-from ..file_section import NotNegative, Positive, Section
+from ..file_section import FileSection, NotNegative, Positive
 from .bodies import body_region
 from .contact import naming
 from .laws import Law, in_series
@@ -22,10 +22,10 @@ from .laws.named import law_from
 from .pads import PADS
 from .regions import NEWTON_PER_CM2, TISSUE_DAMPING, BodyRegion
 
-_AnySection = TypeVar("_AnySection", bound=Section)
+_AnySection = TypeVar("_AnySection", bound=FileSection)
 
 
-class LimitsSection(Section):
+class LimitsSection(FileSection):
     """What the body may bear; what is left out is its region's."""
 
     permitted: bool | None = None
@@ -36,7 +36,7 @@ class LimitsSection(Section):
     energy: Positive | None = None
 
 
-class BodyFile(Section):
+class BodyFile(FileSection):
     """A body, as written: SI units, but pressures in N/cm² as the standard has them."""
 
     name: str
@@ -51,7 +51,7 @@ class BodyFile(Section):
     limits: LimitsSection = LimitsSection()
 
 
-class CoverFile(Section):
+class CoverFile(FileSection):
     """A cover, as written: one law, or several one behind the other."""
 
     name: str = ""

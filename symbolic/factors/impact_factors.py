@@ -14,7 +14,7 @@ from ..dynamics.kinematics import direction_jacobian
 from ..errors import InvalidValue, SingularDirection
 from ..impact.analysis import IMMOBILE, stretched_length
 from ..impact.approach import unit_direction
-from ..impact.floating import BASE_COORDINATES, BASE_JOINTS
+from ..impact.floating import BASE_COORDINATES, is_floating
 from ..impact.impact_model import ImpactModel
 from ..loops.closure import require_closed_at
 from ..loops.loops import loop_tangent
@@ -165,7 +165,7 @@ def impact_factors(
     free, real = model.free_mobility(angles), model.mobility(angles)
     rank = int(np.linalg.matrix_rank(J, tol=still))
     masses = [1 / float(n @ np.array(mobility.matrix) @ n) for mobility in (free, real)]
-    floating = model.robot.joint_names[:BASE_COORDINATES] == BASE_JOINTS
+    floating = is_floating(model.robot)
     own = slice(BASE_COORDINATES if floating else 0, None)
     row = ca.DM(direction_jacobian(model.robot, model.tip, angles, n))
     impulse = impulse_along(M, rotors, row.T, speed, restitution, 1 / other_mass, G)

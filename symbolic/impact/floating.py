@@ -21,10 +21,12 @@ from numpy.typing import ArrayLike
 from ..dynamics.equations_of_motion import STANDARD_GRAVITY, Gravity, bias_torques, mass_matrix
 from ..dynamics.kinematics import FramePose, cross, frame_jacobian, frame_pose
 from ..errors import InvalidInertia, MasslessBase
+from ..former_names import renamed
 from ..matrices import Matrix
 from ..robot.plausibility import require_sound_masses
 from ..robot.rigid import Inertia, Placement
 from ..robot.robot import Joint, JointKind, Robot
+from ..robot.welding import lock_joints
 from .drives import Drives
 from .drives import drives as drives_with
 from .impact_model import ImpactModel, impact_model
@@ -164,6 +166,29 @@ def floating_robot(robot: Robot, base_inertia: Inertia | None = None) -> Floatin
     return FloatingRobot(robot, replace(freed, base_inertia=Inertia.zero()))
 
 
+def is_floating(robot: Robot) -> bool:
+    """Return whether a robot begins with the joints that stand for a free base."""
+    return robot.joint_names[:BASE_COORDINATES] == BASE_JOINTS
+
+
+def base_held(model: ImpactModel) -> ImpactModel:
+    """Return a floating model with its base held where it is: heavier for all that it hits."""
+    held = lock_joints(model.robot, dict.fromkeys(BASE_JOINTS, 0.0))
+    own, shift = model.drives, BASE_COORDINATES
+    damping, limits, known = own.damping_gains, own.torque_limits, own.rotors_known
+    cut = Drives(
+        own.rotors[shift:],
+        own.springs[shift:],
+        own.elastic[shift:],
+        own.gains[shift:],
+        own.computed_torque_gain,
+        None if damping is None else damping[shift:],
+        None if limits is None else limits[shift:],
+        None if known is None else known[shift:],
+    )
+    return impact_model(held, model.tip, drives=cut, gravity=model.gravity)
+
+
 def _free_joint(inertia: Inertia) -> tuple[Joint, ...]:
     """Slides along x, y and z, then hinges about them; each frame's z is the joint's axis."""
     joints = []
@@ -177,6 +202,7 @@ def _free_joint(inertia: Inertia) -> tuple[Joint, ...]:
     return (*joints[:-1], replace(joints[-1], inertia=inertia))
 
 
+@renamed(drives_="drives")
 def floating_model(
     robot: FloatingRobot, tip: str | None = None, *, drives: Drives | None = None
 ) -> ImpactModel:
@@ -192,11 +218,15 @@ def floating_model(
     """
     own = drives or drives_with(robot.fixed)
     none = ca.DM.zeros(BASE_COORDINATES)
+    damping, limits, known = own.damping_gains, own.torque_limits, own.rotors_known
     padded = Drives(
         ca.vertcat(none, own.rotors),
         ca.vertcat(none, own.springs),
         (False,) * BASE_COORDINATES + own.elastic,
         ca.vertcat(none, own.gains),
         own.computed_torque_gain,
+        None if damping is None else ca.vertcat(none, damping),
+        None if limits is None else np.concatenate([np.full(BASE_COORDINATES, np.inf), limits]),
+        None if known is None else (True,) * BASE_COORDINATES + known,
     )
     return impact_model(robot.freed, tip, drives=padded)

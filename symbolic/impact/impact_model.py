@@ -15,6 +15,7 @@ from ..dynamics.equations_of_motion import Gravity, mass_matrix, stiffness_of_po
 from ..dynamics.kinematics import contact_point_jacobian, direction_jacobian
 from ..errors import InvalidValue, WrongLength
 from ..factors.contact_mobility import ContactMobility, contact_mobility
+from ..former_names import renamed
 from ..loops.loops import closed_chain, constrained_stiffness, loop_tangent
 from ..matrices import Kind, Matrix, Numbers, symmetric
 from ..robot.rigid import Array, three_numbers
@@ -89,11 +90,11 @@ class ImpactModel(ByContent):
     def mass_matrix(self, q: Numbers) -> ca.DM: ...
     def mass_matrix(self, q: Matrix) -> Matrix:
         """Return the links' mass matrix M (of a closed chain GᵀMG), n×n [kg m²]."""
-        return self._congruent(q, mass_matrix(self.robot, q))
+        return self.congruent(q, mass_matrix(self.robot, q))
 
     def rotor_mass_matrix(self, q: Matrix) -> Matrix:
         """Return M + B, the mass matrix of the rigid robot with its rotors, n×n."""
-        return self.mass_matrix(q) + self._congruent(q, ca.diag(self.drives.rotors))
+        return self.mass_matrix(q) + self.congruent(q, ca.diag(self.drives.rotors))
 
     def generalised_mass(self, q: Matrix) -> MassOperator:
         """Return M0 over motors and deflections (MSM Eq. 42)."""
@@ -101,7 +102,7 @@ class ImpactModel(ByContent):
         if self.robot.loops:  # rotors of joints that follow turn with the links
             free = list(self.independent)
             follows = ca.sparsify(ca.DM([float(i not in free) for i in range(self.robot.n)]))
-            links = links + self._congruent(q, ca.diag(rotors * follows))
+            links = links + self.congruent(q, ca.diag(rotors * follows))
             rotors = rotors[free]
         return elastic_mass(links, rotors, self.elastic)
 
@@ -122,13 +123,13 @@ class ImpactModel(ByContent):
         if not own.any() and not is_symbol and (gains is None or not np.any(np.array(gains))):
             return None
         n = self.robot.n
-        links = self._congruent(q, ca.sparsify(ca.diag(ca.DM(own))))
-        motors = self._congruent(q, ca.diag(ca.DM.zeros(n) if gains is None else gains))
+        links = self.congruent(q, ca.sparsify(ca.diag(ca.DM(own))))
+        motors = self.congruent(q, ca.diag(ca.DM.zeros(n) if gains is None else gains))
         return elastic_stiffness(ca.DM.zeros(len(self.elastic)), motors, links, self.elastic)
 
     def contact_jacobian(self, q: Matrix, direction: Matrix) -> Matrix:
         """Return J_c over motors and deflections, 1×N (MSM Eq. 4)."""
-        return elastic_jacobian(self._direction_row(q, direction), self.elastic)
+        return elastic_jacobian(self.direction_row(q, direction), self.elastic)
 
     def linear(self, q: Matrix, direction: Matrix, law: MotorLaw | None = None) -> LinearModel:
         """Return M0, K0, D and J_c at q, hit along the unit vector ``direction``.
@@ -167,7 +168,7 @@ class ImpactModel(ByContent):
         """Return m_c [kg] (MSM Eq. 36); rotors behind springs do not count."""
         mass = self.generalised_mass(q)
         if isinstance(mass, ElasticMass):
-            return reflected_mass(mass.links, self._direction_row(q, direction))
+            return reflected_mass(mass.links, self.direction_row(q, direction))
         return reflected_mass(mass.matrix, self.contact_jacobian(q, direction))
 
     def reduced(self, q: Matrix, direction: Matrix) -> ReducedModel:
@@ -214,7 +215,7 @@ class ImpactModel(ByContent):
     def position_gains(self, q: Matrix) -> Matrix:
         """Return K_p = diag(gains) + k_p M_θθ over the motors, n×n, sparse where it is zero."""
         gains = ca.diag(self.drives.gains)
-        gains = self._congruent(q, ca.sparsify(gains) if isinstance(gains, ca.DM) else gains)
+        gains = self.congruent(q, ca.sparsify(gains) if isinstance(gains, ca.DM) else gains)
         if self.drives.computed_torque_gain is None:
             return gains
         motors = ca.sparsify(ca.DM(np.diag(np.array(self.actuated, dtype=float))))
@@ -229,12 +230,13 @@ class ImpactModel(ByContent):
             return constrained_stiffness(self.robot, q, self.gravity)
         return stiffness_of_potential(self.robot, q, self.gravity)
 
-    def _direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+    def direction_row(self, q: Matrix, direction: Matrix) -> Matrix:
+        """Return nᵀJ over the links, 1×n."""
         row = direction_jacobian(self.robot, self.tip, q, direction)
         return ca.mtimes(row, loop_tangent(self.robot, q)) if self.robot.loops else row
 
-    def _congruent(self, q: Matrix, matrix: Matrix) -> Matrix:
-        """Return GᵀXG of a matrix X over all joints; X itself without loops."""
+    def congruent(self, q: Matrix, matrix: Matrix) -> Matrix:
+        """Return a symmetric X over all joints over the coordinates: GᵀXG, or X without loops."""
         if not self.robot.loops:
             return matrix
         G = loop_tangent(self.robot, q)
@@ -242,6 +244,7 @@ class ImpactModel(ByContent):
         return symmetric(lambda i, j: product[i, j], product.shape[0])
 
 
+@renamed(drives_="drives")
 def impact_model(
     robot: Robot,
     tip: str | None = None,

@@ -285,16 +285,20 @@ class Robot(ByContent):
             three_numbers("payload_com", com)
         return replace(self, payload=PointMass(self.frame(frame).name, mass, com))
 
-    def digest(self) -> str:
-        """Return a hash of every number and name that the robot's expressions depend on."""
+    def digest(self, *, floating: bool = False) -> str:
+        """Return a hash of every number and name that the robot's expressions depend on.
+
+        Args:
+            floating: also of the base's inertia, which a robot feels whose base is set free.
+        """
         text = hashlib.sha256()
+        if floating:
+            text.update(f"{_in_words(_of_inertia(self.base_inertia))}\n".encode())
         for joint in self.joints:
             numbers = [
                 *joint.placement.rotation.flat,
                 *joint.placement.translation,
-                joint.inertia.mass,
-                *joint.inertia.first_moment,
-                *joint.inertia.about_origin.flat,
+                *_of_inertia(joint.inertia),
                 joint.offset,
                 joint.armature,
                 joint.stiffness,
@@ -318,6 +322,10 @@ class Robot(ByContent):
         if self.payload:
             text.update(f"{self.payload.frame} {self.payload.mass} {self.payload.com}\n".encode())
         return text.hexdigest()
+
+
+def _of_inertia(inertia: Inertia) -> list[float]:
+    return [inertia.mass, *inertia.first_moment, *inertia.about_origin.flat]
 
 
 def _described(loop: Constraint) -> str:

@@ -14,8 +14,16 @@ from compiled_packages import run, tool
 
 from softimpact import batch
 from softimpact.batch import build
-from softimpact.codegen import wide_sine
-from softimpact.symbolic import InvalidValue, drives, impact_model, load_robot
+from softimpact.codegen import region_parameters, wide_sine
+from softimpact.symbolic import (
+    Contact,
+    InvalidValue,
+    PowerLaw,
+    body_region,
+    drives,
+    impact_model,
+    load_robot,
+)
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +72,41 @@ def test_parameters_and_regions_may_differ_by_row(rr: batch.CompiledPackage) -> 
     with pytest.raises(InvalidValue, match="'head' is not to be designed for; give a limit"):
         rr.safe_speed(q, n, region="head", horizon=0.1)
     assert (worse["speed"] <= 1.02 * free["speed"]).all()
+
+
+@pytest.mark.slow
+def test_without_a_limit_what_presses_later_counts_too(rr: batch.CompiledPackage) -> None:
+    q, n = poses(6), [1.0, 0.5, 0.0]
+    more: dict[str, Any] = {"motors": "driven", "reaction_time": 9.0, "steps": 20_000}
+    plain = rr.safe_speed(q, n, 280.0, region="hand", **more)
+    judged = rr.safe_speed(q, n, region="hand", **more)
+    assert (judged["status"] == 0).all()
+    assert (judged["speed"] <= plain["speed"]).all()
+    assert judged["pressed"].any()
+    dq = np.array([[0.3, 0, -0.5, 0]])
+    slow = rr.speed_factor(q, dq, region="hand", **more)
+    assert slow["pressed"].any()
+    assert (
+        rr.may_press(q, dq * slow["factor"][:, None], 140.0, region="hand", **more)["may"] == 0
+    ).all()
+    given = {"stiffness": 75e3, "effective_mass": 0.6, "hertz_stiffness": 19e6, "force_limit": 280}
+    with pytest.raises(InvalidValue, match="no quasi_static_limit"):
+        rr.safe_speed(q, n, region=given)
+    assert (rr.safe_speed(q, n, region=given, clamped=False)["status"] == 0).all()
+    with pytest.raises(InvalidValue, match="no force_limit"):
+        rr.safe_speed(q, n, region={**given, "force_limit": 0.0})
+
+
+def test_covers_are_laws_of_the_region(rr: batch.CompiledPackage) -> None:
+    q, n = poses(3), [1.0, 0.5, 0.0]
+    soft = region_parameters(Contact(body_region("hand"), cover=PowerLaw(3e4, 1.0)))
+    bare = region_parameters(Contact(body_region("hand")))
+    forces = [rr.peak_force(q, n, 0.5, region=r, horizon=0.1)["force"] for r in (soft, bare)]
+    assert (forces[0] < 0.9 * forces[1]).all()
+    named = rr.peak_force(q, n, 0.5, region="hand", horizon=0.1)["force"]
+    assert np.array_equal(forces[1], named)
+    with pytest.raises(InvalidValue, match="law: needs rows of 4 numbers"):
+        rr.peak_force(q, n, 0.5, region={**soft, "law": [[0, 1]]}, horizon=0.1)
 
 
 def test_a_watched_elbow_can_bind(rr: batch.CompiledPackage) -> None:

@@ -15,8 +15,8 @@ import pytest
 from compiled_packages import Generated
 
 from softimpact.codegen.configuration import (
-    MOVE,
-    MOVES,
+    LONGEST_MOVE,
+    MOST_MOVES,
     Configuration,
     rounded_configurations,
 )
@@ -51,7 +51,7 @@ def asked(configuration: Configuration) -> Iterator[Array]:
         yield from (start + share * limit * ray for share in (0.3, 0.7, 1.5, 2.5))
     assert edges >= 4
     for full_turns in (1, -1):  # the same place, too far for so many moves, and just not
-        yield start + full_turns * MOVES * MOVE * np.array([1.0, 0.0]) * (1 + 1e-6)
+        yield start + full_turns * MOST_MOVES * LONGEST_MOVE * np.array([1.0, 0.0]) * (1 + 1e-6)
         yield start + np.array([0.0, full_turns * 2 * np.pi])
 
 

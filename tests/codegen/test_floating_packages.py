@@ -57,6 +57,7 @@ def leg(tmp_path_factory: pytest.TempPathFactory) -> Generated:
 def test_c_agrees_with_the_floating_model(leg: Generated, real: str, tmp_path: Path) -> None:
     samples = draw_samples(leg.robot, leg.parameters, 20, seed=97)
     assert assert_agrees(leg.load(real), samples) > 0.9 * len(samples) * len(leg.functions)
+    assert leg.manifest.digest == leg.robot.digest(floating=True) != leg.robot.digest()
     assert leg.run_own_test("gcc", real, tmp_path / "test").endswith("all passed\n")
 
 

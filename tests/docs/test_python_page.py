@@ -36,7 +36,7 @@ DATA = {
     "HORIZON": ("", "How long forces count by default [s]."),
     "Fidelity": ("", "Names of the models of a robot, from the simplest to the most faithful."),
     "PeakDefinition": ("", "Names of what a peak may be."),
-    "Reference": ("", "Names of the motion that the papers' controller wants after first touch."),
+    "ControllerReference": ("", "What motion the papers' controller wants after first touch."),
     "Mode": ("", "``table``: the posture is given and k_s is sought; ``free``: both are sought."),
     "MODES": ("", "Both modes of a design."),
 }
@@ -46,9 +46,9 @@ HEAD = """# From Python
 
 What the command line can do, a function does. The names that most people need are in `softimpact`
 itself; the packages below have them all. Functions of a robot take CasADi matrices (`SX`, `MX`) and
-return the kind that they are given, and `DM` for numbers. Errors are classes with data, all of them
-`SoftImpactError`. To begin with: [the README](../README.md#in-python) and
-[the first five minutes](first-five-minutes.md).
+return the kind that they are given, and `DM` for numbers. Errors are classes with data: of input,
+all of them `SoftImpactError`; of searches, `SolverFailure`, `Infeasible`, `Unavailable`. To begin
+with: [the README](../README.md#in-python) and [the first five minutes](first-five-minutes.md).
 """
 
 PACKAGES = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
+from impact_cases import CHEST, POSE
 from studies import study_of
 
 from softimpact.optimize import Study, candidates
@@ -30,10 +31,14 @@ from softimpact.symbolic import (
     Contact,
     InvalidValue,
     Motors,
+    Robot,
     body_region,
+    drives,
     impact_model,
+    unit_direction,
     with_load,
 )
+from softimpact.symbolic.impact.motors import MotorKind
 from softimpact.symbolic.robot.rigid import Array
 from softimpact.toolchain import c_compiler
 
@@ -185,6 +190,35 @@ def test_joints_too_stiff_to_simulate_are_refused(tmp_path: Path) -> None:
         impact_timing(study, [pose.q for pose in study.poses])
 
 
+@pytest.mark.parametrize("kind", ["free", "driven"])
+def test_what_the_file_says_of_joints_counts(panda: Robot, kind: MotorKind) -> None:
+    """Damping that stops a wrist within some steps, springs beside the motors, and gravity."""
+    joints = tuple(
+        replace(joint, damping=damping, stiffness=stiffness)
+        for joint, damping, stiffness in zip(
+            panda.joints,
+            (80.0, 100.0, 50.0, 60.0, 20.0, 90.0, 5.0),
+            (0.0, 3e3, 0.0, 5e3, 0.0, 2e3, 0.0),
+            strict=True,
+        )
+    )
+    robot = replace(panda, joints=joints)
+    model = impact_model(robot, drives=drives(robot, 8e3), gravity=(0.0, 0.0, -9.81))
+    q, n, motors = POSE, unit_direction([0.2, 1.0, -0.3]), Motors(kind)
+    step, nodes, substeps = 4e-5, 500, 6
+    program = impact_program(model, nodes, substeps, compiled=False)
+    numbers = impact_numbers(n, 0.5, CHEST, motors, step)
+    x = np.concatenate([q, np.full(7, np.log10(8e3))])
+    found = float(np.array(program["peaks"](x, numbers, 0)).max())
+    horizon = step * nodes * substeps
+    approach = Approach(q, n, 0.5)
+    expected = simulate_impact(model, approach, CHEST, motors=motors, horizon=horizon).peak
+    assert found == pytest.approx(expected, rel=1e-3)
+    plain = impact_model(panda, drives=drives(panda, 8e3))
+    without = simulate_impact(plain, approach, CHEST, motors=motors, horizon=horizon).peak
+    assert abs(expected / without - 1) > 0.02  # else nothing was tested
+
+
 def test_every_contact_counts(head: Impacts) -> None:
     """Springs that let the tip bounce, and what comes after it hits harder."""
     random = np.random.default_rng(6)
@@ -288,7 +322,7 @@ def test_a_single_mass_on_a_damped_body() -> None:
         mobility=ca.MX(0.5),
         jacobian=ca.MX(1.0),
         springs=ca.MX(1e-9),
-        rotors=ca.MX(1.0),
+        rotor_mobility=ca.MX(1.0),
         gains=ca.MX(1, 1),
         damping=ca.MX(0.0),
         velocity=ca.MX(1.0),

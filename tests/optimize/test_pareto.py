@@ -25,7 +25,7 @@ from softimpact.optimize import (
 )
 from softimpact.optimize import ipopt as solving
 from softimpact.optimize.evaluation import largest_deflection
-from softimpact.optimize.front import WORTH, ParetoPoint, knee, undominated
+from softimpact.optimize.front import LEAST_SAVING, ParetoPoint, knee, undominated
 from softimpact.optimize.impact_program import impact_program
 from softimpact.optimize.levels import even_bounds
 from softimpact.optimize.problem import peak_force
@@ -116,9 +116,9 @@ def force_within(front: Front, deflection: float) -> float:
 def test_freedom_does_not_hurt(found: Pareto) -> None:
     for level in found.levels:
         free, given = (force_within(front, level) for front in (found.free, found.given))
-        assert free <= given * (1 + WORTH)
+        assert free <= given * (1 + LEAST_SAVING)
         for front in found.held.values():
-            assert given <= force_within(front, level) * (1 + WORTH)
+            assert given <= force_within(front, level) * (1 + LEAST_SAVING)
     assert found.free.points[0].deflection <= found.given.points[0].deflection
 
 
@@ -235,7 +235,9 @@ def point(deflection: float, force: float) -> ParetoPoint:
 
 
 def test_dominated_points_go() -> None:
-    points = [point(*each) for each in ((3, 5), (1, 9), (2, 9.5), (2, 7), (4, 5 * (1 - WORTH / 2)))]
+    points = [
+        point(*each) for each in ((3, 5), (1, 9), (2, 9.5), (2, 7), (4, 5 * (1 - LEAST_SAVING / 2)))
+    ]
     kept = [(p.deflection, p.force) for p in undominated(points)]
     assert kept == [(1, 9), (2, 7), (3, 5)]
 
@@ -320,7 +322,7 @@ def test_an_arm_without_a_choice_of_posture(tmp_path: Path) -> None:
     result = pareto_fronts(study, InProcess())
     assert len(result.free.points) >= 4
     for a, b in zip(result.free.points, result.task.points, strict=True):
-        assert a.force == pytest.approx(b.force, rel=WORTH)
+        assert a.force == pytest.approx(b.force, rel=LEAST_SAVING)
     axis = np.geomspace(500.0, 5e4, 25)
     springs = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
     grid = tried(study, result, [study.task_pose.q], springs)

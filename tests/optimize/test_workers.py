@@ -101,7 +101,7 @@ def test_a_worker_that_is_killed_is_named(tmp_path: Path) -> None:
 
 
 def test_all_jobs_are_heard_of_also_those_that_take_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("softimpact.optimize.workers.AWAKE", 1e-3)
+    monkeypatch.setattr("softimpact.optimize.workers.LONGEST_WAIT", 1e-3)
     first, last = threading.Event(), threading.Event()
     with ThreadPoolExecutor(2) as pool:
         late = pool.submit(last.wait)

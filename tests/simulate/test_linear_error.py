@@ -92,7 +92,7 @@ def test_it_bounds_the_error_of_reachable_impacts(panda: Robot, count: int, seed
 def test_safe_speeds_are_asked_of_the_nonlinear_robot_too(panda: Robot) -> None:
     """Where the linear model is trusted at the impact's speed, yet not at the safe one."""
     given = drives(panda, 3e3, 0.3)
-    model, n = impact_model(panda, drives_=given), unit_direction([-1, 0.4, -2])
+    model, n = impact_model(panda, drives=given), unit_direction([-1, 0.4, -2])
     contact, motors = Contact(body_region("thigh"), clamped=False), Motors("free")
     q = np.array([-0.15, 0.67, 0.06, -0.45, -0.05, 1.2, 0.19])
     slow = assess_impact(model, Approach(q, n, 0.2), contact, motors=motors, safe_speed=True)

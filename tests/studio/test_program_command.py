@@ -104,7 +104,7 @@ def test_table(motion: Path) -> None:
     assert outcome.code == 0
     assert "2 s become" in outcome.out
     assert "hand_tcp" in outcome.out
-    assert "band N" in outcome.out
+    assert "95 of 100 cases" in outcome.out
 
 
 def test_points_by_default_are_the_end_and_some_along_the_arm() -> None:

@@ -19,7 +19,7 @@ NEARLY_STRETCHED = np.array([-0.15, 0.67, 0.06, -0.45, -0.05, 1.2, 0.19])
 
 def moment(panda: Robot, speed: float, factor: float) -> tuple[Question, dict[str, Any]]:
     """A push along the stretched arm, in which the joints are fast."""
-    model = impact_model(panda, drives_=drives(panda, 3e3, 0.3))
+    model = impact_model(panda, drives=drives(panda, 3e3, 0.3))
     direction = np.array([-0.44, 0.18, -0.88]) / np.linalg.norm([0.44, 0.18, 0.88])
     rate = approach_velocity(model, NEARLY_STRETCHED, direction)
     question = Question(

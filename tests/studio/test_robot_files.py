@@ -142,7 +142,7 @@ def test_inspect_of_a_file_that_is_none(tmp_path: Path) -> None:
     assert "no such file" in refusal("inspect", tmp_path / "gone.urdf")
 
 
-@pytest.mark.parametrize("name", ["panda", "ur5e", "iiwa14", "fr3", "mini_cheetah"])
+@pytest.mark.parametrize("name", ["panda", "ur5e", "iiwa14", "fr3", "mini_cheetah", "rmin", "rr"])
 def test_a_first_study_can_run(name: str, tmp_path: Path) -> None:
     begun = run("init", name)
     assert begun.code == 0, begun.err

@@ -231,6 +231,7 @@ def test_base_inertia_does_not_matter_to_a_fixed_robot() -> None:
     robot = load_robot(example_urdf("go2.urdf"))
     heavier = replace(robot, base_inertia=robot.base_inertia + robot.base_inertia)
     assert heavier.digest() == robot.digest()
+    assert heavier.digest(floating=True) != robot.digest(floating=True)
     q = np.full(12, 0.2)
     assert np.array_equal(np.array(mass_matrix(robot, q)), np.array(mass_matrix(heavier, q)))
 

@@ -102,3 +102,10 @@ def test_symbols_give_the_same_numbers(model: ImpactModel, kind: Matrix) -> None
     found = ca.Function("f", [x, d, k], all_of(x, d, k))(q, n, k_s)
     for ours, theirs in zip(found, all_of(ca.DM(q), ca.DM(n), ca.DM(k_s)), strict=True):
         assert_near(ours, theirs, 1e-11)
+
+
+def test_programs_for_0_1_0_still_name_drives_as_they_did(panda: Robot) -> None:
+    given = drives(panda, 3e3)
+    with pytest.warns(DeprecationWarning, match=r"impact_model\(drives_=…\) is drives= now"):
+        former = impact_model(panda, **{"drives_": given})  # type: ignore[arg-type]
+    assert former == impact_model(panda, drives=given)

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import softimpact
-from softimpact.toolchain import c_compiler, cache_folder
+from softimpact.toolchain import c_compiler, usable_cache
 from softimpact.symbolic.dynamics.equations_of_motion import FixedGravity
 from softimpact.symbolic import Drives, Robot, SoftImpactError
 
@@ -156,8 +156,8 @@ def _compiler() -> tuple[str, ...] | None:
 
 
 def _cache() -> Path:
-    """Return the user's cache, or for a user without a home a folder for this process."""
-    return cache_folder() or _passing_folder()
+    """Return the user's cache, or where it cannot be written a folder for this process."""
+    return usable_cache() or _passing_folder()
 
 
 @cache

@@ -27,6 +27,16 @@ Arrays = dict[str, NDArray[Any]]
 CHUNK = 1024
 """Fewest rows of a closed form that are worth a thread of their own; of an impact one is."""
 
+JUDGED = {
+    "safe_speed": "allowed_speed_at",
+    "safe_speed_at": "allowed_speed_at",
+    "speed_factor": "allowed_factor",
+}
+"""Functions that take a limit, and those that take all limits of a region."""
+
+TIP = 0
+"""Number of the package's own contact point."""
+
 IMPACT = "region"
 """Argument of functions that integrate in time, and its type."""
 
@@ -37,8 +47,9 @@ class CompiledPackage:
 
     ``q`` is N×n, or n for all rows; so are ``n`` (3), ``dq`` (n), other arguments and parameters
     by the names of the C struct's fields. A region is the name of one, with ``clamped``, or a
-    mapping of the fields of the C struct. A ``limit`` that is not given is the least that the region
-    has for the first half second, of force or energy; what presses later is not judged.
+    mapping of the fields of the C struct, such as ``region_parameters`` gives of any contact. Where
+    no ``limit`` is given, all that the region has must be kept: the least of force and energy in the
+    first half second and, clamped, what may press later (``pressed`` says that this decides).
     ``motors`` is a name. Results are arrays of N rows by
     name, with ``status`` beside them; rows whose status is neither OK (0) nor BOUNDED (9) hold NaN,
     or -1 where numbers are whole.
@@ -51,35 +62,17 @@ class CompiledPackage:
     sources: Sources
     threads: int
     _entries: dict[str, Callable[..., int]] = field(default_factory=dict, init=False, repr=False)
+    _laws: dict[bytes, NDArray[Any]] = field(default_factory=dict, init=False, repr=False)
 
     def __getattr__(self, name: str) -> Any:
         """Return a method for a function of the package."""
         if not name.startswith("_") and name in self.functions:
-            return partial(self._call, self.interface.entries[name])
+            return partial(self._asked, self.interface.entries[name])
         raise AttributeError(f"the package has no function '{name}'")
 
     def __dir__(self) -> list[str]:
         """Return the names of all functions, too."""
         return [*super().__dir__(), *self.functions]
-
-    def may_press(self, q: ArrayLike, dq: ArrayLike, limit: ArrayLike, **options: Any) -> NDArray[Any]:
-        """Return whether a contact point could press on a body beyond a limit from 0.5 s on.
-
-        Args:
-            q: joint angles, a row each.
-            dq: joint velocities.
-            limit: quasi-static, as a force [N].
-            options: region, motors and parameters of ``speed_factor``, with a horizon beyond 0.5 s.
-
-        Returns:
-            False where it is proven or simulated that none does.
-        """
-        entry = self.interface.entries["speed_factor"]
-        inputs = self._inputs(entry, (q, dq, limit), options)
-        count = max(len(rows) for rows in inputs)
-        out, status = np.ones(count, dtype=np.int32), np.empty(count, dtype=np.int32)
-        self._run(self._rows_of("pressing"), inputs, out, status, 1)
-        return np.asarray(out != 0)
 
     @cached_property
     def interface(self) -> Interface:
@@ -116,6 +109,17 @@ class CompiledPackage:
             self._entries[name] = self.sources.library(f"batch/{name}.c").batched_rows
         return self._entries[name]
 
+    def _asked(self, entry: Entry, *given: Any, **options: Any) -> Arrays:
+        """Call a function; of safe speeds without a limit, the one that judges all limits."""
+        read = [a.name for a in entry.arguments if a.name not in (IMPACT, "p") and not a.written]
+        named = {*read[: len(given)], *options}
+        if entry.name not in JUDGED or "limit" in named:
+            return self._call(entry, *given, **options)
+        if entry.name == "safe_speed":
+            options["point"] = TIP
+        known = dict(zip(read, given, strict=False))
+        return self._call(self.interface.entries[JUDGED[entry.name]], **known, **options)
+
     def _call(self, entry: Entry, *given: Any, **options: Any) -> Arrays:
         inputs = self._inputs(entry, given, options)
         count = max(len(rows) for rows in inputs)
@@ -142,8 +146,8 @@ class CompiledPackage:
         if any(a.type == IMPACT for a in read):
             asked, clamped = options.pop(IMPACT, "chest"), options.pop("clamped", True)
             region = self._region(asked, clamped)
-            if any(a.name == "limit" for a in plain) and not {"limit"} & {*values, *options}:
-                values["limit"] = _limit(asked, clamped, region)
+            if entry.name in JUDGED.values():
+                region = _with_limits(asked, region)
         for a in plain:
             if a.name in options:
                 values[a.name] = options.pop(a.name)
@@ -178,13 +182,27 @@ class CompiledPackage:
     def _region(self, region: str | Mapping[str, Any], clamped: bool) -> NDArray[Any]:
         row = np.zeros(1, self.interface.dtype("region", self.sources.real))
         if not isinstance(region, str):
-            return _filled(row, {**region, "clamped": region.get("clamped", clamped)}, "region")
+            given = {**region, "clamped": region.get("clamped", clamped)}
+            if given.get("law") is not None:
+                given["law_points"], given["law"] = self._law(given["law"])
+            else:
+                given.pop("law", None)
+            return _filled(row, given, "region")
         parts = {name.lower(): n for name, n in self.interface.enums["body_part"].items()}
         if region not in parts:
             raise InvalidValue("region", f"must be one of {', '.join(parts)}, not '{region}'")
         entry = self._common.batched_body_region
         entry(ctypes.c_int(parts[region]), ctypes.c_int(clamped), ctypes.c_void_p(row.ctypes.data))
         return row
+
+    def _law(self, law: Any) -> tuple[int, int]:
+        """Return how many points a law has, and their address, which holds as long as the package."""
+        points = np.ascontiguousarray(law, dtype=self._kind("real"))
+        width = len(self.interface.structs["law_point"].fields)
+        if points.ndim != 2 or points.shape[1] != width:
+            raise InvalidValue("law", f"needs rows of {width} numbers, not {points.shape}")
+        kept = self._laws.setdefault(points.tobytes(), points)
+        return len(kept), kept.ctypes.data
 
     def _parameters(self, options: dict[str, Any]) -> NDArray[Any]:
         """Return parameter structs, one or one a row; takes the fields out of ``options``."""
@@ -203,7 +221,8 @@ class CompiledPackage:
         """Return room for results, and how it is seen by name."""
         if written.type not in self.interface.structs:
             sizes = [size or 1 for size in written.shape]
-            plain = np.full((count, *sizes), np.nan, dtype=self._kind(written.type))
+            kind = self._kind(written.type)
+            plain = np.full((count, *sizes), np.nan if kind.kind == "f" else -1, dtype=kind)
             return plain, {written.name: plain}
         out = np.empty(count, self.interface.dtype(written.type, self.sources.real))
         for name in out.dtype.names or ():
@@ -240,14 +259,20 @@ class CompiledPackage:
             list(pool.map(part, zip(edges[:-1], edges[1:], strict=True)))
 
 
-def _limit(asked: str | Mapping[str, Any], clamped: bool, region: NDArray[Any]) -> Any:
-    """Return what a region may bear in the first half second [N]."""
-    if not isinstance(asked, str):
-        return region["force_limit"]
-    limits = limits_of(REGIONS[asked], clamped)
-    if not limits.permitted:
-        raise InvalidValue("limit", f"'{asked}' is not to be designed for; give a limit [N]")
-    return limits.transient.force
+def _with_limits(asked: str | Mapping[str, Any], region: NDArray[Any]) -> NDArray[Any]:
+    """Return a region with the least of its limits of each kind, of force and energy [N]."""
+    if isinstance(asked, str):
+        limits = limits_of(REGIONS[asked], clamped=True)
+        if not limits.permitted:
+            raise InvalidValue("limit", f"'{asked}' is not to be designed for; give a limit [N]")
+        assert limits.quasi_static is not None
+        region["force_limit"] = limits.transient.force
+        region["quasi_static_limit"] = limits.quasi_static.force
+    elif not (region["force_limit"] > 0).all():
+        raise InvalidValue("limit", "is needed: the region has no force_limit")
+    elif not (region["quasi_static_limit"][region["clamped"] != 0] > 0).all():
+        raise InvalidValue("limit", "is needed: the clamped region has no quasi_static_limit")
+    return region
 
 
 def _filled(row: NDArray[Any], given: Mapping[str, Any], what: str) -> NDArray[Any]:

@@ -8,6 +8,7 @@ export const KINDS = { free: 1, driven: 2, servo: 3 };
 const NEVER = 1e9; // s; a reaction that comes after every horizon
 const ANY_ROTOR = 1; // kg m²; stands in where rotors are unknown and motors drive on: nothing reads it
 const STEPS = 8000; // more than a controller has time for
+const TIP = 0; // the contact point, which the page moves
 const WRITTEN = [0, 9]; // OK and BOUNDED
 
 /** Return functions of a state, which `state.js` describes. */
@@ -23,11 +24,16 @@ export function solverOf(pkg, content) {
       damping: found.damping * (scale.damping ?? 1),
       effective_mass: found.effective_mass,
       hertz_stiffness: found.hertz_stiffness * (scale.law ?? 1),
+      law: stiffer(found.law, scale.law ?? 1),
+      law_points: found.law?.length ?? 0,
       force_limit: found.transient,
       quasi_static_limit: found.quasi_static,
       clamped: state.clamped ? 1 : 0,
     };
   }
+
+  /* A law's points are depth and force, and the same of the knee. */
+  const stiffer = (law, by) => law?.map(([depth, force, ...knee]) => [depth, force * by, knee[0], knee[1] * by]);
 
   function parameters(state, contact, motors, scale = {}) {
     const scaled = (values, name) => values.map((x, i) => x * (scale[name]?.[i] ?? 1));
@@ -75,7 +81,7 @@ export function solverOf(pkg, content) {
     });
     const lumped = unknown(state) || state.motors === "servo" ? null : pkg.follow_two_masses({ q, n, speed, region: what, p: all });
     const failed = ends.find((end) => !end.ok);
-    const keeping = pkg.keeping({ q, n, region: what, p: all });
+    const keeping = pkg.allowed_speed_at({ q, point: TIP, n, region: what, p: all });
     const worst = ends.reduce((a, b) => (b.ok && (!a || b.force > a.force) ? b : a), null);
     return {
       scene: at,
@@ -121,7 +127,7 @@ export function solverOf(pkg, content) {
   /** Safe speed of a state; null where there is none. */
   function safeSpeed(state, contact) {
     const p = parameters(state, contact, choiceOf(state));
-    const found = pkg.keeping({ q: state.q, n: state.n, region: region(state), p });
+    const found = pkg.allowed_speed_at({ q: state.q, point: TIP, n: state.n, region: region(state), p });
     return WRITTEN.includes(found.status) ? found.speed : null;
   }
 

@@ -2,9 +2,6 @@
 /* What a page asks of robot_'s package: where things are, what stands for the robot, what happens. */
 #include "robot_page_steps.h"
 
-/* Share of a limit that counts as kept, as in robot_safe_speed.c; and halvings of a speed. */
-#define KEPT ROBOT_R(0.9975)
-#define HALVINGS 24
 /* Until when it is followed what still presses on a clamped body, s: as simulate has it. */
 #define PRESSED_UNTIL ROBOT_R(0.6)
 /* Steps in which an impact is followed to its end: p->steps are for what ends once it is decided. */
@@ -63,13 +60,7 @@ int robot_masses(const robot_real q[ROBOT_JOINTS], const robot_real n[3], const 
 static int prepare(const robot_real *q, const robot_real *n, robot_real speed, const robot_region *region,
     const robot_params *p, int motors, robot_impact *impact)
 {
-    int status = robot_check_impact(region, p);
-    if (status == ROBOT_OK) {
-        status = robot_links(ROBOT_LINKS_OF(q, p), &impact->arrival.links);
-    }
-    if (status == ROBOT_OK) {
-        status = robot_arrive(n, 0, &impact->arrival);
-    }
+    const int status = robot_approach(q, ROBOT_POINT_TIP, n, region, p, impact);
     return status == ROBOT_OK ? robot_impact_prepare(region, p, motors, -speed, impact) : status;
 }
 
@@ -168,47 +159,6 @@ int robot_follow_two_masses(const robot_real q[ROBOT_JOINTS], const robot_real n
     (void)out;
     return ROBOT_SINGULAR;
 #endif
-}
-
-/* Whether what presses in the end keeps its limit at a speed, whatever motors do. */
-static bool presses_little(const robot_real *q, const robot_real *n, robot_real speed,
-    const robot_region *region, const robot_params *p)
-{
-    int first;
-    int last;
-    robot_kinds_of_motors(p, &first, &last);
-    for (int motors = first; motors <= last; ++motors) {
-        if (pressing_at(q, n, speed, region, p, motors) > KEPT*region->quasi_static_limit) {
-            return false;
-        }
-    }
-    return true;
-}
-
-int robot_keeping(const robot_real q[ROBOT_JOINTS], const robot_real n[3], const robot_region *region,
-    const robot_params *p, robot_keeping_t *out)
-{
-    robot_safe_speed_t safe;
-    const int status = robot_safe_speed(q, n, region->force_limit, region, p, &safe);
-    if (status != ROBOT_OK && status != ROBOT_BOUNDED) {
-        return status;
-    }
-    out->speed = safe.speed;
-    out->pressed = 0;
-    if (presses_little(q, n, safe.speed, region, p)) {
-        return status;
-    }
-    robot_real low = ROBOT_R(0.0);
-    robot_real high = safe.speed;
-    for (int k = 0; k < HALVINGS; ++k) {
-        const robot_real middle = ROBOT_R(0.5)*(low + high);
-        const bool kept = presses_little(q, n, middle, region, p);
-        low = kept ? middle : low;
-        high = kept ? high : middle;
-    }
-    out->speed = low;
-    out->pressed = 1;
-    return low > ROBOT_R(0.0) ? status : ROBOT_UNRESOLVED;
 }
 
 int robot_two_body(robot_real speed, robot_real moving_mass, const robot_region *region,

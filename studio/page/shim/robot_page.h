@@ -54,15 +54,6 @@ int robot_follow_two_masses(const robot_real q[ROBOT_JOINTS], const robot_real n
     const robot_region *region, const robot_params *p, robot_follow_t *out);
 
 typedef struct {
-    robot_real speed; /* m/s */
-    int pressed; /* whether what presses in the end decides, not the peak */
-} robot_keeping_t;
-
-/* Largest speed that keeps the region's transient limit and, clamped, the quasi-static one. */
-int robot_keeping(const robot_real q[ROBOT_JOINTS], const robot_real n[3], const robot_region *region,
-    const robot_params *p, robot_keeping_t *out);
-
-typedef struct {
     robot_real force; /* N; at the speed */
     robot_real speed; /* m/s; at the transient limit */
 } robot_two_body_t;

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -53,6 +54,22 @@ class CubicPoints:
             t = ca.fmin(ca.fmax(0, (depth - a) / width), 1)
             total += t * (c_1 + t * (c_2 + t * c_3))
         return total
+
+    @cached_property
+    def _plain(self) -> tuple[list[float], list[float], list[list[float]]]:
+        return self.depth.tolist(), np.diff(self.depth).tolist(), self._cubics.tolist()
+
+    def at(self, depth: float) -> tuple[float, float]:
+        """Return force [N] and slope [N/m] at one depth ≥ 0 [m], fastest for a single one."""
+        places, widths, cubics = self._plain
+        if depth >= places[-1]:
+            over = depth - places[-1]
+            return float(self.forces[-1]) + self.beyond * over, self.beyond
+        i = bisect_right(places, depth) - 1
+        t = (depth - places[i]) / widths[i]
+        c_0, c_1, c_2, c_3 = cubics[i]
+        force = c_0 + t * (c_1 + t * (c_2 + t * c_3))
+        return force, (c_1 + t * (2 * c_2 + t * 3 * c_3)) / widths[i]
 
     def evaluated(self, depth: Array) -> tuple[Array, Array]:
         """Return force [N] and slope [N/m] for depths ≥ 0 [m] as arrays, much faster."""

@@ -2,7 +2,7 @@
 /* Counts the instructions of one call of CALL, on average over the golden inputs and at most: with
  * "-icount shift=0" QEMU's 25 MHz SysTick advances once in 40 instructions. CALL names an input
  * `in` of INPUTS, each of which is repeated ROUNDS times, and, for impacts, the body region `region`
- * that goes with it. */
+ * that goes with it. With EACH it prints the instructions of every input first. */
 #include <stdint.h>
 #include <stdio.h>
 
@@ -63,6 +63,9 @@ int main(void)
         const uint32_t all = ticks(&INPUTS[k], 1);
         total += all - loop;
         most = all - loop > most ? all - loop : most;
+#if defined(EACH)
+        printf("%lu\n", (unsigned long)((all - loop)*PER_TICK/ROUNDS));
+#endif
     }
     printf("instructions: %lu, at most %lu\n", (unsigned long)(total/CASES*PER_TICK/ROUNDS),
            (unsigned long)(most*PER_TICK/ROUNDS));

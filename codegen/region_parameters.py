@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A contact as the fields of a package's region struct."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+from softimpact.symbolic import Contact, InvalidValue
+from softimpact.symbolic.body.laws import HERTZ_EXPONENT, PowerLaw
+from softimpact.symbolic.body.shapes import Shape
+from softimpact.symbolic.body.verdict import limits_of
+
+from .law_points import law_points
+
+
+def region_parameters(contact: Contact, shape: Shape | None = None) -> dict[str, Any]:
+    """Return what a package's impacts need to know of a contact, by the fields of its region.
+
+    Limits are the least of force, energy and pressure, and 0 where there is none, which C refuses.
+    ``law`` is None where skin and cover together follow Hertz's law, else their points, a row each
+    (see ``law_points``): never softer than the law, and at most 2e-4 stiffer. A compiled package
+    takes the whole as ``region=``.
+
+    Args:
+        contact: body and cover.
+        shape: what touches; None: limits of pressure do not count.
+
+    Raises:
+        InvalidValue: a number of the contact cannot be, or the body has a plate.
+    """
+    contact.check()
+    region, law = contact.region, contact.law
+    if region.plate_mass:
+        raise InvalidValue("plate_mass", "must be 0 here: only simulations take a plate")
+    is_hertz = isinstance(law, PowerLaw) and law.exponent == HERTZ_EXPONENT
+    limits = limits_of(region, contact.clamped, shape)
+    pressing = limits_of(region, True, shape).quasi_static
+    assert pressing is not None
+    return {
+        "stiffness": region.stiffness,
+        "damping": region.damping,
+        "effective_mass": region.effective_mass,
+        "hertz_stiffness": law.stiffness if isinstance(law, PowerLaw) and is_hertz else 0.0,
+        "quasi_static_limit": _known(pressing.force),
+        "force_limit": _known(limits.transient.force),
+        "law": None if is_hertz else law_points(law),
+        "clamped": contact.clamped,
+    }
+
+
+def _known(limit: float) -> float:
+    return limit if limit < inf else 0.0

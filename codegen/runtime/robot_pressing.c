@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
+#include "robot_state.h"
+
+/* Until when it is looked, s. */
+#define PRESSED_UNTIL ROBOT_R(0.6)
+/* Share of a limit up to which it counts as kept, as for peaks. */
+#define PRESSED_KEPT ROBOT_R(0.995)
+/* Halvings of a speed that presses too hard. */
+#define SLOWER 14
+#define LEAST_SPEED ROBOT_R(1e-6) /* of a contact point that does not rest, m/s */
+
+/* An impact that is followed until 0.6 s. */
+typedef struct {
+    robot_params p;
+    robot_impact impact;
+    robot_budget budget;
+    robot_watch watch;
+    bool bounded; /* some force is a bound */
+} robot_pressing;
+
+/*
+ * Largest force from 0.5 s on; less than `matters`, or nothing, if it is proven that none exceeds that. The
+ * largest of numbers where that is not known.
+ */
+static robot_real pressed_by(robot_pressing *k, robot_real speed, robot_real matters)
+{
+    robot_peak peak;
+    k->watch.matters = matters;
+    k->watch.depth = robot_law_depth(k->impact.region, matters);
+    k->watch.late = ROBOT_R(0.0);
+    k->watch.before = ROBOT_R(0.0);
+    k->watch.last = ROBOT_R(0.0);
+    k->budget.watch = &k->watch;
+    robot_impact_run(&k->impact, speed, &k->budget, &peak);
+    if (peak.ended) {
+        return k->watch.late;
+    }
+    const robot_real bound = k->impact.status == ROBOT_OK ? robot_bound(&k->impact) : ROBOT_R(0.0);
+    k->bounded = true;
+    return bound > ROBOT_R(0.0) ? bound*speed : ROBOT_REAL_MAX;
+}
+
+/* Whether what presses keeps a limit at a speed, by any motors; false where that is not known. */
+static bool keeps(robot_pressing *k, const robot_region *region, robot_real speed, robot_real limit)
+{
+    int first;
+    int last;
+    robot_kinds_of_motors(&k->p, &first, &last);
+    bool kept = true;
+    for (int motors = first; motors <= last && kept; ++motors) {
+        kept = robot_impact_prepare(region, &k->p, motors, limit, &k->impact) == ROBOT_OK
+            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+    }
+    return kept;
+}
+
+static void prepare_pressing(const robot_params *p, robot_pressing *k)
+{
+    k->p = *p;
+    k->p.horizon = ROBOT_FMAX(ROBOT_HORIZON(p), PRESSED_UNTIL);
+    k->budget.steps = p->steps;
+    k->budget.rough = false;
+    k->budget.stop_above = ROBOT_REAL_MAX;
+    k->budget.watch = NULL;
+    k->bounded = false;
+}
+
+/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+static robot_real slow_down(robot_pressing *k, const robot_region *region, robot_real speed, robot_real limit)
+{
+    if (keeps(k, region, speed, limit)) {
+        return speed;
+    }
+    robot_real low = ROBOT_R(0.0);
+    robot_real high = speed;
+    for (int i = 0; i < SLOWER; ++i) {
+        const robot_real middle = ROBOT_R(0.5)*(low + high);
+        k->budget.steps = k->p.steps;
+        if (keeps(k, region, middle, limit)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+int robot_pressing_force_at(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
+    robot_real speed, const robot_region *region, const robot_params *p, robot_real *force)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || force == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    robot_pressing k;
+    int status = robot_check_positive(&speed, 1);
+    if (status == ROBOT_OK) {
+        status = robot_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    prepare_pressing(p, &k);
+    robot_real found = ROBOT_R(0.0);
+    int first;
+    int last;
+    robot_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last && region->clamped != 0; ++motors) {
+        status = robot_impact_prepare(region, &k.p, motors, -speed, &k.impact);
+        if (status != ROBOT_OK) {
+            return status;
+        }
+        found = ROBOT_FMAX(found, pressed_by(&k, speed, ROBOT_R(0.0)));
+        if (k.impact.status != ROBOT_OK) {
+            return k.impact.status;
+        }
+    }
+    if (!(found < ROBOT_REAL_MAX)) {
+        return ROBOT_UNRESOLVED;
+    }
+    *force = found;
+    return k.bounded ? ROBOT_BOUNDED : ROBOT_OK;
+}
+
+/* Checks for limits of both kinds. */
+static int check_limits(const robot_region *region)
+{
+    const robot_real limits[2] = {region->force_limit, region->quasi_static_limit};
+    return robot_check_positive(limits, region->clamped != 0 ? 2 : 1);
+}
+
+/* Largest speed up to a cap, where that is positive, that keeps all limits of a region. */
+static int find_allowed(const robot_region *region, const robot_params *p, robot_real cap, robot_pressing *k,
+    robot_allowed_speed_t *found)
+{
+    robot_safe_speed_t safe;
+    const int status = robot_find_speed(region, p, region->force_limit, cap, &k->impact, &safe);
+    if (status == ROBOT_OK || status == ROBOT_BOUNDED) {
+        found->speed = safe.speed;
+        found->force = safe.force;
+        if (region->clamped != 0) {
+            prepare_pressing(p, k);
+            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+        }
+        found->pressed = found->speed < safe.speed ? 1 : 0;
+    }
+    return status;
+}
+
+int robot_allowed_speed_at(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
+    const robot_region *region, const robot_params *p, robot_allowed_speed_t *out)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    robot_pressing k;
+    robot_allowed_speed_t found;
+    int status = check_limits(region);
+    if (status == ROBOT_OK) {
+        status = robot_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status == ROBOT_OK) {
+        status = find_allowed(region, p, ROBOT_R(0.0), &k, &found);
+    }
+    if (status != ROBOT_OK && status != ROBOT_BOUNDED) {
+        return status;
+    }
+    if (!(found.speed > ROBOT_R(0.0))) {
+        return ROBOT_UNRESOLVED;
+    }
+    *out = found;
+    return status;
+}
+
+/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
+static int set_off(const robot_real *q, const robot_real *dq, const robot_region *region,
+    const robot_params *p, robot_real rates[ROBOT_N], robot_pressing *k)
+{
+    int status = robot_check_finite(dq, ROBOT_JOINTS);
+    if (status == ROBOT_OK) {
+        status = robot_check_impact(region, p);
+    }
+    for (int i = 0; i < ROBOT_N; ++i) {
+        rates[i] = dq[ROBOT_INDEPENDENT(i)];
+    }
+    (void)q;
+    return status == ROBOT_OK ? robot_links(ROBOT_LINKS_OF(q, p), &k->impact.arrival.links) : status;
+}
+
+int robot_allowed_factor(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
+    const robot_region *region, const robot_params *p, robot_allowed_factor_t *out)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    robot_pressing k;
+    robot_real rates[ROBOT_N];
+    robot_allowed_factor_t found = {ROBOT_R(1.0), -1, ROBOT_R(0.0), ROBOT_R(0.0), 0};
+    bool bounded = false;
+    int status = check_limits(region);
+    if (status == ROBOT_OK) {
+        status = set_off(q, dq, region, p, rates, &k);
+    }
+    for (int point = 0; point < ROBOT_POINTS && status == ROBOT_OK; ++point) {
+        const robot_real speed = robot_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        robot_allowed_speed_t allowed = {speed, ROBOT_R(0.0), 0};
+        robot_impact_forget(&k.impact);
+        if (speed > LEAST_SPEED) {
+            status = find_allowed(region, p, found.factor*speed, &k, &allowed);
+            bounded = bounded || status == ROBOT_BOUNDED;
+            status = status == ROBOT_BOUNDED ? ROBOT_OK : status;
+        }
+        if (speed > LEAST_SPEED && status == ROBOT_OK
+            && (allowed.speed < found.factor*speed || found.point < 0)) {
+            found.factor = ROBOT_FMIN(found.factor, allowed.speed/speed);
+            found.point = point;
+            found.speed = allowed.speed;
+            found.force = allowed.force;
+            found.pressed = allowed.pressed;
+            status = allowed.speed > ROBOT_R(0.0) ? ROBOT_OK : ROBOT_UNRESOLVED;
+        }
+    }
+    const robot_real numbers[3] = {found.factor, found.speed, found.force};
+    if (status == ROBOT_OK && !robot_all_finite(numbers, 3)) {
+        status = ROBOT_SINGULAR;
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    *out = found;
+    return bounded ? ROBOT_BOUNDED : ROBOT_OK;
+}
+
+int robot_may_press(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
+    robot_real limit, const robot_region *region, const robot_params *p, int *may)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || may == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    robot_pressing k;
+    robot_real rates[ROBOT_N];
+    int status = robot_check_positive(&limit, 1);
+    if (status == ROBOT_OK) {
+        status = set_off(q, dq, region, p, rates, &k);
+    }
+    if (status != ROBOT_OK) {
+        return status;
+    }
+    bool kept = true;
+    for (int point = 0; point < ROBOT_POINTS && region->clamped != 0 && kept; ++point) {
+        const robot_real speed = robot_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        robot_impact_forget(&k.impact);
+        prepare_pressing(p, &k);
+        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+    }
+    *may = kept ? 0 : 1;
+    return ROBOT_OK;
+}

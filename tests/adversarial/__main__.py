@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Look for safe speeds that are none: random and hill-climbed inputs against the tests' integrator.
+
+Usage: PYTHONPATH=tests python -m adversarial [--inputs N] [--workers N] [--journal FILE]
+           [--out FILE] [ROBOT ...]
+
+Each round looks at ``COUNT`` random inputs of one robot and build, and climbs ``TURNS`` times from
+the ``CLIMBS`` worst of them; drives and bodies are those there are, or (wide) of many decades. The
+safe speed and three lower ones of each input are integrated (``oracle.c``), those that come near
+the limit once more in finer steps. Rounds that are done stand in the journal, with a digest of what
+they looked at: started again, the search goes on. Ends with 1 if a force exceeds its limit.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from compiled_packages import KINDS, Generated
+
+from .impacts import Robot
+from .robots import ROBOTS, package_of
+from .search import TURNS, Found, look
+
+COUNT, CLIMBS = 2000, 50
+"""Of a round: random inputs, and climbs."""
+
+WIDTHS = ("plain", "wide")
+"""Of what is drawn: what arms and bodies have, or many decades."""
+
+HERE = Path(__file__).parent
+
+
+@cache
+def packages(root: Path) -> dict[str, Generated]:
+    """Return the packages of a search, which its processes share."""
+    return {}
+
+
+@cache
+def robot_of(root: Path, name: str) -> Robot:
+    """Return a robot of this process."""
+    made = packages(root)
+    return Robot(made[name], root / "oracle")
+
+
+def prepare(root: Path, made: Mapping[str, Generated]) -> None:
+    """Tell a process the packages."""
+    packages(root).update(made)
+
+
+def digest(package: Generated) -> str:
+    """Return what changes with the package or with the search."""
+    files = [
+        *package.folder.glob("src/*"),
+        *package.folder.glob("include/*"),
+        *HERE.glob("*.[cp]*"),
+    ]
+    texts = (path.read_bytes() for path in sorted(files) if path.is_file())
+    return hashlib.sha256(b"\0".join(texts)).hexdigest()[:16]
+
+
+def round_of(root: Path, name: str, real: str, wide: bool, seed: int) -> Found:
+    """Do one round."""
+    return look(robot_of(root, name), real, seed, COUNT, CLIMBS, wide=wide)
+
+
+def main() -> int:
+    """Search, and say what was found."""
+    parser = argparse.ArgumentParser(description=str(__doc__).split("\n", maxsplit=1)[0])
+    parser.add_argument("robots", nargs="*", default=[*ROBOTS], metavar="ROBOT")
+    parser.add_argument("--inputs", type=int, default=1_000_000)
+    parser.add_argument("--widths", nargs="+", choices=WIDTHS, default=WIDTHS)
+    parser.add_argument("--seed", type=int, default=1, help="of the first round")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--journal", type=Path, default=Path("results/adversarial.jsonl"))
+    parser.add_argument("--out", type=Path, help="for the sums, JSON")
+    told = parser.parse_args()
+    widths = [width == "wide" for width in told.widths]
+    kinds = [(name, real, wide) for name in told.robots for real in KINDS for wide in widths]
+    rounds = -(-told.inputs // (len(kinds) * (COUNT + CLIMBS * TURNS)))
+    told.journal.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        (root / "oracle").mkdir()
+        made = {name: package_of(name, root / name) for name in told.robots}
+        for package in made.values():
+            for real in KINDS:
+                package.load(real)
+        digests = {name: digest(package) for name, package in made.items()}
+        asked = [
+            {"robot": name, "real": real, "wide": wide, "seed": told.seed + k, "of": digests[name]}
+            for k in range(rounds)
+            for name, real, wide in kinds
+        ]
+        done = read(told.journal)
+        left = [job for job in asked if key(job) not in done]
+        print(f"{len(asked)} rounds, {len(asked) - len(left)} done before", flush=True)
+        start, found = time.monotonic(), dict(done)
+        with (
+            ProcessPoolExecutor(told.workers, initializer=prepare, initargs=(root, made)) as pool,
+            told.journal.open("a", encoding="utf-8") as journal,
+        ):
+            futures = {
+                pool.submit(round_of, root, j["robot"], j["real"], j["wide"], j["seed"]): j
+                for j in left
+            }
+            for n, future in enumerate(as_completed(futures), 1):
+                job, result = futures[future], asdict(future.result())
+                journal.write(json.dumps({**job, "found": result}) + "\n")
+                journal.flush()
+                found[key(job)] = result
+                rest = (time.monotonic() - start) / n * (len(left) - n)
+                say(job, result, f"{n}/{len(left)}, {rest / 60:.0f} min left")
+    return conclude([(job, found[key(job)]) for job in asked], told.out)
+
+
+def key(job: Mapping[str, Any]) -> str:
+    """Return what tells a round from others."""
+    return json.dumps([job[name] for name in ("robot", "real", "wide", "seed", "of")])
+
+
+def read(journal: Path) -> dict[str, dict[str, Any]]:
+    """Return the rounds that are done."""
+    lines = journal.read_text(encoding="utf-8").splitlines() if journal.exists() else []
+    rows = [json.loads(line) for line in lines if line.endswith("}")]
+    return {key(row): row["found"] for row in rows}
+
+
+def say(job: Mapping[str, Any], found: Mapping[str, Any], progress: str) -> None:
+    """Print a line about a round, and what exceeds its limit."""
+    width = "wide" if job["wide"] else "plain"
+    print(
+        f"{progress}: {job['robot']}, {job['real']}, {width}, seed {job['seed']}: "
+        f"{found['inputs']} inputs, {found['answered']} answered ({found['bounded']} by a bound), "
+        f"worst {found['worst']:.5f} of the limit, slower {found['below']:.5f}, "
+        f"{found['slower']:.5f} of the force at the safe speed",
+        flush=True,
+    )
+    if found["above"]:
+        print(f"  {found['above']} ABOVE, such as {found['hardest'][0]}", flush=True)
+
+
+def conclude(rows: list[tuple[Mapping[str, Any], Mapping[str, Any]]], out: Path | None) -> int:
+    """Print the sums of robots and builds; return 1 if a force exceeds its limit."""
+    sums: dict[str, Found] = {}
+    for job, found in rows:
+        width = "wide" if job["wide"] else "plain"
+        for name in (f"{job['robot']}, {job['real']}, {width}", "all"):
+            sums[name] = sums.get(name, Found()).joined(Found(**found))
+    for name, total in sums.items():
+        print(
+            f"{name}: {total.inputs} inputs, {total.answered} answered ({total.bounded} by a "
+            f"bound), {total.integrated} impacts, {total.above} above; worst {total.worst:.5f}, "
+            f"slower {total.below:.5f}, {total.slower:.5f} of the force at the safe speed"
+        )
+    if out:
+        text = json.dumps({name: asdict(total) for name, total in sums.items()}, indent=1)
+        out.write_text(text + "\n", encoding="utf-8")
+    return int(sums["all"].above > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

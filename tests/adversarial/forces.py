@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Right forces of many impacts: the linear robot as matrices, and the tests' integrator."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from softimpact.symbolic.robot.rigid import Array
+
+from .impacts import FREE, SERVO, Cases, Robot
+
+LOOSE_ALONE, LED_FIRST = 1, 2
+"""What the integrator integrates; see ``oracle.c``."""
+
+TOLERANCE = 5e-4
+"""Bend of the force over a step of the integrator, over the largest force."""
+
+NOWHERE = 2e-3
+"""Share of 1 m/s that is missing along n where motors cannot move the contact point that way."""
+
+IMPACT = np.dtype(
+    [
+        *(("led", np.int64, 4), ("led_size", np.int64, 2)),
+        *(("loose", np.int64, 4), ("loose_size", np.int64, 2)),
+        ("runs", np.int64),
+        *((name, float) for name in (
+            "release", "horizon", "stiffness", "damping", "mass", "skin", "scale", "tolerance",
+            "longest", "shortest")),
+    ]
+)  # fmt: skip
+"""An impact as ``oracle.c`` reads it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """Robots in coordinates of unit mass, those first that driven motors do not hold.
+
+    Attributes:
+        led: stiffness while motors drive or servo.
+        led_damping: of the same, by the servo.
+        led_size: coordinates that move then.
+        loose: stiffness once motors are free.
+        row: what the contact point moves with each coordinate.
+        pull: of potentials on each as the motion before goes on, over v t.
+        reached: 1 where motors move the contact point along n at 1 m/s.
+    """
+
+    led: Array
+    led_damping: Array
+    led_size: NDArray[np.int64]
+    loose: Array
+    row: Array
+    pull: Array
+    reached: Array
+
+
+def linear(robot: Robot, cases: Cases) -> Linear:
+    """Return the linear robot of each case, over links and, where joints are elastic, motors."""
+    count, n = len(cases), robot.n
+    size = 2 * n if robot.elastic else n
+    M, P, J = robot.links_at(cases.q, cases.rotors)
+    along = cases.n / np.linalg.norm(cases.n, axis=1, keepdims=True)
+    row = np.einsum("ki,kij->kj", along, J)
+    rates = np.einsum("kij,kj->ki", np.linalg.pinv(J * robot.actuated, rcond=1e-9), along)
+    pull = np.einsum("kij,kj->ki", P, rates)
+    reached = (row * rates).sum(axis=1)
+    order = np.arange(n) if robot.elastic else np.argsort(robot.actuated, kind="stable")
+    gains, damping = (
+        (x[:, robot.independent] * robot.actuated)[:, order]
+        for x in (cases.gains, cases.damping_gains)
+    )
+    stiff, servo, damp, to_units = (np.zeros((count, size, size)) for _ in range(4))
+    links = np.arange(n)
+    motors = links + size - n
+    to_units[:, :n, :n] = np.linalg.inv(np.linalg.cholesky(M[:, order][:, :, order]))
+    stiff[:, :n, :n] = P[:, order][:, :, order]
+    if robot.elastic:
+        to_units[:, motors, motors] = cases.rotors**-0.5
+        for i, j, sign in ((0, 0, 1), (0, n, -1), (n, 0, -1), (n, n, 1)):
+            stiff[:, links + i, links + j] += sign * cases.springs
+    servo[:, motors, motors] = gains
+    damp[:, motors, motors] = damping
+    K, K_servo, D = (to_units @ x @ to_units.swapaxes(1, 2) for x in (stiff, stiff + servo, damp))
+    held = n if robot.elastic else int(robot.actuated.sum())
+    is_servo = cases.motors == SERVO
+    row, pull = (
+        np.einsum("kij,kj->ki", to_units, np.pad(x[:, order], ((0, 0), (0, size - n))))
+        for x in (row, pull)
+    )
+    return Linear(
+        led=np.where(is_servo[:, None, None], K_servo, K),
+        led_damping=np.where(is_servo[:, None, None], D, 0.0),
+        led_size=np.where(is_servo, size, size - held),
+        loose=K,
+        row=row,
+        pull=pull,
+        reached=reached,
+    )
+
+
+def forces(robot: Robot, cases: Cases, speeds: Array, finer: float = 1.0) -> Array:
+    """Return the largest force [N] of each case at each of its speeds.
+
+    It is infinite where motors cannot move the contact point along n: such poses are singular,
+    and have no safe speed.
+
+    Args:
+        robot: that hits.
+        cases: impacts.
+        speeds: some for each case [m/s].
+        finer: by what steps are shorter; at 1 errors are below 2e-4.
+    """
+    of, count = linear(robot, cases), len(cases)
+    size = of.row.shape[1]
+    impacts, undamped = np.zeros(count, IMPACT), np.zeros((size, size))
+    arrays = [np.ascontiguousarray(x) for x in (of.led, of.led_damping, of.loose, of.row, of.pull)]
+    led, led_damping, loose, row, pull = (_rows(x) for x in arrays)
+    none = np.full(count, undamped.ctypes.data)
+    impacts["led"] = np.stack([led, led_damping, row, pull], axis=1)
+    impacts["loose"] = np.stack([loose, none, row, pull], axis=1)
+    impacts["led_size"] = np.stack([of.led_size, np.full(count, size)], axis=1)
+    impacts["loose_size"] = size
+    runs = np.array([LOOSE_ALONE | LED_FIRST, LOOSE_ALONE, LED_FIRST, LED_FIRST])[cases.motors]
+    at_once = (cases.reaction == 0) & (cases.motors != FREE)
+    impacts["runs"] = np.where(at_once, LOOSE_ALONE, runs)
+    impacts["release"], impacts["horizon"] = cases.reaction, cases.horizon
+    for name in ("stiffness", "damping", "mass", "skin"):
+        impacts[name] = getattr(cases, name)
+    impacts["scale"], impacts["tolerance"] = 0.1 * cases.limit, TOLERANCE / finer**2
+    light = np.divide(1, cases.mass, out=np.zeros(count), where=cases.mass > 0)
+    mobility = np.maximum((of.row**2).sum(axis=1) + light, 1e-12)
+    skin = 1.5 * (cases.skin**2 * 3 * cases.limit) ** (1 / 3)
+    impacts["longest"] = np.minimum(1e-4 / finer, cases.horizon / 100)
+    shortest = np.minimum(5e-7, 0.01 / np.sqrt(mobility * skin))
+    impacts["shortest"] = np.minimum(shortest, impacts["longest"])
+    speeds = np.ascontiguousarray(speeds, float)
+    out = np.zeros_like(speeds)
+    robot.oracle.largest_forces(
+        ctypes.c_long(count), ctypes.c_void_p(impacts.ctypes.data),
+        ctypes.c_long(speeds.shape[1]), ctypes.c_void_p(speeds.ctypes.data),
+        ctypes.c_void_p(out.ctypes.data),
+    )  # fmt: skip
+    out[abs(of.reached - 1) > NOWHERE] = np.inf
+    return out
+
+
+def _rows(x: Array) -> Any:
+    """Return the addresses of an array's rows."""
+    return x.ctypes.data + np.arange(len(x)) * x.strides[0]

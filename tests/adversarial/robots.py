@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Robots whose packages the adversarial search looks at."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from compiled_packages import Generated
+from oracles import example_urdf
+
+from softimpact.codegen import generate_package
+from softimpact.symbolic import Robot, arm_of, drives, load_robot
+
+TWO_LINKS = """<mujoco><compiler angle="radian"/><worldbody>
+  <body name="upper"><joint name="q1" axis="0 0 1" range="-3 3" armature=".3"/>
+    <inertial mass="10" pos=".5 0 0" diaginertia=".01 .8333 .8333"/>
+    <body name="lower" pos="1 0 0"><joint name="q2" axis="0 0 1" range="-3 3" armature=".3"/>
+      <inertial mass="10" pos=".5 0 0" diaginertia=".01 .8333 .8333"/>
+      <site name="tip" pos="1 0 0"/>
+    </body></body></worldbody></mujoco>"""
+
+
+def two_links() -> Robot:
+    """Return RR's links, turned by motors through springs that are inputs."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "two_links.xml")
+        path.write_text(TWO_LINKS, encoding="utf-8")
+        return replace(load_robot(path), tip="tip")
+
+
+def solo12() -> Robot:
+    """Return a leg of Solo12, whose rotors are a guess."""
+    leg = arm_of(load_robot(example_urdf("solo12.urdf")), "FL_FOOT").robot
+    return replace(leg, tip="FL_FOOT")
+
+
+ROBOTS: dict[str, Callable[[], Robot]] = {
+    "panda": lambda: load_robot("panda"),
+    "ur5e": lambda: load_robot("ur5e"),
+    "solo12": solo12,
+    "two_links": two_links,
+    "rr": lambda: load_robot("rr"),
+    "rmin": lambda: load_robot("rmin"),
+    "gen3": lambda: load_robot("gen3"),
+    "iiwa14": lambda: load_robot("iiwa14"),
+    "xarm7": lambda: load_robot("xarm7"),
+}
+"""By name: elastic arms, a leg, two links in a plane, passive joints, closed loops."""
+
+
+def package_of(name: str, folder: Path) -> Generated:
+    """Return the package of a robot by name, generated anew."""
+    robot = ROBOTS[name]()
+    known = drives(robot, rotor_inertia=0.1) if name == "solo12" else None
+    manifest = generate_package(robot, folder, name=name, drives=known)
+    return Generated(robot, str(robot.tip), folder, manifest)

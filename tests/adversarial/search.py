@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Safe speeds that are none: what a search looks at, and what it found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from softimpact.symbolic.robot.rigid import Array
+
+from .cases import Draw
+from .forces import forces as forces_of
+from .impacts import BOUNDED, OK, Cases, Robot
+
+TURNS = 40
+"""Of a climb."""
+
+NEAR = 0.997
+"""Share of a limit from which on a force is integrated in finer steps."""
+
+FINER = 5.0
+"""By what those are shorter."""
+
+KEPT = 5
+"""How many of the worst inputs are written down."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a search found.
+
+    Attributes:
+        inputs: that were looked at.
+        answered: of these, how many had a safe speed.
+        bounded: of these, how many one from a bound.
+        integrated: impacts integrated.
+        above: inputs with a force above its limit at the safe speed or below it.
+        worst: largest force over its limit.
+        below: the same at speeds below the safe one.
+        slower: largest force at a speed below the safe one, over that at the safe one.
+        hardest: inputs with the largest forces over their limits, and these.
+    """
+
+    inputs: int = 0
+    answered: int = 0
+    bounded: int = 0
+    integrated: int = 0
+    above: int = 0
+    worst: float = 0.0
+    below: float = 0.0
+    slower: float = 0.0
+    hardest: Sequence[Mapping[str, Any]] = ()
+
+    def joined(self, other: Found) -> Found:
+        """Return both together."""
+        sums = ("inputs", "answered", "bounded", "integrated", "above")
+        most = ("worst", "below", "slower")
+        mine, theirs = vars(self), vars(other)
+        hardest = sorted([*self.hardest, *other.hardest], key=lambda row: -row["share"])
+        return Found(
+            **{name: mine[name] + theirs[name] for name in sums},
+            **{name: max(mine[name], theirs[name]) for name in most},
+            hardest=hardest[:KEPT],
+        )
+
+
+class Search:
+    """Looks at inputs, many at a time."""
+
+    def __init__(self, robot: Robot, real: str, draw: Draw) -> None:
+        self.robot, self.real, self.draw = robot, real, draw
+        self.found = Found()
+
+    def shares(self, cases: Cases) -> Array:
+        """Return the largest force over its limit up to the safe speed of each input."""
+        status, speeds = self.robot.answers("safe_speed", cases, cases.limit, self.real)
+        answered = np.flatnonzero((status == OK) | (status == BOUNDED))
+        out = np.zeros(len(cases))
+        if len(answered) == 0:
+            self.found = self.found.joined(Found(inputs=len(cases)))
+            return out
+        asked = cases.take(answered)
+        random = self.draw.random
+        shares = np.ones((len(answered), 4))
+        shares[:, 1:3] = random.uniform(0.5, 1, (len(answered), 2))
+        shares[:, 3] = 10 ** random.uniform(-2, -0.3, len(answered))
+        tried = speeds[answered, None] * shares
+        forces = forces_of(self.robot, asked, tried)
+        near = forces.max(axis=1) > NEAR * asked.limit
+        if near.any():
+            forces[near] = forces_of(self.robot, asked.take(near), tried[near], FINER)
+        over = forces / asked.limit[:, None]
+        worst, below = over.max(axis=1), over[:, 1:].max(axis=1)
+        out[answered] = worst
+        hardest = [
+            {"share": float(worst[k]), "status": int(status[answered[k]]),
+             "speed": float(speeds[answered[k]]), **asked.row(k)}
+            for k in np.argsort(-worst)[:KEPT]
+        ]  # fmt: skip
+        self.found = self.found.joined(
+            Found(
+                inputs=len(cases),
+                answered=len(answered),
+                bounded=int((status == BOUNDED).sum()),
+                integrated=forces.size,
+                above=int((worst > 1).sum()),
+                worst=float(worst.max()),
+                below=float(below.max()),
+                slower=float((forces[:, 1:].max(axis=1) / forces[:, 0]).max()),
+                hardest=hardest,
+            )
+        )
+        return out
+
+    def climb(self, cases: Cases, best: Array) -> None:
+        """Climb from each input, by whatever brings its force nearer to its limit."""
+        for _ in range(TURNS):
+            others = self.draw.changed(cases)
+            found = self.shares(others)
+            better = found > best
+            best = np.where(better, found, best)
+            cases = pick(better, others, cases)
+
+
+def pick(which: NDArray[np.bool_], those: Cases, others: Cases) -> Cases:
+    """Return rows of one where a mask says so, else of the other."""
+    return replace(
+        others,
+        **{
+            name: np.where(which.reshape(-1, *[1] * (x.ndim - 1)), x, getattr(others, name))
+            for name, x in vars(those).items()
+        },
+    )
+
+
+def look(robot: Robot, real: str, seed: int, count: int, climbs: int, *, wide: bool) -> Found:
+    """Look at some random inputs and climb from the worst of them."""
+    random = np.random.default_rng([seed, int(wide), int(real == "float")])
+    search = Search(robot, real, Draw(robot, random, wide=wide))
+    cases = search.draw.cases(count)
+    shares = search.shares(cases)
+    first = np.argsort(-shares)[:climbs]
+    search.climb(cases.take(first), shares[first])
+    return search.found

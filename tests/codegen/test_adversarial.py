@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The adversarial search: its integrator is right, and it finds no safe speed that is none."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import impact_search
+import numpy as np
+import pytest
+from adversarial.__main__ import key, read
+from adversarial.cases import Draw
+from adversarial.forces import forces
+from adversarial.impacts import BOUNDED, DRIVEN, FREE, OK, SERVO, SINGULAR, Cases, Robot
+from adversarial.robots import ROBOTS, package_of
+from adversarial.search import Search, look
+from compiled_packages import Generated, mostly_slow
+from independent_impacts import arm_of, force_by_scipy
+
+from softimpact.simulate import Approach
+from softimpact.symbolic import REGIONS, Contact, Drives, Motors, impact_model
+from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
+from softimpact.symbolic.robot.rigid import Array
+
+FOUND = json.loads((Path(__file__).parents[1] / "adversarial/found.json").read_text())
+"""Inputs that once had safe speeds that were none (``was``: the force over its limit)."""
+
+SINGULAR_ONCE = 2.0
+"""What ``was`` exceeds where the contact point could not be moved along n at all."""
+
+
+def robot_of(package: Callable[[str], Generated], name: str, folder: Path) -> Robot:
+    """Return a robot of the search."""
+    built_in = name not in ("two_links", "solo12")
+    return Robot(package(name) if built_in else package_of(name, folder / name), folder)
+
+
+def stacked(rows: list[dict[str, Any]]) -> Cases:
+    """Return inputs from rows as they are written down."""
+    kinds = {"motors": np.int32, "steps": np.int32}
+    columns: dict[str, Any] = {
+        f.name: np.array([row[f.name] for row in rows], kinds.get(f.name, np.float64))
+        for f in fields(Cases)
+    }
+    return Cases(**columns)
+
+
+def drawn(robot: Robot, folder: Path, count: int) -> tuple[list[impact_search.Case], Cases]:
+    """Return the same random inputs for the plain integrator and for this one."""
+    one = impact_search.Robot(robot.package, folder)
+    random = np.random.default_rng(61)
+    singles = [impact_search.draw(one, random) for _ in range(count)]
+    more = {"skin": HERTZ_STIFFNESS, "steps": 8000}
+    return singles, stacked([{**vars(c), "mass": c.mass, **more} for c in singles])
+
+
+def test_integrator_agrees_with_runge_and_kutta(
+    package: Callable[[str], Generated], tmp_path: Path
+) -> None:
+    robot = robot_of(package, "panda", tmp_path)
+    (tmp_path / "plain").mkdir()
+    plain = impact_search.Robot(robot.package, tmp_path / "plain")
+    singles, cases = drawn(robot, tmp_path / "plain", 12)
+    speeds = 10 ** np.random.default_rng(62).uniform(-1.3, 0.3, len(cases))
+    right = [plain.right_force(c, float(v)) for c, v in zip(singles, speeds, strict=True)]
+    np.testing.assert_allclose(forces(robot, cases, speeds[:, None])[:, 0], right, rtol=2e-4)
+    finer = forces(robot, cases, speeds[:, None], 4.0)[:, 0]
+    np.testing.assert_allclose(finer, right, rtol=3e-5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("motors", ["free", "driven", "servo"])
+@pytest.mark.parametrize("clamped", [True, False])
+def test_integrator_agrees_with_scipy(
+    package: Callable[[str], Generated], motors: Any, clamped: bool, tmp_path: Path
+) -> None:
+    """SciPy's LSODA on links and motors, with masses and Jacobians by Pinocchio."""
+    robot = robot_of(package, "panda", tmp_path)
+    drawn_, kinds = Draw(robot, np.random.default_rng(63), wide=False), (FREE, DRIVEN, SERVO)
+    cases = drawn_.cases(40)
+    kept = ("free", "driven", "servo").index(motors)
+    body = REGIONS["chest"]
+    cases = replace(
+        cases,
+        motors=np.full(40, kinds[kept], np.int32),
+        reaction=np.full(40, 0.02),
+        horizon=np.full(40, 0.1),
+        stiffness=np.full(40, body.stiffness),
+        damping=np.full(40, body.damping),
+        mass=np.full(40, 0.0 if clamped else body.effective_mass),
+        limit=np.full(40, body.force_limit),
+    )
+    found = forces(robot, cases, np.full((40, 1), 0.5), 4.0)[:, 0]
+    k = int(np.flatnonzero(np.isfinite(found))[0])
+    arm = arm_of(
+        impact_model(
+            robot.package.robot,
+            robot.package.tip,
+            drives=Drives(
+                cases.rotors[k],
+                cases.springs[k],
+                (True,) * 7,
+                cases.gains[k],
+                damping_gains=cases.damping_gains[k],
+            ),
+        ),
+        Approach(cases.q[k], cases.n[k], 0.5),
+        full=False,
+    )
+    times = np.linspace(0, 0.1, 20_001)
+    right = force_by_scipy(arm, Contact(body, clamped=clamped), Motors(motors), times)
+    assert found[k] == pytest.approx(right.max(), rel=1e-4)
+
+
+@pytest.mark.parametrize("name", mostly_slow(["panda", "rr", "rmin", "two_links"], ["panda", "rr"]))
+def test_what_was_found_once_keeps_its_limit(
+    package: Callable[[str], Generated], name: str, tmp_path: Path
+) -> None:
+    robot = robot_of(package, name, tmp_path)
+    for row in (row for row in FOUND if row["robot"] == name):
+        cases = stacked([row])
+        status, speed = robot.answers("safe_speed", cases, cases.limit, row["real"])
+        if row["was"] > SINGULAR_ONCE:
+            assert status[0] == SINGULAR, row
+            continue
+        assert status[0] in (OK, BOUNDED), row
+        shares = np.array([[1.0, 0.95, 0.8, 0.5]])
+        right = forces(robot, cases, speed[0] * shares, 4.0) / cases.limit
+        assert right.max() <= 1, row
+
+
+@pytest.mark.parametrize(
+    "name", mostly_slow(["panda", "rr", "rmin", "ur5e", "two_links"], ["panda"])
+)
+@pytest.mark.parametrize("real", ["float", pytest.param("double", marks=pytest.mark.slow)])
+def test_a_search_finds_no_safe_speed_above_its_limit(
+    package: Callable[[str], Generated], name: str, real: str, tmp_path: Path
+) -> None:
+    found = look(robot_of(package, name, tmp_path), real, 7, 100, 4, wide=False)
+    assert found.inputs == 260
+    assert found.answered > 200
+    assert found.above == 0, found.hardest[0]
+    assert found.slower < 1.001
+
+
+def test_a_search_would_find_one(package: Callable[[str], Generated], tmp_path: Path) -> None:
+    class Hasty(Robot):
+        def answers(self, function: str, cases: Cases, numbers: Array, real: str) -> Any:
+            status, speeds = super().answers(function, cases, numbers, real)
+            return status, 1.03 * speeds
+
+    robot = Hasty(package("panda"), tmp_path)
+    search = Search(robot, "double", Draw(robot, np.random.default_rng(64), wide=False))
+    search.shares(search.draw.cases(40))
+    assert search.found.above > 20
+
+
+def test_inputs_are_exact_in_float_and_reach_every_corner(
+    package: Callable[[str], Generated], tmp_path: Path
+) -> None:
+    robot = robot_of(package, "panda", tmp_path)
+    cases = Draw(robot, np.random.default_rng(65), wide=True).cases(2000)
+    for name, x in vars(cases).items():
+        assert (x.astype(np.float32) == x).all(), name
+    assert set(cases.motors) == {0, 1, 2, 3}
+    assert ((cases.q <= robot.lower + 1e-6) | (cases.q >= robot.upper - 1e-6)).any(axis=0).all()
+    assert (cases.mass == 0).any()
+    assert cases.springs.min() < 300
+    assert cases.springs.max() > 3e7
+    assert cases.steps.min() < 3
+
+
+def test_a_journal_may_end_within_a_line(tmp_path: Path) -> None:
+    row = {"robot": "panda", "real": "float", "wide": True, "seed": 3, "of": "a", "found": {"a": 1}}
+    path = tmp_path / "journal"
+    assert read(path) == {}
+    path.write_text(json.dumps(row) + "\n" + json.dumps({**row, "seed": 4})[:-9])
+    assert read(path) == {key(row): {"a": 1}}
+
+
+def test_five_robots_and_more_are_looked_at() -> None:
+    assert {"panda", "ur5e", "solo12", "rr", "rmin"} < set(ROBOTS)
