@@ -2,8 +2,8 @@
 /* What is left of an impact of robot_ when its motors are let go, in modes of loose motors. */
 #include "robot_state.h"
 
-/* Levels by which the first step is shorter than the last: other modes stand. */
-#define AFTER 1
+/* Levels by which the first step is shorter than the last: the force may turn within it. */
+#define AFTER 4
 
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const robot_state *s, int size, robot_real *place, robot_real *rate)
