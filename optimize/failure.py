@@ -61,8 +61,9 @@ class Infeasible(Exception):
         least: Stiffest,
         ends: Sequence[tuple[Bound, float]],
         poses: Sequence[str],
-        at: str,
+        at: Sequence[str],
         *,
+        margin: float = 0.0,
         free: bool,
     ) -> Infeasible:
         """Return the failure of bounds that cannot be kept.
@@ -72,14 +73,15 @@ class Infeasible(Exception):
             ends: bounds, none of which could be left out, each with the best figure there is while
                 the others are kept.
             poses: names of those in which they cannot be kept.
-            at: limits of the springs that hold the design back.
+            at: limits of the hardware and the joints that hold the design back.
+            margin: share by which springs may miss their stiffness.
             free: whether the posture was sought as well.
         """
         by = "hardware and posture" if free else "hardware"
         where = ("pose " if len(poses) == 1 else "poses ") + ", ".join(f"'{p}'" for p in poses)
         conflicts = (
             *(b.name for b, _ in ends),
-            at,
+            *at,
             *(f"the pose of the tip in '{p}'" for p in poses),
         )
         side = {"most": "below", "least": "above"}
@@ -91,11 +93,18 @@ class Infeasible(Exception):
             f"{figure_in_words(figure, b.unit)}" + (f" of {b.name}" if len(ends) > 1 else "")
             for b, figure in ends
         )
-        springs = ", ".join(f"{k:.0f}" for k in least.springs)
-        kept = " while the other is kept" if len(ends) > 1 else ""
+        kept = " while the other is kept" if len(ends) == 2 else " while the others are kept"
+        reached += kept if len(ends) > 1 else ""
+        if any(each.startswith("stiffness") for each in at):  # else any springs do
+            springs = ", ".join(f"{k:.0f}" for k in least.springs)
+            reached += f", with k_s = [{springs}] N·m/rad"
+        if margin:
+            reached += f", each spring off by up to {100 * margin:g} %"
+        change = [*(b.name for b, _ in ends), *at, *(["accuracy.margin"] if margin else [])]
+        if not at:
+            change.append("the pose, or let more of the hardware change")
         return Infeasible(
-            f"no {by} keeps {asked} in {where}: {reached}{kept}, with k_s = [{springs}] N·m/rad; "
-            f"change {' or '.join(b.name for b, _ in ends)} or {at}",
+            f"no {by} keeps {asked} in {where}: {reached}; change {' or '.join(change)}",
             least,
             conflicts,
         )
@@ -118,14 +127,16 @@ class Unavailable(Exception):
     """No springs of a catalogue keep the bounds.
 
     Attributes:
-        share: of a limit that the best of them still uses.
+        bound: that the best of them still breaks.
+        share: of its limit that it uses.
     """
 
     exit_code = 3
 
-    def __init__(self, share: float) -> None:
-        self.share = share
+    def __init__(self, bound: str, share: float) -> None:
+        self.bound, self.share = bound, share
         super().__init__(
             "hardware.catalogue: no combination of its springs that was tried keeps all bounds; "
-            f"the nearest uses {share:.3g} times a limit; add stiffer springs"
+            f"the nearest uses {share:.3g} times {bound}; add springs, stiffer ones above all, or "
+            "change that bound"
         )

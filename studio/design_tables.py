@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 from rich.console import Console
 
 from softimpact.optimize import Outcome
@@ -11,12 +10,14 @@ from softimpact.optimize.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers_in_words import answers_in_words
+from .checks import doubts
 from .design_report import (
     DesignReport,
     RankedPose,
     band_in_words,
     gains_in_words,
     limit_kind,
+    nominal_in_words,
     peak_in_words,
     reactions_in_words,
 )
@@ -75,7 +76,7 @@ def _row(pose: RankedPose) -> list[Cell]:
         None if figures.k_r is None else 1e-3 * figures.k_r,
         figures.m_a,
         figures.giaf,
-        _force(result.force_before),
+        _force(result.force_before, "" if result.keeps_before else "!"),
         _force(None if result.table is None else result.table.force),
         _force(None if result.free is None else result.free.force),
         _status(result.table, result.free),
@@ -88,8 +89,8 @@ def _marks(pose: RankedPose) -> str:
     return ("*" if candidate.pose.recovered else "") + ("~" if candidate.turned else "")
 
 
-def _force(force: float | None) -> str | None:
-    return None if force is None else f"{force:.1f}"
+def _force(force: float | None, mark: str = "") -> str | None:
+    return None if force is None else f"{force:.1f}{mark}"
 
 
 def _stiffness(springs: Array) -> str:
@@ -109,6 +110,8 @@ def _notes(report: DesignReport) -> list[str]:
     notes = []
     if any(pose.result.candidate.pose.recovered for pose in report.poses):
         notes.append("* not in the source, recovered between its neighbours")
+    if any(not pose.result.keeps_before for pose in report.poses):
+        notes.append("! nominal springs that break a bound in that pose")
     turned = [
         f"{pose.result.candidate.pose.name} by {pose.result.candidate.turned:.2f} rad"
         for pose in report.poses
@@ -152,6 +155,7 @@ def _winner(report: DesignReport) -> list[str]:
         f"Check of the winner: linearised by SUNDIALS {check.linearised:.2f} N "
         f"({100 * (check.linearised / check.nlp - 1):+.3f} % from the optimum), "
         f"nonlinear {check.full:.2f} N ({100 * (check.full / check.nlp - 1):+.2f} %)",
+        *(f"warning: {line}" for line in doubts(check.nlp, check.linearised, check.full)),
     ]
 
 
@@ -169,13 +173,9 @@ def _meaning(report: DesignReport) -> list[str]:
         f"{answers.worst_motors.kind} are the worst",
         *answers_in_words(study, answers.indifferent, answers.prices),
     ]
-    if not np.array_equal(reference.springs, study.nominal):
-        saved = 100 * (1 - report.design.winner.force / reference.force)
-        lines.append(
-            f"nominal springs break a bound in {study.task_pose.name}; just "
-            f"stiff enough (k_s = {_stiffness(reference.springs)} kN·m/rad) they give "
-            f"{reference.force:.1f} N, of which the design saves {saved:.1f} %"
-        )
+    unfair = nominal_in_words(report.design)
+    if unfair is not None:
+        lines.append(f"{unfair} (k_s = {_stiffness(reference.springs)} kN·m/rad)")
     return lines
 
 

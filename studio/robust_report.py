@@ -24,6 +24,7 @@ from softimpact.symbolic.robot.rigid import Array, Inertia
 
 from .answers_in_words import answers_in_words
 from .cautions import study_warnings
+from .checks import doubts
 from .design_report import GENERATOR, inputs, versions
 
 
@@ -115,13 +116,14 @@ def robust_record(design: RobustDesign) -> dict[str, Any]:
     """Return a robust design as plain data, for ``results.json``."""
     study, scenarios, worst = design.study, design.scenarios, design.worst
     equal, equal_springs = design.equal
+    simulated = simulated_worst(design)
     names = study.range.names[max(study.groups) + 1 :]
     return {
         "generator": GENERATOR,
         "versions": versions(),
         "study": inputs(study),
         "peak_definition": "peak",
-        "warnings": study_warnings(study),
+        "warnings": [*study_warnings(study), *doubts(worst.force, simulated)],
         "objective": {
             "kind": study.objective.kind,
             "unit": study.objective.unit,
@@ -140,7 +142,7 @@ def robust_record(design: RobustDesign) -> dict[str, Any]:
         "worst_force": worst.force,
         "worst_share": worst.share,
         "worst_scenario": scenario_record(design, worst),
-        "check": {"nlp": worst.force, "linearised": simulated_worst(design)},
+        "check": {"nlp": worst.force, "linearised": simulated},
         "bounds": worst.bounds,
         "before": _other(design, design.before, study.nominal),
         "equal": _other(design, equal, equal_springs),

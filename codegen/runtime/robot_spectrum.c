@@ -15,7 +15,7 @@
  */
 #define SMALL ROBOT_R(1e-8)
 /* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
-#define MOST_STEPS 4
+#define MOST_STEPS 3
 
 /* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
 static void turn(int first, int size, const robot_real *v, robot_real scale, robot_matrix A)

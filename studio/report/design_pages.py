@@ -8,7 +8,13 @@ from pathlib import Path
 
 from softimpact.optimize.robust import RobustDesign
 
-from ..design_report import DesignReport, band_in_words, gains_in_words, reactions_in_words
+from ..design_report import (
+    DesignReport,
+    band_in_words,
+    gains_in_words,
+    nominal_in_words,
+    reactions_in_words,
+)
 from ..design_tables import ranking_rows
 from ..figures import (
     figure_of_forces,
@@ -42,7 +48,14 @@ def _design(report: DesignReport) -> Iterator[Section]:
     winner, answers, gains = design.winner, design.answers, design.gains
     yield Section(
         "What springs, posture and speed buy",
-        lines=[] if gains is None else gains_in_words(gains, report),
+        lines=[
+            *(
+                [unfair[0].upper() + unfair[1:] + "."]
+                if (unfair := nominal_in_words(design))
+                else []
+            ),
+            *([] if gains is None else gains_in_words(gains, report)),
+        ],
         figure=None if gains is None else figure_of_gains(report, gains),
         caption="Peak force and safe speed before, with springs, with the posture, with both.",
         tables=[

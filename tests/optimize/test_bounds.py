@@ -21,6 +21,7 @@ from softimpact.optimize.bounds.giaf import Giaf
 from softimpact.optimize.bounds.joint_range import JointRange
 from softimpact.optimize.bounds.joint_speed import JointSpeed
 from softimpact.optimize.bounds.manipulability import Manipulability
+from softimpact.optimize.bounds.mass import Mass
 from softimpact.optimize.bounds.natural_frequency import NaturalFrequency
 from softimpact.optimize.bounds.torque import Torque
 from softimpact.optimize.evaluation import figures, kept
@@ -231,3 +232,37 @@ def test_rigid_drives_have_no_say(study: Study) -> None:
     np.testing.assert_array_equal(
         figures(bound, other, Q, SPRINGS), figures(bound, study, Q, SPRINGS)
     )
+
+
+@pytest.mark.parametrize(
+    ("tables", "told"),
+    [
+        (
+            "[bounds.natural_frequency]\nleast = 80",
+            r"above 80 Hz .*is 33\.\d+ Hz, with k_s = .*stiffness\.upper of turn, lift, bend$",
+        ),
+        ("[bounds.energy]\nmost = 1e-3", r"0\.3457 J; change bounds\.energy\.most or the pose"),
+        (
+            "[hardware.link_mass]\nlower = 0.8\nupper = 1.2\n[bounds.mass]\nmost = 5.0",
+            r"is 7\.2 kg; change bounds\.mass\.most or hardware\.link_mass\.lower of turn, lift",
+        ),
+    ],
+)
+def test_what_holds_a_design_back_is_named(tmp_path: Path, tables: str, told: str) -> None:
+    """Springs where springs would help, other hardware where that would, and else neither."""
+    study = small_study(tmp_path, tables)
+    with pytest.raises(Infeasible, match=told):
+        robust_design(study, scenarios_of(study), InProcess())
+
+
+def test_a_margin_is_told_where_it_is_in_the_way(tmp_path: Path) -> None:
+    study = small_study(tmp_path, deflection=5e-4, accuracy="margin = 0.3")
+    with pytest.raises(Infeasible, match=r"off by up to 30 %; .* or accuracy\.margin$"):
+        robust_design(study, scenarios_of(study), InProcess())
+
+
+def test_mass(tmp_path: Path) -> None:
+    study = small_study(tmp_path, "[hardware.link_mass]\nlower = 0.8\nupper = 1.2")
+    factors = np.array([0.9, 1.1, 1.0])
+    expected = 4 * 0.9 + 3 * 1.1 + 2 * 1.0
+    assert figures(Mass(1.0), study, Q, SPRINGS, factors)[0] == pytest.approx(expected)

@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 from command_line import refusal, run, run_json
 
+from softimpact.studio.checks import doubts
+
 Results = tuple[Path, dict[str, Any]]
 
 STUDY = Path(__file__).resolve().parents[2] / "robots" / "studies" / "panda_24_poses.toml"
@@ -195,3 +197,9 @@ def test_bad_input_is_refused_before_the_search(tmp_path: Path) -> None:
     assert "stiffness" in refusal("design", bounds)
     outside = small_study(tmp_path, ("0.63, -0.10, -2.36", "1.90, -0.10, -2.36"))
     assert "outside its limits" in refusal("design", outside)
+
+
+def test_an_optimum_that_simulation_contradicts_is_said() -> None:
+    assert not doubts(100.0, 100.9, 99.0)
+    (line,) = doubts(100.0, 99.0, 101.1)
+    assert "simulation finds 101.1 N for the winner, where the optimum has 100.0 N" in line
