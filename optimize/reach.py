@@ -6,9 +6,9 @@ All of that needs no impact, so that it is told before any search.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -26,6 +26,8 @@ from .solver_options import quiet
 from .stiffest import Stiffest
 from .study import Study
 from .tip_pose import posture_equations, tip_pose
+
+Member = TypeVar("Member")
 
 ROW_TOLERANCE = 1e-5
 """Excess of a bound's row up to which it counts as kept: Ipopt's tolerance."""
@@ -163,7 +165,7 @@ def infeasible(study: Study, poses: Sequence[Candidate], *, free: bool) -> Infea
     )
 
 
-def _needed(members: Iterable[Any], broken: Any) -> list[Any]:
+def _needed(members: Iterable[Member], broken: Callable[[list[Member]], bool]) -> list[Member]:
     """Return an irreducible set: members are left out as long as what is left is still broken."""
     left = list(members)
     for member in list(left):

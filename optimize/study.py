@@ -203,7 +203,7 @@ class Study:
             for (point, (x, y, z)), speed in fastest.items()
         )
 
-    def _impacts(self) -> Iterator[tuple[str, Any, float]]:
+    def _impacts(self) -> Iterator[tuple[str, list[float], float]]:
         """Yield point, direction and speed of all that the file asks for."""
         asked, own = self.scenarios, self.direction.tolist()
         if isinstance(asked, tuple):

@@ -18,6 +18,7 @@ import numpy as np
 
 from softimpact.optimize import Design, Pareto
 from softimpact.simulate import Assessment, Assessments, ImpactHistory
+from softimpact.simulate.assessments import AssessedImpact
 from softimpact.studio.figures.style import (
     BEFORE,
     BLUE,
@@ -121,7 +122,7 @@ def plot_assessments(result: Assessments, axes: Any = None) -> Any:
     return axes
 
 
-def _case_in_words(case: Any) -> str:
+def _case_in_words(case: AssessedImpact) -> str:
     along = ", ".join(f"{x:.3g}" for x in case.direction)
     return f"{case.point} along [{along}] on {case.region}: {case.found.history.peak:.0f} N"
 

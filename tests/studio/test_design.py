@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 from command_line import refusal, run, run_json
 
+from softimpact.studio.checks import doubts
+
 Results = tuple[Path, dict[str, Any]]
 
 STUDY = Path(__file__).resolve().parents[2] / "robots" / "studies" / "panda_24_poses.toml"
