@@ -47,6 +47,11 @@ SEARCHED = (
 """What search the runtime has stood; of these sources, or of ones with longer steps."""
 
 
+UNLIMITED = "servos have whatever torque their gains ask for, and so press harder than limited ones"
+
+STEADY = "motors go on with the torque that the joints' own damping took before the impact"
+
+
 @dataclass(frozen=True, eq=False)
 class ImpactSource:
     """What the templates need for impacts.
@@ -189,6 +194,7 @@ def impact_source(
         reaction_time=REACTION_TIME,
         steps=DEFAULT_BUDGET,
         searched=SEARCHED,
+        assumed=(UNLIMITED, *([STEADY] if robot.damping.any() else [])),
     )
     return ImpactSource(
         robot=robot,

@@ -221,7 +221,7 @@ def design(
                 outcomes[key] = better(outcomes[key], outcome)
     solved = [outcome for outcome in outcomes.values() if outcome.solved]
     if not solved:
-        raise SolverFailure(list(outcomes.values()))
+        raise SolverFailure(list(outcomes.values()), study)
     results = tuple(
         PoseResult(
             pose,

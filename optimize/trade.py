@@ -10,9 +10,9 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .axes import Axes
 from .certificate import Hardening, Setting, Worst
+from .exchange import ExchangeState, exchange, worst_few
 from .failure import SolverFailure
 from .reach import ROW_TOLERANCE, Reach, reach
-from .robust import ExchangeState, exchange, worst_few
 
 TradeStart = tuple[Array, Array | None]
 """Springs and other values that a search begins with."""

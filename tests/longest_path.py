@@ -15,7 +15,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
 from compiled_packages import run
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 LINE = re.compile(r"^ *([0-9a-f]+):\t(\S+)(?:\t(.*))?$")
 NAME = re.compile(r"^([0-9a-f]+) <(.+)>:$")
@@ -24,16 +27,24 @@ CONDITIONS = "eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 JUMP = re.compile(rf"^b({CONDITIONS})?(\.[nw])?$")
 BACK = re.compile(rf"^(bx|pop|ldmia|ldr)({CONDITIONS})?(\.[nw])?$")
 
-BUDGET = -1
-"""Rounds of the loop whose budget all runs share."""
+
+@dataclass(frozen=True)
+class Budget:
+    """Rounds of a loop that all its runs share; each takes some steps of the budget."""
+
+    steps: int = 1
+
+
+Rounds = float | Budget
+"""Rounds of a loop, on average over the times that it is begun."""
 
 
 @dataclass(frozen=True)
 class Cost:
     """Instructions on the longest path, and those of a step of the budget."""
 
-    once: int = 0
-    step: int = 0
+    once: float = 0
+    step: float = 0
 
     def __add__(self, other: Cost) -> Cost:
         return Cost(self.once + other.once, max(self.step, other.step))
@@ -42,8 +53,10 @@ class Cost:
         """Return what is an upper bound of both."""
         return Cost(max(self.once, other.once), max(self.step, other.step))
 
-    def times(self, rounds: int) -> Cost:
+    def times(self, rounds: Rounds) -> Cost:
         """Return the cost of some rounds; a budget is for all of them."""
+        if isinstance(rounds, Budget):
+            return Cost(0, max(self.step, self.once / rounds.steps))
         return Cost(self.once * rounds, self.step)
 
 
@@ -87,7 +100,7 @@ class LongestPath:
     def __init__(
         self,
         image: Path,
-        rounds: Callable[[str, str], int],
+        rounds: Callable[[str, str], Rounds],
         once: Iterable[str] = (),
         known: Mapping[str, int] | None = None,
     ) -> None:
@@ -159,112 +172,119 @@ class LongestPath:
             cost[i.address] = own
             if goes_on and following:
                 after[i.address].add(following.address)
-        return _Graph(body[0].address, cost, after, self._rounds_of).longest()
+        try:
+            return _Graph(cost, after, self._rounds_of).longest(body[0].address)
+        except AssertionError as e:
+            raise AssertionError(name, *e.args) from e
 
-    def _rounds_of(self, latches: Iterable[int]) -> int:
-        """Return the rounds of a loop, by the lines of the jumps back to its start."""
-        return max(self.rounds(*self.line_of(latch)) for latch in latches)
+    def _rounds_of(self, latches: Iterable[int]) -> Rounds:
+        """Return the rounds of a loop by the jumps back to its start; of two loops with one start, both's."""
+        found = {line: self.rounds(*line) for line in map(self.line_of, sorted(latches))}
+        product = 1.0
+        for rounds in found.values():
+            if isinstance(rounds, Budget):
+                return rounds
+            product *= rounds
+        return product
 
 
 class _Graph:
-    """Blocks of one instruction each."""
+    """Instructions, what each costs and which may follow; loops become single ones."""
 
     def __init__(
         self,
-        start: int,
         cost: dict[int, Cost],
         after: dict[int, set[int]],
-        rounds: Callable[[Iterable[int]], int],
+        rounds: Callable[[Iterable[int]], Rounds],
     ) -> None:
-        self.start, self.cost, self.after, self.rounds = start, cost, after, rounds
-        self.group = {at: at for at in cost}
+        self.cost, self.after, self.rounds = cost, after, rounds
 
-    def longest(self) -> Cost:
+    def longest(self, start: int) -> Cost:
         """Return the longest path, loops taken as often as they may."""
-        for header, (latches, body) in sorted(self._loops().items(), key=lambda x: len(x[1][1])):
-            self._collapse(header, latches, body)
-        return self._path(self.start, self._reached())
+        self._straighten(set(self.cost), {start})
+        return self._paths(set(self.cost))[self.home.get(start, start)]
 
-    def _reached(self) -> set[int]:
-        seen, waiting = set[int](), [self.start]
-        while waiting:
-            at = waiting.pop()
-            if at not in seen:
-                seen.add(at)
-                waiting += self.after[at]
-        return seen
+    home: dict[int, int]
 
-    def _loops(self) -> dict[int, tuple[set[int], set[int]]]:
-        """Return the jumps back to each loop's start, and all that lies between."""
-        order, state, back = [], dict[int, int](), set[tuple[int, int]]()
-        stack = [(self.start, iter(sorted(self.after[self.start])))]
-        state[self.start] = 1
-        while stack:
-            at, rest = stack[-1]
-            for to in rest:
-                if to not in state:
-                    state[to] = 1
-                    stack.append((to, iter(sorted(self.after[to]))))
-                    break
-                if state[to] == 1:
-                    back.add((at, to))
-            else:
-                state[at] = 2
-                order.append(at)
-                stack.pop()
-        before: dict[int, set[int]] = defaultdict(set)
-        for at in state:
-            for to in self.after[at]:
-                before[to].add(at)
-        loops: dict[int, tuple[set[int], set[int]]] = {}
-        for latch, header in back:
-            latches, body = loops.setdefault(header, (set(), {header}))
-            latches.add(latch)
-            waiting = [latch]
-            while waiting:
-                at = waiting.pop()
-                if at not in body:
-                    assert at != self.start or header == self.start, "a loop with two entries"
-                    body.add(at)
-                    waiting += before[at]
-        return loops
+    def _straighten(self, nodes: set[int], entries: set[int]) -> None:
+        """Collapse all loops among some nodes."""
+        self.home = getattr(self, "home", {})
+        for loop in _circles(nodes, self.after):
+            before = {a for a in self.cost if a not in loop and self.after[a] & loop}
+            doors = {to for a in before for to in self.after[a] & loop} | (entries & loop)
+            header = min(doors, key=lambda door: self._left(loop, door))
+            latches = {a for a in loop if header in self.after[a]}
+            for a in latches:
+                self.after[a].discard(header)
+            self._straighten(set(loop), doors)
+            doors = {self.home.get(door, door) for door in doors}
+            inside = {a for a in loop if a in self.cost}
+            leaving = {to for a in inside for to in self.after[a]} - inside
+            ends = {a for a in inside if self.after[a] - inside}
+            paths, once, last = self._paths(inside), Cost(), Cost()
+            for door in doors:
+                once, last = once.worse(paths[door]), last.worse(self._test(door, inside))
+            if all(self.after[self.home.get(a, a)] - inside for a in latches):
+                last = Cost()  # it is asked at the end whether there is another round
+            total = once.times(self.rounds(latches)) + last
+            for a in loop:
+                self.home[a] = header
+            for a, home in self.home.items():
+                self.home[a] = header if home in inside else home
+            for a in inside - {header}:
+                del self.cost[a], self.after[a]
+            self.cost[header], self.after[header] = total, leaving - {header}
+            for to in self.after.values():
+                moved = to & (loop - {header})
+                if moved:
+                    to -= moved
+                    to.add(header)
+            self.after[header].discard(header)
 
-    def _collapse(self, header: int, latches: set[int], body: set[int]) -> None:
-        inside = {self.group[at] for at in body}
-        for at in inside:
-            self.after[at].discard(header)
-        round_ = Cost()
-        for at in inside:
-            round_ = round_.worse(self._path(header, inside, at))
-        rounds = self.rounds(latches)
-        last = round_
-        total = Cost(last.once, round_.once) if rounds == BUDGET else round_.times(rounds) + last
-        leaving = {to for at in inside for to in self.after[at]} - inside
-        for at, group in self.group.items():
-            if group in inside:
-                self.group[at] = header
-        for at in inside - {header}:
-            del self.cost[at], self.after[at]
-        self.cost[header], self.after[header] = total, leaving
-        for at, to in self.after.items():
-            self.after[at] = {self.group[t] for t in to} - {at}
+    def _test(self, door: int, inside: set[int]) -> Cost:
+        """Return the cost of a loop's start as far as nothing but leaving it is decided there."""
+        cost, at = Cost(), door
+        while True:
+            cost += self.cost[at]
+            on = self.after[at] & inside
+            if len(on) != 1:
+                return cost
+            at = on.pop()
 
-    def _path(self, start: int, within: set[int], end: int | None = None) -> Cost:
-        """Return the longest path from a start, to an end or to where it goes no further."""
+    def _left(self, loop: set[int], door: int) -> int:
+        """Return how many nodes are in loops still when a loop is opened at a door."""
+        cut = {a: self.after[a] - {door} for a in loop}
+        return sum(len(circle) for circle in _circles(loop, cut))
+
+    def _paths(self, within: set[int]) -> dict[int, Cost]:
+        """Return the longest path from each of some nodes, among which there is no loop."""
         best: dict[int, Cost] = {}
-        stack = [start]
-        while stack:
-            at = stack[-1]
-            waiting = [to for to in self.after[at] if to in within and to not in best]
-            if waiting and at not in best:
-                stack += waiting
-                assert len(stack) < 10**6, "a loop is left"
-                continue
-            stack.pop()
-            if at not in best:
+        for first in within:
+            stack = [first]
+            while stack:
+                at = stack[-1]
+                waiting = [to for to in self.after[at] if to in within and to not in best]
+                if waiting and at not in best:
+                    stack += waiting
+                    continue
+                stack.pop()
                 rest = Cost()
-                for to in self.after[at]:
-                    if to in within:
-                        rest = rest.worse(best[to])
+                for to in self.after[at] & within:
+                    rest = rest.worse(best[to])
                 best[at] = self.cost[at] + rest
-        return best[start]
+        return best
+
+
+def _circles(nodes: set[int], after: Mapping[int, set[int]]) -> list[set[int]]:
+    """Return the sets of nodes that reach each other and themselves."""
+    at = {node: k for k, node in enumerate(sorted(nodes))}
+    pairs = [(at[a], at[to]) for a in nodes for to in after[a] if to in nodes]
+    if not pairs:
+        return []
+    rows, columns = zip(*pairs, strict=True)
+    graph = coo_array((np.ones(len(pairs)), (rows, columns)), shape=(len(at), len(at)))
+    count, labels = connected_components(graph, connection="strong")
+    circles: list[set[int]] = [set() for _ in range(count)]
+    for node, k in at.items():
+        circles[labels[k]].add(node)
+    return [c for c in circles if len(c) > 1 or any(a in after[a] for a in c)]

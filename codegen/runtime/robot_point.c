@@ -89,14 +89,15 @@ int robot_safe_speed_on(const robot_real q[ROBOT_JOINTS], int frame, const robot
         return ROBOT_NULL_POINTER;
     }
     robot_impact impact;
-    robot_safe_speed_t found;
     int status = robot_check_positive(&limit, 1);
     if (status == ROBOT_OK) {
         status = approach_on(q, frame, place, n, region, p, &impact);
     }
-    if (status == ROBOT_OK) {
-        status = robot_find_speed(region, p, limit, ROBOT_R(0.0), &impact, &found);
+    if (status != ROBOT_OK) {
+        return status;
     }
+    robot_safe_speed_t found;
+    status = robot_find_speed(region, p, limit, ROBOT_R(0.0), &impact, &found);
     if (status == ROBOT_OK || status == ROBOT_BOUNDED) {
         *out = found;
     }

@@ -3,7 +3,7 @@
 #include "robot_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS ROBOT_R(0.03)
+#define BENDS ROBOT_R(0.02)
 #define BENDS_ROUGH ROBOT_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT ROBOT_R(0.22)
@@ -230,23 +230,24 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
 void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budget, robot_peak *peak)
 {
     robot_state s;
-    start(impact, speed, budget->rough, &s);
     peak->force = ROBOT_R(0.0);
     peak->time = ROBOT_R(0.0);
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
-    for (int k = impact->first; k <= impact->last && !peak->ended; ++k) {
-        if (k > impact->first) {
-            robot_impact_let_go(impact);
-            if (impact->status != ROBOT_OK) {
-                return;
-            }
-            robot_release(&s);
-        }
-        if (impact->phase[k].blurred || !run_phase(&s, budget, peak)) {
+    budget->steps -= ROBOT_STEPS_OF_RUN;
+    if (budget->steps <= 0 || impact->phase[impact->first].blurred) {
+        return;
+    }
+    start(impact, speed, budget->rough, &s);
+    bool goes_on = run_phase(&s, budget, peak);
+    if (goes_on && !peak->ended && impact->last > impact->first) {
+        robot_impact_let_go(impact);
+        if (impact->status != ROBOT_OK || impact->phase[impact->last].blurred) {
             return;
         }
+        robot_release(&s);
+        goes_on = run_phase(&s, budget, peak);
     }
-    peak->ended = true;
+    peak->ended = goes_on;
 }
