@@ -14,20 +14,20 @@ from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price
-from .branches import branches
 from .evaluation import largest_deflection, largest_share
 from .failure import SolverFailure
-from .ipopt import IN_TURN, minimise
+from .impact.timing import Timing
+from .machine.branches import branches
 from .meaning import meaning
-from .optima import Optimum, distinct
-from .poses import Candidate, candidates, leaves_a_choice
-from .problem import Problem, felt_numbers, peak_force, prepare, study_impacts
-from .reach import infeasible, reach, reachable
-from .repair import accurate_springs
-from .solve import Mode, Outcome, Start, better, solve
-from .study import Study
-from .timing import Timing
-from .workers import as_completed, awake, cores, workers, works_elsewhere
+from .running.workers import as_completed, awake, cores, workers, works_elsewhere
+from .search.ipopt import IN_TURN, minimise
+from .search.optima import Optimum, distinct
+from .search.problem import Problem, felt_numbers, peak_force, prepare, study_impacts
+from .search.reach import infeasible, reach, reachable
+from .search.repair import accurate_springs
+from .search.solve import Mode, Outcome, Start, better, solve
+from .study.poses import Candidate, candidates, leaves_a_choice
+from .study.study import Study
 
 MODES: tuple[Mode, ...] = ("table", "free")
 

@@ -9,11 +9,11 @@ import numpy as np
 
 from .bounds import Bound
 from .evaluation import kept
-from .ipopt import FEASIBLE
-from .solve import Outcome, preference
-from .stiffest import Stiffest
-from .study import Study
-from .tip_pose import tip_pose, tip_pose_error
+from .machine.tip_pose import tip_pose, tip_pose_error
+from .search.ipopt import FEASIBLE
+from .search.solve import Outcome, preference
+from .search.stiffest import Stiffest
+from .study.study import Study
 from .units import figure_in_words
 
 

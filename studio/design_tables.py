@@ -6,7 +6,7 @@ from __future__ import annotations
 from rich.console import Console
 
 from softimpact.optimize import Outcome
-from softimpact.optimize.poses import leaves_a_choice
+from softimpact.optimize.study.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers_in_words import answers_in_words

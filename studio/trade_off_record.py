@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from softimpact.optimize.answers import by_name
-from softimpact.optimize.trade_off import TradePoint
+from softimpact.optimize.front.trade_off import TradePoint
 
 from .cautions import study_warnings
 from .checks import doubts

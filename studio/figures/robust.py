@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullFormatter
 
-from softimpact.optimize.certificate import Worst
-from softimpact.optimize.robust import RobustDesign
+from softimpact.optimize.robust.certificate import Worst
+from softimpact.optimize.robust.robust import RobustDesign
 
 from .style import (
     BEFORE,

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from softimpact.optimize.robust import RobustDesign
+from softimpact.optimize.robust.robust import RobustDesign
 
 from ..design_report import (
     DesignReport,

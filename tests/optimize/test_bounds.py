@@ -26,8 +26,8 @@ from softimpact.optimize.bounds.natural_frequency import NaturalFrequency
 from softimpact.optimize.bounds.torque import Torque
 from softimpact.optimize.evaluation import figures, kept
 from softimpact.optimize.members import kinds_in
-from softimpact.optimize.robust import robust_design
-from softimpact.optimize.study_scenarios import scenarios_of
+from softimpact.optimize.robust.robust import robust_design
+from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.symbolic import (
     InvalidValue,
     drives,

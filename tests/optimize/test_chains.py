@@ -16,12 +16,12 @@ from studies import InProcess, written
 
 from softimpact.optimize import Study, design, load_study
 from softimpact.optimize.bounds.natural_frequency import NaturalFrequency
-from softimpact.optimize.coordinates import closure, side_function
 from softimpact.optimize.evaluation import figures, largest_share
-from softimpact.optimize.impact_program import _posture, _pulled_back, impact_program
-from softimpact.optimize.poses import leaves_a_choice
-from softimpact.optimize.problem import peak_force, prepare
-from softimpact.optimize.timing import Timing
+from softimpact.optimize.impact.impact_program import _posture, _pulled_back, impact_program
+from softimpact.optimize.impact.timing import Timing
+from softimpact.optimize.machine.coordinates import closure, side_function
+from softimpact.optimize.search.problem import peak_force, prepare
+from softimpact.optimize.study.poses import leaves_a_choice
 from softimpact.simulate import Approach, many_peaks
 from softimpact.symbolic import InvalidValue, Motors
 from softimpact.symbolic.impact.floating import base_held

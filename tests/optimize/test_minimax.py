@@ -12,11 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from studies import study_of
 
-from softimpact.optimize.ipopt import minimise
-from softimpact.optimize.minimax import least_worst
-from softimpact.optimize.minimax_point import Held
-from softimpact.optimize.peaks import peaks_in_windows, top_weights, tops
-from softimpact.optimize.problem import Problem, prepare
+from softimpact.optimize.impact.peaks import peaks_in_windows, top_weights, tops
+from softimpact.optimize.search.ipopt import minimise
+from softimpact.optimize.search.minimax import least_worst
+from softimpact.optimize.search.minimax_point import Held
+from softimpact.optimize.search.problem import Problem, prepare
 from softimpact.symbolic.robot.rigid import Array
 
 ASKED: dict[str, dict[str, Any]] = {

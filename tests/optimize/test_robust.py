@@ -14,10 +14,10 @@ from studies import InProcess, changed, study_of, written
 
 from softimpact.optimize import Infeasible, Study, design, load_study
 from softimpact.optimize.evaluation import largest_deflection
-from softimpact.optimize.impact_program import impact_numbers, impact_program
-from softimpact.optimize.robust import RobustDesign, robust_design
-from softimpact.optimize.study_scenarios import scenarios_of
-from softimpact.optimize.tip_pose import tip_pose
+from softimpact.optimize.impact.impact_program import impact_numbers, impact_program
+from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.robust.robust import RobustDesign, robust_design
+from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.studio.figures.robust import figure_of_robust_design
 from softimpact.symbolic import InvalidValue, impact_model, limits_of, with_load
