@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact import Contact, Motors, body_region, drives, impact_model, load_robot
-from softimpact.optimize.speed_factor import Watch, speed_factor
+from softimpact.optimize.impact.speed_factor import Watch, speed_factor
 from softimpact.simulate.program import program_dangers, safe_program
 from softimpact.simulate.trajectory import Trajectory, trajectory
 from softimpact.symbolic.robot.rigid import Array

@@ -3,12 +3,12 @@
 
 from .co_design import Design, Gains, PoseResult, design
 from .failure import Infeasible, SolverFailure, Unavailable
-from .front import Front, ParetoPoint
-from .pareto import Pareto, pareto_fronts
-from .poses import Candidate, candidates
-from .solve import Mode, Outcome
-from .study import Pose, Study, load_study
-from .trade_off import TradeOff, TradePoint, trade_off_front
+from .front.front import Front, ParetoPoint
+from .front.pareto import Pareto, pareto_fronts
+from .front.trade_off import TradeOff, TradePoint, trade_off_front
+from .search.solve import Mode, Outcome
+from .study.poses import Candidate, candidates
+from .study.study import Pose, Study, load_study
 
 __all__ = [
     "Candidate",

@@ -12,9 +12,9 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array
 
 from .bounds import STEEPNESS, Bound
-from .ipopt import Found, Instance, VariableBounds
-from .nlp import Program
-from .study import Study
+from .search.ipopt import Found, Instance, VariableBounds
+from .search.nlp import Program
+from .study.study import Study
 from .units import figure_in_words
 
 NO_LOSS = 0.005

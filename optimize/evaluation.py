@@ -14,9 +14,9 @@ from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
 from .bounds import Bound
-from .coordinates import sprung
-from .hardware import Hardware, Machine, TaskMotion
-from .study import Study
+from .machine.coordinates import sprung
+from .machine.hardware import Hardware, Machine, TaskMotion
+from .study.study import Study
 from .variables import Variable
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
-from .certificate import KEEPS
 from .evaluation import largest_share
-from .ipopt import Found, Instance
-from .problem import Problem, peak_force
-from .solve import Outcome
+from .robust.certificate import KEEPS
+from .search.ipopt import Found, Instance
+from .search.problem import Problem, peak_force
+from .search.solve import Outcome
 
 
 @dataclass(frozen=True, eq=False)

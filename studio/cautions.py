@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from softimpact.optimize import Study
-from softimpact.optimize.study_scenarios import contacts_of
+from softimpact.optimize.study.study_scenarios import contacts_of
 from softimpact.simulate.assessment import unused_of_the_file
 from softimpact.symbolic import BodyRegion
 

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from softimpact.optimize import Design, Study
-    from softimpact.optimize.execution import Execution
-    from softimpact.optimize.solve import Mode
+    from softimpact.optimize.running.execution import Execution
+    from softimpact.optimize.search.solve import Mode
     from softimpact.symbolic import ImpactModel
 
     from .design_report import DesignReport
@@ -48,7 +48,7 @@ def design(
 ) -> None:
     """Find the joint stiffness and the posture of least peak force with Ipopt."""
     from softimpact.optimize import load_study
-    from softimpact.optimize.execution import Execution
+    from softimpact.optimize.running.execution import Execution
 
     from .design_report import GENERATOR, design_record, design_report
     from .output import failures_as_json, print_json, print_warnings
@@ -92,11 +92,13 @@ def design(
 
 def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json: bool) -> None:
     """Design one machine for all scenarios."""
-    from softimpact.optimize.robust import robust_design
-    from softimpact.optimize.study_file import ScenariosSection
-    from softimpact.optimize.study_scenarios import scenarios_of
+    from softimpact.optimize.robust.robust import robust_design
+    from softimpact.optimize.study.study_file import ScenariosSection
+    from softimpact.optimize.study.study_scenarios import scenarios_of
 
     from .design_report import GENERATOR
+    from .figures.robust import figure_of_robust_design
+    from .figures.style import save
     from .output import failures_as_json, print_json, print_warnings, say, write_json
     from .progress import optimiser_bar
     from .results_folder import RESULTS, replaced_folder, running
@@ -114,6 +116,7 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
         record = robust_record(found)
         with replaced_folder(folder, GENERATOR) as fresh:
             write_json(fresh / RESULTS, record)
+            save(figure_of_robust_design(found), fresh / "design.png")
             _write_package(designed_model(found), fresh)
     if page is not None:
         from .report.design_pages import write_robust_report
@@ -125,7 +128,7 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
         return
     for line in robust_in_words(found):
         say(line)
-    say(f"Results and the C package: {folder}")
+    say(f"Results, figure and the C package: {folder}")
 
 
 def _modes(name: str, study: Study) -> tuple[Mode, ...]:

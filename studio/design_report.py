@@ -15,7 +15,7 @@ import numpy as np
 from softimpact.optimize import Design, Gains, Outcome, PoseResult, Study
 from softimpact.optimize.answers import by_name
 from softimpact.optimize.evaluation import kept
-from softimpact.optimize.solve import preference
+from softimpact.optimize.search.solve import preference
 from softimpact.simulate import ImpactHistory
 from softimpact.simulate.band import Band
 from softimpact.simulate.bracket import unknown_rotors

@@ -120,7 +120,7 @@ def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
 
 def _not_held(robot: Robot) -> list[str]:
     """Say what a study does not take, before somebody fills it in."""
-    from softimpact.optimize.study_robot import require_held_joints
+    from softimpact.optimize.study.study_robot import require_held_joints
 
     try:
         require_held_joints(robot)
@@ -145,7 +145,7 @@ def _springs(robot: Robot, q: Array, direction: tuple[float, ...]) -> dict[str, 
 
     Motors whose rotors are nothing, as a file may state, have no spring.
     """
-    from softimpact.optimize.study_robot import sprung_joints
+    from softimpact.optimize.study.study_robot import sprung_joints
 
     direct = [
         joint.name
@@ -175,7 +175,7 @@ def _springs(robot: Robot, q: Array, direction: tuple[float, ...]) -> dict[str, 
 
 def _upper(robot: Robot, q: Array, direction: tuple[float, ...], places: tuple[int, ...]) -> float:
     """Return springs as stiff as ten times the nominal ones, or as a design can bear."""
-    from softimpact.optimize.timing import stiffest_in_time
+    from softimpact.optimize.impact.timing import stiffest_in_time
 
     behind = [i for i in places if robot.actuated[i]]
     if not behind:

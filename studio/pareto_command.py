@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from softimpact.optimize import Study
-    from softimpact.optimize.execution import Execution
+    from softimpact.optimize.running.execution import Execution
 
     from .pareto_report import ParetoReport
 
@@ -52,8 +52,8 @@ def pareto(
 ) -> None:
     """Find designs that no other beats: in force and accuracy, or in objectives of your choice."""
     from softimpact.optimize import load_study
-    from softimpact.optimize.execution import Execution
-    from softimpact.optimize.trade_off import asks_for_trade_off
+    from softimpact.optimize.front.trade_off import asks_for_trade_off
+    from softimpact.optimize.running.execution import Execution
 
     from .output import failures_as_json, print_json, print_warnings
     from .pareto_record import GENERATOR, pareto_record
@@ -97,7 +97,7 @@ def pareto(
 
 def _trade_off(study: Study, folder: Path, page: Path | None, how: Execution, json: bool) -> None:
     """Find and write a front over objectives of a machine for scenarios."""
-    from softimpact.optimize.trade_off import trade_off_front
+    from softimpact.optimize.front.trade_off import trade_off_front
 
     from .figures.trade_off import draw_trade_off_figures
     from .output import (

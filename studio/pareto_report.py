@@ -6,8 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from softimpact.optimize import Front, Pareto, ParetoPoint, Study
-from softimpact.optimize.front import knee
-from softimpact.optimize.workers import Progress
+from softimpact.optimize.front.front import knee
+from softimpact.optimize.running.workers import Progress
 
 from .checks import Check, checked, safe_speed
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 from math import log
 
 from softimpact.optimize import ParetoPoint
-from softimpact.optimize.poses import leaves_a_choice
+from softimpact.optimize.study.poses import leaves_a_choice
 
 from .answers_in_words import answers_in_words
 from .design_report import limit_kind, peak_in_words

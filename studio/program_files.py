@@ -41,7 +41,7 @@ def write_program(found: ProgramResult, folder: Path) -> None:
 
 def _constraint(question: Question) -> Any:
     """Return (q, q̇) -> factor for all bodies, wherever they are; None where there is none."""
-    from softimpact.optimize.speed_factor import Watch, speed_factor
+    from softimpact.optimize.impact.speed_factor import Watch, speed_factor
 
     watched = [Watch(question.points, body.contact, body.limits) for body in question.bodies]
     kinds, horizon = list(question.ends.values()), question.horizon

@@ -19,7 +19,7 @@ from softimpact.codegen import folder as place
 from .output import print_warnings
 
 if TYPE_CHECKING:
-    from softimpact.optimize.execution import Execution
+    from softimpact.optimize.running.execution import Execution
 
 RESULTS = "results.json"
 
@@ -48,7 +48,7 @@ def running(how: Execution, folder: Path) -> Iterator[Executor]:
         how: to run.
         folder: of the results.
     """
-    from softimpact.optimize.execution import executing
+    from softimpact.optimize.running.execution import executing
 
     journal = folder.resolve().parent / f"{folder.resolve().name}.journal.jsonl"
     if journal.exists() and not how.resume:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from softimpact.optimize import Study
-from softimpact.optimize.axes import Axis
-from softimpact.optimize.trade_off import TradeOff, TradePoint
+from softimpact.optimize.front.axes import Axis
+from softimpact.optimize.front.trade_off import TradeOff, TradePoint
+from softimpact.optimize.running.workers import Progress
 from softimpact.optimize.units import SCALES, figure_in_words
-from softimpact.optimize.workers import Progress
 
 from .robust_report import simulated_worst
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from softimpact.optimize.axes import BoundAxis
+from softimpact.optimize.front.axes import BoundAxis
 
 from .answers_in_words import answers_in_words
 from .design_report import peak_in_words

@@ -11,8 +11,8 @@ from oracles import example_urdf
 
 from softimpact.optimize import Design, Outcome, PoseResult, Study, design, load_study
 from softimpact.optimize.co_design import Answers, DesignReference
-from softimpact.optimize.poses import Candidate, candidates
-from softimpact.optimize.timing import Timing
+from softimpact.optimize.impact.timing import Timing
+from softimpact.optimize.study.poses import Candidate, candidates
 from softimpact.studio.design_report import DesignReport, design_report
 
 PANDA = """

@@ -25,10 +25,10 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, differential_evolution, minimize
 
 from softimpact.optimize import Study, load_study
-from softimpact.optimize.impact_program import ImpactProgram, impact_program
-from softimpact.optimize.robust import RobustDesign, robust_design
-from softimpact.optimize.scenarios import Scenarios
-from softimpact.optimize.study_scenarios import scenarios_of
+from softimpact.optimize.impact.impact_program import ImpactProgram, impact_program
+from softimpact.optimize.robust.robust import RobustDesign, robust_design
+from softimpact.optimize.study.scenarios import Scenarios
+from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.robots import FOLDER
 from softimpact.symbolic.robot.rigid import Array
 

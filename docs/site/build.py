@@ -30,7 +30,7 @@ PACKAGES = ("softimpact", "softimpact.symbolic", "softimpact.simulate", "softimp
 """Whose public names the reference shows."""
 
 MORE = ("softimpact.simulate.program", "softimpact.simulate.zones",
-        "softimpact.simulate.trajectory", "softimpact.optimize.speed_factor")  # fmt: skip
+        "softimpact.simulate.trajectory", "softimpact.optimize.impact.speed_factor")  # fmt: skip
 """Modules whose public names are shown, too."""
 
 FENCES = re.compile(r"(^ *```.*?^ *```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)

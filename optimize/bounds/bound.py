@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal, Protocol, Self
 
 from softimpact.symbolic import Matrix
 
-from ..hardware import Machine
+from ..machine.hardware import Machine
 
 
 class Bound(Protocol):

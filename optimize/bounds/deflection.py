@@ -10,8 +10,8 @@ import casadi as ca
 
 from softimpact.symbolic import STANDARD_GRAVITY, Matrix, frame_jacobian
 
-from ..coordinates import onto
-from ..hardware import Machine
+from ..machine.coordinates import onto
+from ..machine.hardware import Machine
 from .bound import AtMost
 
 ROUNDED = 1e-30

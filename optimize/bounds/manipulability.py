@@ -8,8 +8,8 @@ from typing import ClassVar
 
 from softimpact.symbolic import Matrix, manipulability
 
-from ..coordinates import moved_by_motors
-from ..hardware import Machine
+from ..machine.coordinates import moved_by_motors
+from ..machine.hardware import Machine
 from .bound import AtLeast
 
 

@@ -10,7 +10,7 @@ import casadi as ca
 
 from softimpact.symbolic import Matrix
 
-from ..hardware import Machine, link_masses
+from ..machine.hardware import Machine, link_masses
 from .bound import AtMost
 
 

@@ -12,8 +12,8 @@ import casadi as ca
 from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.matrices import Factorisation
 
-from ..coordinates import loose, sprung
-from ..hardware import Machine
+from ..machine.coordinates import loose, sprung
+from ..machine.hardware import Machine
 from .bound import AtLeast
 from .eigenvalue import largest_eigenvalue
 

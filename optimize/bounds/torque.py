@@ -11,8 +11,8 @@ import numpy as np
 
 from softimpact.symbolic import STANDARD_GRAVITY, Matrix
 
-from ..coordinates import at_coordinates
-from ..hardware import Machine
+from ..machine.coordinates import at_coordinates
+from ..machine.hardware import Machine
 from .bound import AtMost
 
 

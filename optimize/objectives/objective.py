@@ -10,7 +10,7 @@ from softimpact.symbolic import Matrix
 from softimpact.symbolic.robot.rigid import Array, Indices
 
 if TYPE_CHECKING:
-    from ..scenarios import Scenarios
+    from ..study.scenarios import Scenarios
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from softimpact.symbolic.robot.rigid import Array, Indices
 from .objective import Objective, Own
 
 if TYPE_CHECKING:
-    from ..scenarios import Scenarios
+    from ..study.scenarios import Scenarios
 
 SLOWEST = 1e-3
 """Least factor on the speeds that is looked at."""

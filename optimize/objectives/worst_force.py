@@ -15,7 +15,7 @@ from softimpact.symbolic.robot.rigid import Array, Indices
 from .objective import Objective, Own
 
 if TYPE_CHECKING:
-    from ..scenarios import Scenarios
+    from ..study.scenarios import Scenarios
 
 
 @dataclass(frozen=True)

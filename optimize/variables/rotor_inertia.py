@@ -10,7 +10,7 @@ import numpy as np
 
 from softimpact.symbolic import ImpactModel, Matrix
 
-from ..hardware import Hardware
+from ..machine.hardware import Hardware
 from .variable import OneOrEach, Range, Variable, joint_range
 
 

@@ -12,7 +12,7 @@ from softimpact.symbolic import ImpactModel, InvalidValue, Matrix
 from softimpact.symbolic.impact.drives import PerJoint, per_joint
 from softimpact.symbolic.robot.rigid import Array
 
-from ..hardware import Hardware
+from ..machine.hardware import Hardware
 
 OneOrEach = float | tuple[float, ...]
 """One number for all, or one for each."""

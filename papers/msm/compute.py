@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from softimpact.optimize.workers import as_completed, workers
+from softimpact.optimize.running.workers import as_completed, workers
 from softimpact.simulate import Decoupling, decoupling_stiffness
 from softimpact.symbolic import Contact, InvalidValue, body_region, static_stiffness
 from softimpact.symbolic.robot.rigid import Array

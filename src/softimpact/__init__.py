@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .codegen import generate_package
     from .batch import compiled
     from .optimize import design, load_study, pareto_fronts
-    from .optimize.robust import robust_design
+    from .optimize.robust.robust import robust_design
     from .plots import plot
     from .simulate import (
         Approach,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from softimpact.optimize.coordinates import sprung
+from softimpact.optimize.machine.coordinates import sprung
 from softimpact.studio.pareto_report import ParetoReport
 from softimpact.symbolic import JointKind
 

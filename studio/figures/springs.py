@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from softimpact.optimize import Outcome
-from softimpact.optimize.coordinates import sprung
+from softimpact.optimize.machine.coordinates import sprung
 from softimpact.studio.design_report import DesignReport
 from softimpact.symbolic import JointKind
 

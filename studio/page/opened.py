@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from softimpact.optimize import Study, load_study
-from softimpact.optimize.coordinates import is_plain
+from softimpact.optimize.machine.coordinates import is_plain
 from softimpact.robots import built_in_robots, study_path
 from softimpact.simulate.trajectory import Trajectory
 from softimpact.symbolic import (

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from softimpact.optimize import Study
-from softimpact.optimize.coordinates import sprung
-from softimpact.optimize.study_scenarios import contacts_of
+from softimpact.optimize.machine.coordinates import sprung
+from softimpact.optimize.study.study_scenarios import contacts_of
 from softimpact.symbolic.robot.rigid import Array
 
 from ..cautions import not_permitted, study_warnings

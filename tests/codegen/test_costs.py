@@ -143,12 +143,13 @@ def _in_c(case: Case) -> str:
     def row(values: Iterable[float]) -> str:
         return "{" + ", ".join(f"{float(x)!r}f" for x in values) + "}"
 
-    body = [case.stiffness, case.damping, case.mass or 1.0, HERTZ_STIFFNESS, 0.0, case.limit]
-    region = ", ".join(f"{x!r}f" for x in body)
+    numbers = [case.stiffness, case.damping, case.mass or 1.0, HERTZ_STIFFNESS, 0.0, case.limit]
+    region = ", ".join(f"{x!r}f" for x in numbers)
     drives = ", ".join(row(x) for x in (case.springs, case.rotors, case.gains, case.damping_gains))
     motion = f"{case.reaction!r}f, {case.horizon!r}f, {case.motors}, {FEW_STEPS}"
+    body = f"{{ {region}, 0, 0, {int(case.clamped)} }}"
     return (
-        f"{{ {row(case.q)}, {row(case.n)}, {case.limit!r}f, {{ {region}, 0, 0, {int(case.clamped)} }}, "
+        f"{{ {row(case.q)}, {row(case.n)}, {case.limit!r}f, {body}, "
         f"{{ PANDA_LAYOUT, {drives}, {motion} }} }}"
     )
 

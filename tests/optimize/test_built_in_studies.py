@@ -8,16 +8,16 @@ from pathlib import Path
 import pytest
 
 from softimpact.optimize import load_study
-from softimpact.optimize.reach import require_reachable
-from softimpact.optimize.study_check import study_problems
-from softimpact.optimize.study_scenarios import scenarios_of
+from softimpact.optimize.search.reach import require_reachable
+from softimpact.optimize.study.study_check import study_problems
+from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.robots import FOLDER
 
 STUDIES = sorted((FOLDER / "studies").glob("*.toml"))
 
 
 def test_there_are_some() -> None:
-    assert len(STUDIES) >= 4
+    assert len(STUDIES) >= 6
 
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)

@@ -16,15 +16,16 @@ from studies import InProcess, written
 
 from softimpact.optimize import Study, design, load_study
 from softimpact.optimize.bounds.natural_frequency import NaturalFrequency
-from softimpact.optimize.coordinates import closure
 from softimpact.optimize.evaluation import figures, largest_share
-from softimpact.optimize.impact_program import _posture, _pulled_back, impact_program
-from softimpact.optimize.poses import leaves_a_choice
-from softimpact.optimize.problem import peak_force, prepare
-from softimpact.optimize.timing import Timing
+from softimpact.optimize.impact.impact_program import _posture, _pulled_back, impact_program
+from softimpact.optimize.impact.timing import Timing
+from softimpact.optimize.machine.coordinates import closure, side_function
+from softimpact.optimize.search.problem import peak_force, prepare
+from softimpact.optimize.study.poses import leaves_a_choice
 from softimpact.simulate import Approach, many_peaks
 from softimpact.symbolic import InvalidValue, Motors
 from softimpact.symbolic.impact.floating import base_held
+from softimpact.symbolic.loops.loops import closed_chain, nearest_to_closed
 
 RMIN: dict[str, Any] = {
     "robot": {"model": "rmin", "tip": "O13"},
@@ -183,6 +184,21 @@ def test_poses_close_their_loops(tmp_path: Path, q: list[float], reason: str) ->
     with pytest.raises(InvalidValue) as caught:
         study_of(tmp_path, {**RMIN, "poses": [{"name": "impact", "q": q}]})
     assert reason in str(caught.value)
+
+
+def test_two_ways_to_assemble_a_chain_differ(tmp_path: Path) -> None:
+    """A free search may not end in another one than it began with."""
+    study = study_of(tmp_path, RMIN)
+    side, q = side_function(study.model), study.poses[0].q
+    assert side is not None
+    chain, flipped = closed_chain(study.robot), q.copy()
+    flipped[list(chain.dependent)] *= -0.3
+    flipped = nearest_to_closed(chain, flipped, chain.dependent)
+    assert abs(np.array(closure(study.model, ca.DM(flipped)))).max() < 1e-9
+    assert abs(flipped - q).max() > 0.5
+    assert float(side(q)) * float(side(flipped)) < 0
+    (tmp_path / "open").mkdir()
+    assert side_function(study_of(tmp_path / "open", LEG).model) is None
 
 
 def test_springs_of_joints_that_follow_are_refused(tmp_path: Path) -> None:

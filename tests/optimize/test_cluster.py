@@ -17,9 +17,9 @@ from command_line import run
 from small_arm import small_study
 from studies import InProcess
 
-from softimpact.optimize.cluster import ClusterSilent, cluster
-from softimpact.optimize.robust import robust_design
-from softimpact.optimize.study_scenarios import scenarios_of
+from softimpact.optimize.robust.robust import robust_design
+from softimpact.optimize.running.cluster import ClusterSilent, cluster
+from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.symbolic import InvalidValue
 
 pytest.importorskip("distributed")
@@ -105,7 +105,7 @@ def test_a_worker_that_is_killed_loses_nothing(tmp_path: Path) -> None:
 
 
 def test_a_cluster_that_does_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("softimpact.optimize.cluster.PATIENCE", 0.3)
+    monkeypatch.setattr("softimpact.optimize.running.cluster.PATIENCE", 0.3)
     with (
         pytest.raises(ClusterSilent, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"),
         cluster("tcp://127.0.0.1:9"),

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from studies import study_of
 
-from softimpact.optimize.compiled import compiled_functions
-from softimpact.optimize.impact_program import impact_numbers, impact_program
+from softimpact.optimize.impact.compiled import compiled_functions
+from softimpact.optimize.impact.impact_program import impact_numbers, impact_program
 from softimpact.symbolic import Motors
 from softimpact.toolchain import c_compiler, cache_folder
 
@@ -148,7 +148,7 @@ def test_a_cache_that_cannot_be_written_does_not_matter(
 
 TWIN = """
 import sys, casadi as ca
-from softimpact.optimize.compiled import compiled_functions
+from softimpact.optimize.impact.compiled import compiled_functions
 from softimpact.toolchain import c_compiler
 x = ca.MX.sym("x", 2)
 function = ca.Function("parabola", [x], [ca.sumsqr(x - 1)])

@@ -17,15 +17,15 @@ from impact_cases import CHEST, POSE
 from studies import study_of
 
 from softimpact.optimize import Study, candidates
-from softimpact.optimize.impact_forces import (
+from softimpact.optimize.impact.impact_forces import (
     ContactParameters,
     ImpactDynamics,
     contact_forces,
 )
-from softimpact.optimize.impact_program import ImpactProgram, impact_numbers, impact_program
-from softimpact.optimize.motor_laws import MotorLaws
-from softimpact.optimize.peaks import hides_a_peak, valley
-from softimpact.optimize.timing import MOST_STEPS, Timing, impact_timing
+from softimpact.optimize.impact.impact_program import ImpactProgram, impact_numbers, impact_program
+from softimpact.optimize.impact.motor_laws import MotorLaws
+from softimpact.optimize.impact.peaks import hides_a_peak, valley
+from softimpact.optimize.impact.timing import MOST_STEPS, Timing, impact_timing
 from softimpact.simulate import Approach, ImpactHistory, simulate_impact
 from softimpact.symbolic import (
     Contact,

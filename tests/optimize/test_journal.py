@@ -16,8 +16,8 @@ from small_arm import small_study
 from studies import InProcess
 
 from softimpact.optimize import Design, Study, design
-from softimpact.optimize.execution import Execution
-from softimpact.optimize.journal import Journal
+from softimpact.optimize.running.execution import Execution
+from softimpact.optimize.running.journal import Journal
 from softimpact.symbolic import InvalidValue
 
 TWO = '[hardware]\njoint_stiffness = "equal"\n'

@@ -16,8 +16,8 @@ from softimpact.optimize import Infeasible, Study, design
 from softimpact.optimize import objectives as package
 from softimpact.optimize.members import kinds_in
 from softimpact.optimize.objectives import Objective
-from softimpact.optimize.robust import RobustDesign, robust_design
-from softimpact.optimize.study_scenarios import scenarios_of
+from softimpact.optimize.robust.robust import RobustDesign, robust_design
+from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.simulate import Approach, largest_safe_speed, simulate_impact
 from softimpact.simulate.safe_speed import ForceLimits
 from softimpact.symbolic import InvalidValue

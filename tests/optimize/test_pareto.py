@@ -23,16 +23,16 @@ from softimpact.optimize import (
     load_study,
     pareto_fronts,
 )
-from softimpact.optimize import ipopt as solving
 from softimpact.optimize.evaluation import largest_deflection
-from softimpact.optimize.front import LEAST_SAVING, ParetoPoint, knee, undominated
-from softimpact.optimize.impact_program import impact_program
-from softimpact.optimize.levels import even_bounds
-from softimpact.optimize.problem import peak_force
-from softimpact.optimize.self_motion import self_motion
-from softimpact.optimize.stiffest import stiffest
-from softimpact.optimize.sweep import sweep
-from softimpact.optimize.tip_pose import tip_pose
+from softimpact.optimize.front.front import LEAST_SAVING, ParetoPoint, knee, undominated
+from softimpact.optimize.front.levels import even_bounds
+from softimpact.optimize.impact.impact_program import impact_program
+from softimpact.optimize.machine.self_motion import self_motion
+from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.search import ipopt as solving
+from softimpact.optimize.search.problem import peak_force
+from softimpact.optimize.search.stiffest import stiffest
+from softimpact.optimize.search.sweep import sweep
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
@@ -340,7 +340,7 @@ def test_a_missed_optimum_of_springs_is_no_gain_of_posture(
     def missing(*arguments: Any) -> list[Outcome]:
         return [replace(found, force=1.2 * found.force) for found in sweep(*arguments)]
 
-    monkeypatch.setattr("softimpact.optimize.pareto.sweep", missing)
+    monkeypatch.setattr("softimpact.optimize.front.pareto.sweep", missing)
     found = pareto_fronts(study, InProcess())
     for a, b in zip(found.free.outcomes, found.task.outcomes, strict=True):
         if a is not None and b is not None and abs(a.q - b.q).max() < 1e-3:

@@ -13,8 +13,8 @@ from studies import PANDA_24, changed, study_of, written
 
 from softimpact.optimize import Candidate, Pose, Study, candidates, load_study
 from softimpact.optimize.evaluation import figures, largest_deflection
-from softimpact.optimize.repair import accurate_springs, posture_at_pose
-from softimpact.optimize.tip_pose import tip_pose, tip_pose_error
+from softimpact.optimize.machine.tip_pose import tip_pose, tip_pose_error
+from softimpact.optimize.search.repair import accurate_springs, posture_at_pose
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 

@@ -12,9 +12,9 @@ from oracles import example_urdf
 from studies import PANDA_24
 
 from softimpact.optimize import Study, candidates, load_study
-from softimpact.optimize.best_posture import best_posture, posture_of_least_force
-from softimpact.optimize.self_motion import SelfMotion, self_motion
-from softimpact.optimize.tip_pose import tip_pose
+from softimpact.optimize.machine.best_posture import best_posture, posture_of_least_force
+from softimpact.optimize.machine.self_motion import SelfMotion, self_motion
+from softimpact.optimize.machine.tip_pose import tip_pose
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import InvalidValue, giaf, impact_model, load_robot
 from softimpact.symbolic.matrices import Matrix

@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from softimpact.optimize.speed_factor import Watch, speed_factor
+from softimpact.optimize.impact.speed_factor import Watch, speed_factor
 from softimpact.simulate.program import program_dangers
 from softimpact.simulate.trajectory import Passes
 from softimpact.symbolic import (

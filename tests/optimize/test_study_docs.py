@@ -15,7 +15,7 @@ from softimpact.optimize import bounds, load_study, objectives, variables
 from softimpact.optimize.bounds import Bound
 from softimpact.optimize.members import kinds_in
 from softimpact.optimize.objectives import Objective
-from softimpact.optimize.study_file import (
+from softimpact.optimize.study.study_file import (
     AccuracySection,
     HardwareSection,
     ImpactSection,

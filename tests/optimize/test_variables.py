@@ -14,11 +14,11 @@ from studies import InProcess
 from softimpact.optimize import Study, load_study
 from softimpact.optimize import variables as package
 from softimpact.optimize.evaluation import largest_share
-from softimpact.optimize.impact_program import impact_program
+from softimpact.optimize.impact.impact_program import impact_program
 from softimpact.optimize.members import kinds_in
-from softimpact.optimize.problem import felt_numbers, sought_parts, study_impacts
-from softimpact.optimize.robust import RobustDesign, robust_design
-from softimpact.optimize.study_scenarios import scenarios_of
+from softimpact.optimize.robust.robust import RobustDesign, robust_design
+from softimpact.optimize.search.problem import felt_numbers, sought_parts, study_impacts
+from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.optimize.variables import Variable
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.studio.robust_report import simulated_worst

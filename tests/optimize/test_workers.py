@@ -19,13 +19,13 @@ from pathlib import Path
 import pytest
 from studies import InProcess
 
-from softimpact.optimize.workers import WorkerLost, as_completed, workers
+from softimpact.optimize.running.workers import WorkerLost, as_completed, workers
 
 SCRIPT = """
 import os
 import signal
 
-from softimpact.optimize.workers import as_completed, workers
+from softimpact.optimize.running.workers import as_completed, workers
 
 
 def say(word):
@@ -101,7 +101,7 @@ def test_a_worker_that_is_killed_is_named(tmp_path: Path) -> None:
 
 
 def test_all_jobs_are_heard_of_also_those_that_take_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("softimpact.optimize.workers.LONGEST_WAIT", 1e-3)
+    monkeypatch.setattr("softimpact.optimize.running.workers.LONGEST_WAIT", 1e-3)
     first, last = threading.Event(), threading.Event()
     with ThreadPoolExecutor(2) as pool:
         late = pool.submit(last.wait)

@@ -56,7 +56,7 @@ def job():
 
 @cli.app.command()
 def endless():
-    from softimpact.optimize.workers import as_completed, workers
+    from softimpact.optimize.running.workers import as_completed, workers
 
     with workers(2) as pool:
         for done in as_completed([pool.submit(job)]):

@@ -16,8 +16,8 @@ from small_arm import small_study
 
 from softimpact import toolchain
 from softimpact.batch import build
-from softimpact.optimize import impact_program
-from softimpact.optimize.impact_program import impact_program as program_of
+from softimpact.optimize.impact import impact_program
+from softimpact.optimize.impact.impact_program import impact_program as program_of
 
 WAYPOINTS = '{"waypoints": [{"q": [0.2, -0.7, 1.3]}, {"q": [0.4, -0.6, 1.3], "speed": 0.3}]}'
 STUDY = {"select": (), "check": (), "design": ("--out", "out")}

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where long work runs: processes, clusters, and results on disk as they arrive."""
