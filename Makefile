@@ -17,7 +17,7 @@ N ?= 1000000
 # faults that make mutants puts into the sources, one at a time
 SAMPLE ?= 200
 
-.PHONY: demo install test coverage mutants lint format bench bench-c bench-opt fuzz adversarial \
+.PHONY: demo install test coverage mutants mutants-sample lint format bench bench-c bench-opt fuzz adversarial \
 	generated docs clean
 
 demo: $(VENV)/installed
@@ -37,6 +37,11 @@ coverage: $(VENV)/installed-test
 # small faults in symbolic and codegen that no test notices; first make coverage
 mutants: $(VENV)/installed-test
 	$(BIN)/python tests/mutation/run.py symbolic codegen --sample $(SAMPLE)
+
+# ten of them where the limits that protect people are, other ones each day; half a minute
+mutants-sample: $(VENV)/installed-test
+	$(BIN)/pytest -q tests/symbolic/body --cov --cov-context=test --cov-report=
+	$(BIN)/python tests/mutation/run.py symbolic/body --sample 10 --most 2 --seed $$(date +%Y%j)
 
 lint: $(VENV)/installed-test
 	$(BIN)/ruff check .

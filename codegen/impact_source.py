@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from softimpact.symbolic import Robot, closed_chain
+from softimpact.symbolic import Frame, JointKind, Robot, closed_chain
 from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
@@ -14,6 +15,7 @@ from softimpact.symbolic.robot.rigid import Array
 from .contacts import BuiltIn
 from .directions import directions_of_motion
 from .functions import Symbols, has_potential, links_of
+from .functions.frames import frames_of
 from .functions.guards import fastest_arrival, heaviest
 from .impacts import Impact, draw_impacts, reference_force
 from .inputs import Parameter, is_elastic
@@ -45,6 +47,11 @@ SEARCHED = (
 """What search the runtime has stood; of these sources, or of ones with longer steps."""
 
 
+UNLIMITED = "servos have whatever torque their gains ask for, and so press harder than limited ones"
+
+STEADY = "motors go on with the torque that the joints' own damping took before the impact"
+
+
 @dataclass(frozen=True, eq=False)
 class ImpactSource:
     """What the templates need for impacts.
@@ -59,6 +66,8 @@ class ImpactSource:
         fastest: squared joint velocity for 1 m/s from which on an arrival is singular.
         heaviest: mass felt from which on it is.
         record: what the manifest says.
+        joint_frames: where joints' frames are, for contact points given at run time; None for
+            closed chains, whose links move as their loops let them.
         golden: impacts and the right peak forces [N].
     """
 
@@ -71,6 +80,7 @@ class ImpactSource:
     fastest: float
     heaviest: float
     record: ImpactRecord
+    joint_frames: CSource | None
     golden: tuple[tuple[Impact, float], ...]
 
     @property
@@ -82,6 +92,31 @@ class ImpactSource:
     def motors(self) -> list[bool]:
         """Which of these have a motor."""
         return [self.robot.actuated[i] for i in self.independent]
+
+    @property
+    def frames(self) -> dict[str, Frame]:
+        """Frames that move, by names that C can have."""
+        if self.joint_frames is None:
+            return {}
+        found: dict[str, Frame] = {}
+        for frame in self.robot.frames.values():
+            short = re.sub(r"\W+", "_", frame.name, flags=re.ASCII).strip("_").lower() or "frame"
+            taken = short in found
+            if frame.joint >= 0:
+                found[f"{short}_{len(found)}" if taken else short] = frame
+        return found
+
+    @property
+    def slides(self) -> list[bool]:
+        """Which joints slide."""
+        return [joint.kind is JointKind.SLIDE for joint in self.robot.joints]
+
+    @property
+    def moves(self) -> list[list[bool]]:
+        """Whether a joint, a row each, moves the link of another."""
+        n = self.robot.n
+        above = [set(self.robot.ancestors(link)) for link in range(n)]
+        return [[joint in above[link] for link in range(n)] for joint in range(n)]
 
     @property
     def damping(self) -> list[float]:
@@ -159,6 +194,7 @@ def impact_source(
         reaction_time=REACTION_TIME,
         steps=DEFAULT_BUDGET,
         searched=SEARCHED,
+        assumed=(UNLIMITED, *([STEADY] if robot.damping.any() else [])),
     )
     return ImpactSource(
         robot=robot,
@@ -170,5 +206,8 @@ def impact_source(
         fastest=fastest,
         heaviest=heavy,
         record=record,
+        joint_frames=None
+        if robot.loops
+        else CSource(prefix, robot.n, parameters, frames_of(symbols), NOT_MEASURED),
         golden=tuple(found),
     )

@@ -51,6 +51,7 @@ class ImpactRecord:
         horizon: default time in which forces count [s].
         reaction_time: default time until motors are released [s].
         steps: default budget of steps of a call.
+        assumed: what was taken to be so for want of a number, a line each.
         searched: what search for safe speeds that are none there was, and the worst that it found.
     """
 
@@ -61,6 +62,7 @@ class ImpactRecord:
     reaction_time: float
     steps: int
     searched: str = ""
+    assumed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -34,6 +34,9 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 RUNTIME = Path(__file__).parent / "runtime"
 """C that is the same for every robot but for its prefix, which is ``robot_`` there."""
+
+POINT = "robot_point.c"
+"""Of the runtime: contact points that are given at run time."""
 
 MEASURED_SAMPLES = 16384
 """Inputs over which float errors are measured."""
@@ -165,12 +168,14 @@ def sources(package: Package, show: Templates) -> dict[str, str]:
         f"src/{name}_common.c": show("common.c"),
         f"src/{name}_sines.c": show("sines.c"),
     }
-    internal = [package.impact.links] if package.impact else []
-    for source in [*package.functions, *internal]:
+    internal = []
+    if package.impact:
+        internal = [package.impact.links, package.impact.joint_frames]
+    for source in [*package.functions, *filter(None, internal)]:
         files[f"src/{source.name}.c"] = show("function.c", f=source)
     if package.impact:
         files[f"src/{name}_model.c"] = show("model.c")
-        files |= runtime(name)
+        files |= runtime(name, without=() if package.impact.joint_frames else (POINT,))
     if package.poses:
         files[f"src/{name}_candidates.c"] = show("candidates.c")
     if package.contacts:
@@ -207,9 +212,10 @@ class Templates:
         return _environment().get_template(f"{template}.jinja").render(self.context, **more)
 
 
-def runtime(name: str) -> dict[str, str]:
-    """Return the runtime's sources for a package by path."""
-    sources = sorted(path for path in RUNTIME.iterdir() if path.suffix in (".c", ".h"))
+def runtime(name: str, without: Collection[str] = ()) -> dict[str, str]:
+    """Return the runtime's sources for a package by path, but for some."""
+    known = (path for path in RUNTIME.iterdir() if path.name not in without)
+    sources = sorted(path for path in known if path.suffix in (".c", ".h"))
     return {
         f"src/{_renamed(path.name, name)}": _renamed(path.read_text(encoding="utf-8"), name)
         for path in sources

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from softimpact.symbolic import SoftImpactError
+from softimpact.toolchain import zig_environment
 
 from .errors import NoCrossCompiler
 from .interface import SIZES, WASM_POINTER, CVariable, Interface, read_interface
@@ -61,7 +62,9 @@ def web_assembly(package: str | Path, real: Real = "double") -> bytes:
         sources = map(str, sorted(folder.glob("src/*.c")))
         command = [sys.executable, "-m", "ziglang", "cc", *FLAGS, use, f"-I{folder / 'include'}"]
         link = [*exported, "-Wl,--strip-all", f"-Wl,-z,stack-size={STACK}", "-o", str(out)]
-        subprocess.run([*command, *sources, *link], check=True, capture_output=True)
+        subprocess.run(
+            [*command, *sources, *link], check=True, capture_output=True, env=zig_environment()
+        )
         module = out.read_bytes()
     return module + _section(json.dumps(described(interface, real)).encode())
 

@@ -79,6 +79,21 @@ def indifferent_ranges(
     return ranges
 
 
+def limit_name(study: Study, i: int, end: str) -> tuple[str, str]:
+    """Return the field of a study file that limits a value of the hardware, and whose value it is.
+
+    Args:
+        study: whose hardware it is.
+        i: number of the value in ``study.range``.
+        end: "lower" or "upper".
+    """
+    name = study.range.names[i]
+    if i <= max(study.groups):
+        return f"stiffness.{end}", name
+    kind, _, whose = name.partition(" of ")
+    return f"hardware.{kind}.{end}", whose or kind
+
+
 def by_name(study: Study, rows: Array) -> dict[str, list[float]]:
     """Return a row for each spring, and for each other value of the hardware, by its name."""
     joints = zip(study.spring_names, study.groups, strict=True)
@@ -122,13 +137,12 @@ def prices_of(
         price(bound.name, STEEPNESS[bound.sense] * float(piece.sum()) * PRICED_SHARE, _room(bound))
         for bound, piece in zip(study.bounds, pieces, strict=True)
     ]
-    names = study.range.names
     for i, multiplier in enumerate(found.range_multipliers):
         up, spring = multiplier > 0, i <= max(study.groups)
         end, more = ("upper", "stiffer" if spring else "more") if up else ("lower", "less")
         if spring and not up:
             more = "softer"
-        name = f"stiffness.{end} of {names[i]}" if spring else f"hardware: {end} of {names[i]}"
+        name = " of ".join(limit_name(study, i, end))
         if study.range.lower[i] == study.range.upper[i]:
             name = f"{name}, which is held"
         gain = abs(float(multiplier)) * float(np.log10(1 + PRICED_SHARE))

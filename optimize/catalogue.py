@@ -12,6 +12,7 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array
 
 from .certificate import KEEPS, Hardening, Setting, Worst
+from .evaluation import kept as kept_bounds
 from .evaluation import largest_share
 from .failure import Unavailable
 from .study import Study
@@ -81,8 +82,9 @@ def bought(setting: Setting, decisive: Setting, at: Hardening, ideal: Worst) -> 
         best = min(best, _descended(start, entries, cost), key=cost)
     if not np.isfinite(cost(best)):
         found = machine(best)
-        share = max(largest_share(study, q, *limits.parted(found.v)) for q in at.postures)
-        raise Unavailable(share)
+        each = [kept_bounds(study, q, *limits.parted(found.v)) for q in at.postures]
+        broken = max((k for row in each for k in row), key=lambda k: k.share)
+        raise Unavailable(broken.name, broken.share)
     found = machine(best)
     worst, _ = setting.worst(found)
     value, free = worst.value, ideal.value

@@ -14,7 +14,7 @@ from .evaluation import Kept, kept
 from .ipopt import VariableBounds, felt
 from .nlp import Program
 from .scenarios import Scenarios
-from .screening import SCENARIOS_IN_A_JOB, Screened, forces_at, screen
+from .screening import SCENARIOS_IN_A_JOB, Screened, Screening, forces_at, screen
 from .study import Study
 from .timing import Timing
 from .workers import Progress, as_completed
@@ -123,16 +123,9 @@ class Setting:
 
     def _screened(self, at: Hardening) -> list[Screened]:
         count = len(self.scenarios)
-        shared = (
-            self.program,
-            self.scenarios,
-            at.postures,
-            felt(self.program, at.v),
-            at.factors,
-            self.timing.step,
-        )
+        every = self._screening(at)
         jobs = [
-            self.pool.submit(screen, *shared, begin, min(begin + SCENARIOS_IN_A_JOB, count))
+            self.pool.submit(screen, every, begin, min(begin + SCENARIOS_IN_A_JOB, count))
             for begin in range(0, count, SCENARIOS_IN_A_JOB)
         ]
         found: list[Screened] = []
@@ -140,6 +133,10 @@ class Setting:
             found += job.result()
             self.say("screening", i + 1, len(jobs))
         return sorted(found, key=lambda screened: -screened.share)
+
+    def _screening(self, at: Hardening) -> Screening:
+        y, step = felt(self.program, at.v), self.timing.step
+        return Screening(self.program, self.scenarios, at.postures, y, at.factors, step)
 
     def _at_safe_speed(self, at: Hardening) -> tuple[Worst, list[Screened]]:
         """Find the factor on all speeds with which the worst force is its limit."""
@@ -189,10 +186,8 @@ class Setting:
         return objective.value(np.log10(factors), numbers, speeds), factors, shares
 
     def _shares(self, at: Hardening) -> Array:
-        y, count = felt(self.program, at.v), len(self.scenarios)
-        forces = forces_at(
-            self.program, self.scenarios, at.postures, y, at.factors, self.timing.step, 0, count
-        )
+        count = len(self.scenarios)
+        forces = forces_at(self._screening(at), 0, count)
         limits = [self.scenarios.limit(self.scenarios[i]) for i in range(count)]
         return np.asarray(forces / np.array(limits))
 

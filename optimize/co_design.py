@@ -48,6 +48,9 @@ class PoseResult:
         deflection_before: largest deflection with the nominal stiffness [m].
         table: outcome with the posture held, None if that mode was not asked for.
         free: outcome with the posture sought as well, None likewise.
+        keeps_before: whether the nominal stiffness keeps all bounds.
+        fair: peak force [N] with springs in the nominal proportions that keep the bounds: the
+            nominal ones where they do, else just stiff enough ones; None: ``force_before``.
     """
 
     candidate: Candidate
@@ -55,16 +58,24 @@ class PoseResult:
     deflection_before: float
     table: Outcome | None
     free: Outcome | None
+    keeps_before: bool = True
+    fair: float | None = None
+
+    @property
+    def compared(self) -> float:
+        """Peak force [N] to compare designs with."""
+        return self.force_before if self.fair is None else self.fair
 
 
 @dataclass(frozen=True, eq=False)
 class Gains:
-    """Where the gain over the task's pose with nominal stiffness comes from; forces in N.
+    """Where the gain over the task's pose comes from; forces in N.
 
     Attributes:
-        before: the task's pose, nominal stiffness.
+        before: the task's pose, nominal stiffness; where that breaks a bound, springs in its
+            proportions that are just stiff enough.
         springs: the task's pose, best stiffness.
-        posture: best of the given poses, nominal stiffness.
+        posture: best of the given poses, likewise.
         both: best posture and stiffness.
     """
 
@@ -210,7 +221,7 @@ def design(
                 outcomes[key] = better(outcomes[key], outcome)
     solved = [outcome for outcome in outcomes.values() if outcome.solved]
     if not solved:
-        raise SolverFailure(list(outcomes.values()))
+        raise SolverFailure(list(outcomes.values()), study)
     results = tuple(
         PoseResult(
             pose,
@@ -218,8 +229,12 @@ def design(
             largest_deflection(study, pose.q, study.nominal),
             outcomes.get((pose.pose.name, "table")),
             outcomes.get((pose.pose.name, "free")),
+            fair is None,
+            fair,
         )
-        for pose, force in zip(poses, problem.before, strict=True)
+        for pose, force, fair in zip(
+            poses, problem.before, (_fair(problem, pose.q) for pose in poses), strict=True
+        )
     )
     winner = min(solved, key=lambda outcome: outcome.force)
     gains = _gains(study, results, winner.force)
@@ -240,10 +255,8 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
         )
     meant = meaning(problem, winner, instance, again)
     task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
-    accurate = study.nominal
-    if largest_share(study, task.candidate.q, study.nominal) > KEEPS:
-        accurate = accurate_springs(study, task.candidate.q, study.nominal)
     at = task.candidate.q
+    accurate = study.nominal if task.keeps_before else accurate_springs(study, at, study.nominal)
     return Answers(
         deflection=largest_deflection(study, winner.q, winner.springs, winner.others),
         indifferent=meant.indifferent,
@@ -251,10 +264,19 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
         worst_motors=_worst_motors(problem, winner),
         reference=DesignReference(
             accurate,
-            peak_force(study, program.impacts[0], problem.timing, at, accurate),
+            task.compared,
             largest_deflection(study, at, accurate),
         ),
     )
+
+
+def _fair(problem: Problem, q: Array) -> float | None:
+    """Return the force [N] of springs just stiff enough, None where the nominal ones are."""
+    study = problem.study
+    if largest_share(study, q, study.nominal) <= KEEPS:
+        return None
+    springs = accurate_springs(study, q, study.nominal)
+    return peak_force(study, problem.program.impacts[0], problem.timing, q, springs)
 
 
 def _worst_motors(problem: Problem, winner: Outcome) -> Motors:
@@ -296,12 +318,12 @@ def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None
     """Begin with the stiffest and with the softest springs, which lead to different local optima.
 
     Where springs were sought for the posture as given, a free one begins with these, so that
-    freedom does not end in a worse optimum; who lags behind begins again. If all fail, the task's
-    own posture is the last resort.
+    freedom does not end in a worse optimum; who lags behind begins again, and a single pose, which
+    lags behind none, with all. If all fail, the task's own posture is the last resort.
     """
     springs = [study.upper, study.lower]
     if table is not None:
-        springs = [table.springs]
+        springs = [table.springs, *([] if len(study.poses) > 1 else springs)]
     points = tuple((candidate.q, each) for each in springs)
     fallbacks = ((study.task_pose.q, study.upper),) if mode == "free" else ()
     return Start(candidate.pose.name, mode, points, fallbacks)
@@ -355,8 +377,8 @@ def _gains(study: Study, results: Sequence[PoseResult], best: float) -> Gains | 
     if leaves_a_choice(study) and task.free is None:
         return None
     return Gains(
-        before=task.force_before,
+        before=task.compared,
         springs=task.table.force,
-        posture=min(result.force_before for result in results),
+        posture=min(result.compared for result in results),
         both=best,
     )

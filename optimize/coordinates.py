@@ -13,7 +13,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
-from softimpact.symbolic import ImpactModel, Matrix, loop_gaps, loop_tangent
+from softimpact.symbolic import ImpactModel, Loop, Matrix, loop_gaps, loop_jacobian, loop_tangent
 from softimpact.symbolic.robot.rigid import Array
 
 
@@ -115,6 +115,18 @@ def onto(model: ImpactModel, q: Matrix, of_joints: Matrix) -> Matrix:
 def closure(model: ImpactModel, q: Matrix) -> Matrix:
     """Return how far loops and couplings are from being kept; nothing of an open arm."""
     return loop_gaps(model.robot, q) if model.robot.loops else ca.DM(0, 1)
+
+
+def side_function(model: ImpactModel) -> ca.Function | None:
+    """Return q -> a number that is zero at dead points of loops, None without any.
+
+    Two ways to assemble a chain differ in its sign: a robot cannot get from the one to the other.
+    """
+    if not any(isinstance(loop, Loop) for loop in model.robot.loops):
+        return None
+    q = ca.SX.sym("q", model.robot.n)
+    follow = [i for i in range(model.robot.n) if i not in model.independent]
+    return ca.Function("side", [q], [ca.det(loop_jacobian(model.robot, q)[:, follow])])
 
 
 def equations(model: ImpactModel) -> int:

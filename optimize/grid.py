@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 
+from .exchange import ExchangeState
 from .failure import SolverFailure
 from .ranges import Levels
-from .robust import ExchangeState
 from .trade import Trade
 
 WORTH = 1e-4

@@ -46,7 +46,7 @@ Parts = tuple[str, ...]
 
 SPRINGS: Parts = ("springs",)
 
-QUARTERS = 4
+PIECES = 8
 """Lengths of time among which a derivative has the shortest that will do."""
 
 
@@ -223,10 +223,10 @@ def _pull(
 ) -> ca.Function:
     """Return (given, p, weights) -> derivative by given of a weighted sum of the forces.
 
-    Nothing is computed behind the last force whose weight is not zero, in quarters of the time.
+    Nothing is computed behind the last force whose weight is not zero, in eighths of the time.
     """
     p, weights = ca.MX.sym("p", NUMBERS), ca.MX.sym("weights", nodes)
-    ends = [-(-nodes * k // QUARTERS) for k in range(QUARTERS + 1)]
+    ends = [-(-nodes * k // PIECES) for k in range(PIECES + 1)]
     cases = []
     for end in ends:
         row = ca.MX(1, given.numel())

@@ -241,11 +241,11 @@ def impact_forces(
 
 def felt(program: Program, v: Array) -> Array:
     """Return log10 of what impacts feel of the hardware."""
-    return np.array(_hardware(program.hardware)(v)[0]).ravel()
+    return np.array(_loaded(program.hardware)(v)[0]).ravel()
 
 
 @lru_cache(maxsize=16)
-def _hardware(serialised: str) -> ca.Function:
+def _loaded(serialised: str) -> ca.Function:
     return ca.Function.deserialize(serialised)
 
 
@@ -302,11 +302,12 @@ def _round(
     if not objective.scales_speed:  # what the objective is with the forces that there are
         ended = objective.own(scenarios, shares, given).start
     springs, others = bounds.parted(x[:V])
+    ended_at = x[V : V + K * n].reshape(K, n)
     found = Found(
         status=stats["return_status"],
-        success=bool(stats["success"]),
+        success=bool(stats["success"]) and assembled_alike(program, postures, ended_at),
         iterations=int(stats["iter_count"]),
-        postures=x[V : V + K * n].reshape(K, n),
+        postures=ended_at,
         springs=springs,
         others=others,
         shares=shares,
@@ -318,6 +319,15 @@ def _round(
         cost=float(objective.cost(ca.DM(ended), scenarios, ca.DM(given))),
     )
     return found, boundaries
+
+
+def assembled_alike(program: Program, before: Array, after: Array) -> bool:
+    """Return whether loops are assembled the same way in postures, K×n each."""
+    if not program.side:
+        return True
+    side = _loaded(program.side)
+    pairs = zip(before, after, strict=True)
+    return all(float(side(first)) * float(side(last)) > 0 for first, last in pairs)
 
 
 def constraint_bounds(program: Program, shape: NlpShape, *, free: bool) -> tuple[Array, Array]:

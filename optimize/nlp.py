@@ -44,6 +44,8 @@ class Program:
         bound_rows: number of rows of each bound.
         rows: of the task.
         held: of these that are zero where a posture is sought: the tip's pose, and loops.
+        side: serialised q -> a number whose sign changes where loops pass a dead point; empty
+            without loops.
         size: of its numbers b.
     """
 
@@ -56,6 +58,7 @@ class Program:
     rows: int
     size: int
     held: int
+    side: str = ""
 
     @property
     def library(self) -> bool:

@@ -19,13 +19,13 @@ from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .evaluation import largest_deflection
+from .exchange import search
 from .failure import SolverFailure
 from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
 from .levels import LEAST_ROOM, even_bounds, level_range
 from .meaning import meaning
 from .problem import Problem, prepare
-from .robust import search
 from .searches import Searches
 from .solve import Outcome, Start, better, preference, solve
 from .stiffest import Stiffest, stiffest

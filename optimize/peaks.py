@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from softimpact.symbolic import Matrix
 from softimpact.symbolic.robot.rigid import Array
@@ -71,3 +72,36 @@ def _lower_peak(forces: Array) -> Array:
     """Return, for each node, the lower of the peaks before it and from it on."""
     ahead = np.maximum.accumulate(forces[::-1])[::-1]
     return np.minimum(np.maximum.accumulate(forces), ahead)
+
+
+def tops(forces: Array) -> list[tuple[NDArray[np.int64], Array]]:
+    """Return nodes and heights of all local maxima, as ``peaks_in_windows`` has them.
+
+    Args:
+        forces: at equidistant times, a row for each impact; of one that is zero throughout, the
+            first node counts.
+    """
+    before, after = np.zeros_like(forces), forces.copy()
+    before[:, 1:], after[:, :-1] = forces[:, :-1], forces[:, 1:]
+    curvature = np.maximum(2 * forces - before - after, LEAST_CURVATURE)
+    heights = forces + (after - before) ** 2 / (8 * curvature)
+    at_top = (forces >= before) & (forces >= after) & (forces > 0)
+    at_top[~at_top.any(axis=1), 0] = True
+    nodes = [np.flatnonzero(row) for row in at_top]
+    return [(each, row[each]) for each, row in zip(nodes, heights, strict=True)]
+
+
+def top_weights(forces: Array, node: int) -> Array:
+    """Return the derivative by the forces of the height of the local maximum at a node."""
+    last = forces.size - 1
+    before, own = forces[node - 1] if node else 0.0, forces[node]
+    after = forces[min(node + 1, last)]
+    rise, curvature = after - before, max(2 * own - before - after, LEAST_CURVATURE)
+    by_rise = rise / (4 * curvature)
+    by_curvature = -(rise**2) / (8 * curvature**2) if curvature > LEAST_CURVATURE else 0.0
+    weights = np.zeros(forces.size)
+    weights[node] += 1 + 2 * by_curvature
+    weights[min(node + 1, last)] += by_rise - by_curvature
+    if node:
+        weights[node - 1] += -by_rise - by_curvature
+    return weights

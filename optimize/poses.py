@@ -12,7 +12,7 @@ from softimpact.symbolic import InvalidValue, Joint, JointKind
 from softimpact.symbolic.robot.rigid import Array
 
 from .coordinates import freedom, held, turns_with_first
-from .repair import held_elsewhere, posture_at_pose
+from .repair import held_elsewhere, nearest_at_pose, posture_at_pose
 from .study import Pose, Study
 from .tip_pose import POSE, posture_error, tip_pose, tip_poses
 
@@ -78,8 +78,12 @@ def candidates(study: Study) -> list[Candidate]:
         _within_limits(first, q - turn) for q, turn in zip(given[:, 0], turns, strict=True)
     ]
     served = back.copy()
-    for i in held_elsewhere(study, back, *task) if study.exact else ():
-        served[i] = _moved(study, study.poses[i], back[i], task)
+    if study.exact:
+        elsewhere = held_elsewhere(study, back, *task)
+        nearest, right = nearest_at_pose(study, back[elsewhere], *task)
+        served[elsewhere[right]] = nearest[right]
+        for i in elsewhere[~right]:
+            served[i] = _moved(study, study.poses[i], back[i], task)
     offsets = np.linalg.norm(tip_poses(study.model, served)[0] - task[0], axis=1)
     moved = abs(served - back).max(axis=1)
     numbers = zip(

@@ -11,6 +11,7 @@ import numpy as np
 from softimpact.symbolic import InvalidValue, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
+from .coordinates import side_function
 from .evaluation import equipped
 from .impact_program import PARTS, ImpactProgram, Parts, impact_numbers, impact_program
 from .ipopt import Instance, VariableBounds, one_posture
@@ -117,7 +118,9 @@ def study_program(study: Study, impacts: tuple[ImpactProgram, ...]) -> Program:
     rows, size = task.numel_out(0), task.numel_in(1)
     serialised = task.serialize(), hardware.serialize()
     held = posture_equations(study.model)
-    return Program(impacts, *serialised, study.robot.n, variables, each, rows, size, held)
+    side = side_function(study.model)
+    of_loops = "" if side is None else side.serialize()
+    return Program(impacts, *serialised, study.robot.n, variables, each, rows, size, held, of_loops)
 
 
 def study_impacts(study: Study, step: float) -> Array:

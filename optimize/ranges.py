@@ -12,10 +12,10 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .axes import BoundAxis, ObjectiveAxis
 from .evaluation import figures
+from .exchange import ExchangeState
 from .failure import SolverFailure
 from .levels import LEAST_ROOM, SAME_FORCE_SHARE
 from .reach import reach
-from .robust import ExchangeState
 from .trade import Trade
 
 NO_CHOICE = 1.02

@@ -6,15 +6,16 @@ All of that needs no impact, so that it is told before any search.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+from .answers import limit_name
 from .bounds import Bound
 from .evaluation import figures, largest_deflection, largest_share
 from .failure import Infeasible
@@ -25,6 +26,8 @@ from .solver_options import quiet
 from .stiffest import Stiffest
 from .study import Study
 from .tip_pose import posture_equations, tip_pose
+
+Member = TypeVar("Member")
 
 ROW_TOLERANCE = 1e-5
 """Excess of a bound's row up to which it counts as kept: Ipopt's tolerance."""
@@ -40,11 +43,13 @@ class Reach:
         excess: largest of the bounds' rows that are made small; at most zero where all are kept.
         v: log10 of the hardware's values.
         postures: of the poses, K×n [rad].
+        holding: multipliers of the limits of v and of the postures; positive at upper ones.
     """
 
     excess: float
     v: Array
     postures: Array
+    holding: Array
 
 
 def reach(
@@ -110,10 +115,11 @@ def reach(
         off = abs(missed[: g_poses.numel()]).max() if free else 0.0
         excess = float(end[-1] + max(missed[g_poses.numel() :].max(), 0.0))
         if off < 1e-6 and (best is None or excess < best.excess):
-            best = Reach(excess, end[:V], end[V:-1].reshape(K, n))
+            holding = np.array(solution["lam_x"]).ravel()[:-1]
+            best = Reach(excess, end[:V], end[V:-1].reshape(K, n), holding)
         if best is not None and best.excess <= ROW_TOLERANCE:
             break
-    return best or Reach(np.inf, limits.upper, np.array(postures))
+    return best or Reach(np.inf, limits.upper, np.array(postures), np.zeros(V + K * n))
 
 
 def reachable(study: Study, q: Array, *, free: bool) -> bool:
@@ -149,15 +155,17 @@ def infeasible(study: Study, poses: Sequence[Candidate], *, free: bool) -> Infea
         each = [figures(bound, study, q, springs, others) for q in found.postures]
         figure = max(e.max() for e in each) if bound.sense == "most" else min(e.min() for e in each)
         ends.append((bound, float(figure), found))
-    at = _at_their_ends(study, ends[0][2].v)
+    at = _holding(study, [end[2] for end in ends], free=free)
     springs, _ = VariableBounds.of(study).parted(ends[0][2].v)
     q = ends[0][2].postures[0]
     least = Stiffest(q, springs, largest_deflection(study, q, springs))
     names = [pose.pose.name for pose in some]
-    return Infeasible.of(least, [end[:2] for end in ends], names, at, free=free)
+    return Infeasible.of(
+        least, [end[:2] for end in ends], names, at, margin=study.margin, free=free
+    )
 
 
-def _needed(members: Iterable[Any], broken: Any) -> list[Any]:
+def _needed(members: Iterable[Member], broken: Callable[[list[Member]], bool]) -> list[Member]:
     """Return an irreducible set: members are left out as long as what is left is still broken."""
     left = list(members)
     for member in list(left):
@@ -167,10 +175,25 @@ def _needed(members: Iterable[Any], broken: Any) -> list[Any]:
     return left
 
 
-def _at_their_ends(study: Study, v: Array) -> str:
-    """Return which limits of the springs hold the hardware back, in words."""
-    springs = max(study.groups) + 1
-    names = study.range.names[:springs]
-    stiff = v[:springs] >= np.log10(study.range.upper[:springs]) - 1e-3
-    at = ", ".join(name for name, is_stiff in zip(names, stiff, strict=True) if is_stiff)
-    return f"stiffness.upper of {at}" if at else "stiffness"
+HOLDS = 1e-4
+"""Multiplier of a limit, in shares of a bound by a decade or a radian, from which it matters."""
+
+
+def _holding(study: Study, found: Sequence[Reach], *, free: bool) -> tuple[str, ...]:
+    """Return which limits of the hardware, and of the joints, keep designs from coming nearer."""
+    V = study.range.lower.size
+    kinds = [
+        limit_name(study, i, end)
+        for i in range(V)
+        for end, sign in (("lower", -1), ("upper", 1))
+        if any(sign * each.holding[i] > HOLDS for each in found)
+    ]
+    held = {which: [w for k, w in kinds if k == which] for which, _ in kinds}
+    at = [f"{which} of {', '.join(whose)}" for which, whose in held.items()]
+    if free:
+        shares = np.max([abs(each.holding[V:]).reshape(-1, study.robot.n) for each in found], 0)
+        limited = np.flatnonzero(shares.max(axis=0) > HOLDS)
+        if limited.size:
+            joints = ", ".join(study.robot.joint_names[i] for i in limited)
+            at.append(f"the range of joints {joints}")
+    return tuple(at)

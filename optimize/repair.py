@@ -22,6 +22,12 @@ from .tip_pose import POSE, posture_error
 HELD = 1e-9
 """Pose error [m, rad] up to which a posture holds the tip as it is."""
 
+FIRST_ORDER_STEPS = 12
+"""Most steps to a posture nearby; poses of two digits take five."""
+
+STILL = 1e-8
+"""Length of a step [rad] at which a posture is where it will be."""
+
 
 ENOUGH = 1e-3
 """Share by which springs in proportion may miss a bound, or be stiffer than need be."""
@@ -48,6 +54,35 @@ def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) ->
     return np.array(found["x"]).ravel() if solver.stats()["success"] else None
 
 
+def nearest_at_pose(
+    study: Study, postures: Array, position: Array, rotation: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Return what ``posture_at_pose`` does for many postures, m×n, and for which it is right.
+
+    Each step takes the posture nearest to the given one that holds the tip to first order. Where
+    that does not end soon or leaves the joints' limits, Ipopt must say.
+    """
+    wanted, lower, upper = postures, *posture_limits(study.model)
+    if freedom(study.model) < POSE:
+        return wanted, np.zeros(len(wanted), dtype=bool)
+    pose = np.concatenate([position, rotation.ravel(order="F")])
+    slope, q = _pose_slope(study.model), wanted.copy()
+    held, moving = np.zeros(len(q), dtype=bool), np.arange(len(q))
+    for _ in range(FIRST_ORDER_STEPS):
+        if not moving.size:
+            break
+        poses = np.tile(pose[:, None], len(moving))
+        error, jacobian = (np.array(each) for each in slope(q[moving].T, poses))
+        J = jacobian.reshape(len(error), len(moving), -1).transpose(1, 0, 2)
+        missed = error.T + np.einsum("mij,mj->mi", J, wanted[moving] - q[moving])
+        nearer = wanted[moving] - np.einsum("mji,mi->mj", np.linalg.pinv(J), missed)
+        still = abs(nearer - q[moving]).max(axis=1) < STILL
+        held[moving] = still & (abs(error).max(axis=0) < HELD)
+        q[moving] = np.where(held[moving, None], q[moving], nearer)
+        moving = moving[~held[moving]]
+    return q, held & ((q >= lower) & (q <= upper)).all(axis=1)
+
+
 def held_elsewhere(
     study: Study, postures: Array, position: Array, rotation: Array
 ) -> NDArray[np.int64]:
@@ -63,6 +98,13 @@ def _pose_error(model: ImpactModel) -> ca.Function:
     position, rotation = ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)
     error = posture_error(model, q, position, rotation)
     return ca.Function("error", [q, ca.vertcat(position, ca.vec(rotation))], [error])
+
+
+@lru_cache(maxsize=8)
+def _pose_slope(model: ImpactModel) -> ca.Function:
+    q, pose = ca.SX.sym("q", model.robot.n), ca.SX.sym("pose", 12)
+    error = posture_error(model, q, pose[:3], ca.reshape(pose[3:], 3, 3))
+    return ca.Function("slope", [q, pose], ca.cse([error, ca.densify(ca.jacobian(error, q))]))
 
 
 @lru_cache(maxsize=8)

@@ -9,7 +9,6 @@ have all of them in the NLP from the start.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
@@ -24,30 +23,17 @@ from .answers import Price, indifferent_ranges, prices_of, worth_of
 from .catalogue import Bought, bought
 from .certificate import KEEPS, Hardening, Setting, Worst
 from .evaluation import equipped, largest_share
-from .failure import SolverFailure
+from .exchange import ExchangeState, exchange, serves, worst_few
 from .hardware import Hardware
-from .ipopt import FEASIBLE, IN_TURN, Found, Instance, VariableBounds, minimise
-from .nlp import NlpShape, Program, task_numbers
 from .reach import require_reachable
 from .repair import accurate_springs
 from .scenarios import Scenarios
-from .screening import SCENARIOS_IN_A_JOB, Screened
+from .screening import SCENARIOS_IN_A_JOB
 from .setting import setting_of
-from .solve import Outcome
 from .study import Study
 from .timing import Timing
-from .tip_pose import tip_pose
 from .variables.cover import Cover
-from .workers import Progress, as_completed, cores, workers, works_elsewhere
-
-ROUNDS = 40
-"""Most exchanges."""
-
-ADDED_IN_AN_EXCHANGE = 4
-"""Scenarios added in an exchange: the worst, each of another pose, point or direction."""
-
-MOST_EXCESS = 1e-4
-"""Share by which a scenario may exceed what the NLP says: forces are no better known."""
+from .workers import Progress, cores, workers, works_elsewhere
 
 MOST_AT_ONCE = 300
 """Impacts that an NLP may hold where every scenario counts: it takes minutes then."""
@@ -143,33 +129,17 @@ def require_lengths(study: Study, scenarios: Scenarios) -> None:
         study.objective.value(own, numbers, np.ones(numbers.size))
 
 
-@dataclass(frozen=True, eq=False)
-class ExchangeState:
-    """Where an exchange stands."""
-
-    best: Found
-    instance: Instance
-    at: Hardening
-    worst: Worst
-    active: tuple[int, ...]
-    rounds: int
-    unit: float
-
-    @property
-    def bound(self) -> float:
-        """Share of the limit that the NLP says is the least."""
-        return self.best.worst * self.unit
-
-
 def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     study, given, limits = setting.study, setting.given, setting.limits
     nominal = Hardening(limits.vector(study.nominal), given)
     before, found = setting.worst(nominal)
     equal = equal_springs(setting, given)
     equal_worst, more = setting.worst(Hardening(limits.vector(equal), given))
-    starts = [(each, None) for each in (equal, study.upper, study.lower)]
+    starts = [(equal, None)]
+    if not serves(study, free):
+        starts += [(each, None) for each in (study.upper, study.lower)]
     first = worst_few(setting, [*more[:1], *found], set())
-    state = exchange(setting, first, starts, given, equal_worst.share, free=free)
+    state = exchange(setting, first, starts, given, equal_worst.share, free=free, thorough=True)
     choice = None
     if study.catalogue:
         choice, state = _bought(setting, state)
@@ -195,140 +165,6 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
         timing=setting.timing,
         compiled=setting.program.library,
         bought=choice,
-    )
-
-
-def exchange(
-    setting: Setting,
-    first: Sequence[int],
-    starts: Sequence[tuple[Array, Array | None]],
-    postures: Array,
-    unit: float,
-    *,
-    free: bool,
-) -> ExchangeState:
-    """Add the worst scenarios to an NLP until it holds all that decide.
-
-    Args:
-        setting: the problem.
-        first: scenarios to begin with.
-        starts: springs and other values from which the first NLP is solved.
-        postures: of each pose, P×n [rad].
-        unit: share of a limit that counts as one.
-        free: whether the postures are sought as well.
-    """
-    study, given, limits = setting.study, setting.given, setting.limits
-    if study.objective.scales_speed:
-        unit = 1.0  # the limits themselves
-    everything = study.objective.all_scenarios
-    active = list(range(len(setting.scenarios))) if everything else list(first)
-    bends = setting.shares_of_bounds(Hardening(limits.vector(study.nominal), given))
-    poses = [int(np.argmax(bends))]
-    best: Found | None = None
-    for rounds in range(1, ROUNDS + 1):
-        places = [setting.scenarios[i] for i in active]
-        poses = list(dict.fromkeys([*poses, *(place.pose for place in places)]))
-        instance = _instance(setting, active, poses, unit)
-        if best:
-            starts = [(best.springs, best.others)]
-        best = _searched(setting, instance, postures[poses], starts, free)
-        postures = given.copy()
-        postures[poses] = best.postures if free else given[poses]
-        factors = _factors(setting, best)
-        at = Hardening(limits.vector(best.springs, best.others), postures, factors)
-        worst, found = setting.worst(at)
-        setting.say("exchange", rounds, ROUNDS)
-        state = ExchangeState(best, instance, at, worst, tuple(active), rounds, unit)
-        shares = setting.shares_of_bounds(at)
-        too_far = int(np.argmax(shares))
-        allowed = max(state.bound, 1.0) if factors is not None else state.bound
-        worse = [s for s in found if s.share > allowed * (1 + MOST_EXCESS)]
-        fresh = [] if everything else worst_few(setting, worse, set(active))
-        if shares[too_far] > 1 + KEEPS and too_far not in poses:
-            poses = [*poses, too_far]
-        elif not fresh:
-            break
-        active = [*active, *fresh]
-    return state
-
-
-def _factors(setting: Setting, best: Found) -> Array | None:
-    """Return the factors on the speed that a search ended with."""
-    if not setting.study.objective.scales_speed:
-        return None
-    return np.asarray(10**best.own)
-
-
-def worst_few(setting: Setting, screened: Sequence[Screened], known: set[int]) -> list[int]:
-    """Return the worst few that are not known, each of another pose, point or direction."""
-    kinds: set[tuple[int, ...]] = set()
-    fresh: list[int] = []
-    for each in screened:
-        kind = setting.scenarios[each.index][:3]
-        if each.index not in known and kind not in kinds and len(fresh) < ADDED_IN_AN_EXCHANGE:
-            kinds.add(kind)
-            fresh.append(each.index)
-    return fresh
-
-
-def _instance(setting: Setting, active: list[int], poses: list[int], unit: float) -> Instance:
-    study, scenarios = setting.study, setting.scenarios
-    places = [scenarios[i] for i in active]
-    tasks = [task_numbers(study, *tip_pose(study.model, scenarios.poses[k].q)) for k in poses]
-    own = [i // len(scenarios.motors) for i in active]
-    numbered = {which: k for k, which in enumerate(dict.fromkeys(own))}
-    shape = NlpShape(
-        len(poses),
-        tuple((poses.index(each.pose), each.point) for each in places),
-        tuple(numbered[which] for which in own),
-        study.objective,
-    )
-    return Instance(
-        shape,
-        np.array(tasks),
-        np.array([scenarios.numbers(each, setting.timing.step) for each in places]),
-        unit * np.array([scenarios.limit(each) for each in places]),
-    )
-
-
-def _searched(
-    setting: Setting,
-    instance: Instance,
-    postures: Array,
-    starts: Sequence[tuple[Array, Array | None]],
-    free: bool,
-) -> Found:
-    """Return the best of the searches from some springs and other values."""
-    shared = setting.program, instance, setting.limits, postures
-    jobs = [setting.pool.submit(search, *shared, *start, free) for start in starts]
-    found = [job.result() for job in as_completed(jobs)]
-    good = [each for each in found if each.violation <= FEASIBLE]
-    if not good:
-        nearest = min(found, key=lambda each: each.violation)
-        raise SolverFailure([_as_outcome(nearest, setting)])
-    return min(good, key=lambda each: each.cost)
-
-
-def search(
-    program: Program,
-    instance: Instance,
-    limits: VariableBounds,
-    postures: Array,
-    springs: Array,
-    others: Array | None,
-    free: bool,
-) -> Found:
-    """Run ``minimise`` in a worker process."""
-    with IN_TURN:
-        return minimise(program, instance, limits, postures, springs, others, free=free)
-
-
-def _as_outcome(found: Found, setting: Setting) -> Outcome:
-    name = setting.scenarios.poses[0].pose.name
-    status, force = found.status, float(found.worst)
-    q, k = found.postures[0], found.springs
-    return Outcome(
-        name, "table", status, False, found.iterations, 1, 0.0, q, k, force, found.violation
     )
 
 

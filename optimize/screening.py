@@ -38,31 +38,32 @@ class Screened:
     force: float
 
 
-def screen(
-    program: Program,
-    scenarios: Scenarios,
-    postures: Array,
-    y: Array,
-    speeds: Array | None,
-    step: float,
-    begin: int,
-    end: int,
-) -> list[Screened]:
-    """Return the worst of some scenarios, worst first.
+@dataclass(frozen=True, eq=False)
+class Screening:
+    """A machine and the scenarios in which it is looked at, piece by piece.
 
-    Args:
+    Attributes:
         program: functions of the impacts, one for each contact point.
         scenarios: all of them.
         postures: of each pose, P×n [rad].
         y: log10 of what impacts feel of the hardware.
         speeds: factor on the speed of all, or of each scenario; None where speeds stay.
         step: time step of the impacts [s].
-        begin: number of the first scenario.
-        end: number after that of the last.
     """
-    places = scenarios.at(begin, end)
-    force = forces_at(program, scenarios, postures, y, speeds, step, begin, end)
-    share = force / scenarios.limits[places[:, 3]]
+
+    program: Program
+    scenarios: Scenarios
+    postures: Array
+    y: Array
+    speeds: Array | None
+    step: float
+
+
+def screen(every: Screening, begin: int, end: int) -> list[Screened]:
+    """Return the worst of the scenarios from one number up to before another, worst first."""
+    places = every.scenarios.at(begin, end)
+    force = forces_at(every, begin, end)
+    share = force / every.scenarios.limits[places[:, 3]]
     kept: dict[tuple[int, ...], Screened] = {}
     for i in np.argsort(-share):
         kind = tuple(places[i, :3])
@@ -73,27 +74,18 @@ def screen(
     return list(kept.values())
 
 
-def forces_at(
-    program: Program,
-    scenarios: Scenarios,
-    postures: Array,
-    y: Array,
-    speeds: Array | None,
-    step: float,
-    begin: int,
-    end: int,
-) -> Array:
-    """Return the largest peak of each of some scenarios [N]; arguments as ``screen``."""
-    places = scenarios.at(begin, end)
-    x = np.column_stack([postures[places[:, 0]], np.tile(y, (len(places), 1))])
-    if speeds is not None:
-        which = np.arange(begin, end) // len(scenarios.motors) if speeds.size > 1 else 0
-        x = np.column_stack([x, np.broadcast_to(np.log10(speeds[which]), len(places))])
-    numbers = impact_numbers(scenarios, places, step)
+def forces_at(every: Screening, begin: int, end: int) -> Array:
+    """Return the largest peak of each of these scenarios [N]."""
+    places = every.scenarios.at(begin, end)
+    x = np.column_stack([every.postures[places[:, 0]], np.tile(every.y, (len(places), 1))])
+    if every.speeds is not None:
+        which = np.arange(begin, end) // len(every.scenarios.motors) if every.speeds.size > 1 else 0
+        x = np.column_stack([x, np.broadcast_to(np.log10(every.speeds[which]), len(places))])
+    numbers = impact_numbers(every.scenarios, places, every.step)
     force = np.empty(len(places))
     for point in np.unique(places[:, 1]):
         at = np.flatnonzero(places[:, 1] == point)
-        force[at] = largest_forces(program, int(point), x[at], numbers[at])
+        force[at] = largest_forces(every.program, int(point), x[at], numbers[at])
     return force
 
 

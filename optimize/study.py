@@ -21,6 +21,7 @@ from softimpact.symbolic import (
     SoftImpactError,
     approach_velocity,
     body_region,
+    floating_robot,
     limits_of,
     unit_direction,
 )
@@ -202,7 +203,7 @@ class Study:
             for (point, (x, y, z)), speed in fastest.items()
         )
 
-    def _impacts(self) -> Iterator[tuple[str, Any, float]]:
+    def _impacts(self) -> Iterator[tuple[str, list[float], float]]:
         """Yield point, direction and speed of all that the file asks for."""
         asked, own = self.scenarios, self.direction.tolist()
         if isinstance(asked, tuple):
@@ -255,8 +256,9 @@ def _naming(source: Path, section: str, field: str) -> Iterator[None]:
 def build_study(file: StudyFile, source: Path) -> Study:
     """Return the study that a file describes; raises InvalidValue, which names file and field."""
     robot = robot_of_study(file.robot, source)
-    with _naming(source, "stiffness", "lower"):
+    with _naming(source, "stiffness", "rigid"):
         places = sprung_joints(robot, file.stiffness.rigid)
+    with _naming(source, "stiffness", "lower"):
         names = [robot.joint_names[i] for i in places]
         lower, upper, nominal = stiffness_of(names, file.stiffness)
     with _naming(source, "robot", "rotor_inertia"):
@@ -328,6 +330,9 @@ def robot_of_study(section: RobotSection, source: Path) -> Robot:
         chain = chain_of(robot, section)
     with _naming(source, "robot", "model"):
         require_held_joints(chain)
+    with _naming(source, "robot", "floating"):
+        if section.floating:
+            floating_robot(chain)  # its base needs a mass
     return chain
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from softimpact.symbolic import (
     ImpactModel,
     InvalidValue,
+    Loop,
     Robot,
     UnknownName,
     chain_to,
@@ -196,6 +197,13 @@ def posture_of(model: ImpactModel, field: str, values: Sequence[float]) -> Array
         whole = np.array([joint.spring_reference for joint in robot.joints])
         whole[motors] = values
         return close_loops(robot, whole[list(chain.independent)])
+    if len(values) not in (free, robot.n) and any(isinstance(loop, Loop) for loop in robot.loops):
+        driven = ", ".join(robot.joint_names[i] for i in motors)
+        raise InvalidValue(
+            field,
+            f"has {len(values)} values, but {robot.n} are needed, or {len(motors)} of the motors "
+            f"alone ({driven})",
+        )
     q = whole_configuration(robot, values, field)
     require_closed_at(robot, q)
     return np.array(closed_near(robot, q[list(chain.independent)], q)).ravel()

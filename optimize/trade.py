@@ -10,9 +10,9 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .axes import Axes
 from .certificate import Hardening, Setting, Worst
+from .exchange import ExchangeState, exchange, worst_few
 from .failure import SolverFailure
 from .reach import ROW_TOLERANCE, Reach, reach
-from .robust import ExchangeState, exchange, worst_few
 
 TradeStart = tuple[Array, Array | None]
 """Springs and other values that a search begins with."""
@@ -61,7 +61,9 @@ class Trade:
             _, screened = setting.worst(Hardening(limits.vector(study.nominal), postures))
             active = worst_few(setting, screened, set())
             try:
-                state = exchange(setting, active, starts, postures, self.unit, free=self.free)
+                state = exchange(
+                    setting, active, starts, postures, self.unit, free=self.free, thorough=True
+                )
             except SolverFailure as failure:
                 failed = failure
                 continue

@@ -35,7 +35,9 @@ class Paper(StrEnum):
 
 PapersOption = Annotated[
     list[Paper] | None,
-    typer.Option("--paper", help="Reduced models or impact factors, repeatable; default both."),
+    typer.Option(
+        "--paper", help="msm (reduced models) or giaf (impact factors), repeatable; default both."
+    ),
 ]
 ScenariosOption = Annotated[
     str | None,

@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from .situation import Situation
 
 
+NO_SPRING = 1e-9
+"""Share of a chain's stiffest spring that is what rounding leaves of none."""
+
+
 def analyze(
     model: o.ModelArgument,
     q: o.ConfigurationOption,
@@ -120,7 +124,10 @@ def _print_tables(result: Analysis) -> None:
     print_table(
         "Chain, from the contact point to ground",
         ("", "mass [kg]", "spring behind it [N/m]"),
-        [(str(i + 1), *pair) for i, pair in enumerate(zip(masses, springs, strict=True))],
+        [
+            (str(i + 1), m, k if abs(k) > NO_SPRING * max(springs) else 0.0)
+            for i, (m, k) in enumerate(zip(masses, springs, strict=True))
+        ],
     )
     for title, matrix in (
         ("Operational space inertia Λ, with rotors [kg]", result.osim),

@@ -20,6 +20,9 @@ from softimpact.symbolic import Motors
 from softimpact.symbolic.body.verdict import limits_of
 from softimpact.symbolic.robot.rigid import Array
 
+AGREED = 0.01
+"""Share by which an independent simulation may exceed an optimum's force unsaid."""
+
 
 @dataclass(frozen=True, eq=False)
 class Check:
@@ -34,6 +37,17 @@ class Check:
     nlp: float
     linearised: float
     full: float
+
+
+def doubts(optimum: float, *simulated: float, of: str = "the winner") -> list[str]:
+    """Return a line if simulation finds a force larger than an optimum's by over ``AGREED``."""
+    largest = max(simulated)
+    if largest <= (1 + AGREED) * optimum:
+        return []
+    return [
+        f"simulation finds {largest:.1f} N for {of}, where the optimum has {optimum:.1f} N: "
+        "count on the larger; limits, prices and gains rest on the smaller"
+    ]
 
 
 def checked(study: Study, outcome: Outcome) -> Check:

@@ -14,6 +14,7 @@ import numpy as np
 
 from softimpact.optimize import Design, Gains, Outcome, PoseResult, Study
 from softimpact.optimize.answers import by_name
+from softimpact.optimize.evaluation import kept
 from softimpact.optimize.solve import preference
 from softimpact.simulate import ImpactHistory
 from softimpact.simulate.band import Band
@@ -22,7 +23,7 @@ from softimpact.symbolic import Analysis, analyse
 from softimpact.symbolic.robot.rigid import Array
 
 from .cautions import study_warnings
-from .checks import Check, peak_band, peaks_by_reaction, safe_speed, simulated
+from .checks import Check, doubts, peak_band, peaks_by_reaction, safe_speed, simulated
 
 Limited = Literal["transient", "quasi_static"]
 
@@ -58,10 +59,10 @@ class DesignReport:
         check: of the winner.
         winner_history: force over time of the winner, linearised.
         worst_history: the same of the worst pose with the nominal stiffness.
-        speed_before: at which the task's pose with nominal stiffness meets the limit [m/s].
+        speed_before: at which the task's pose with the reference's springs meets the limit [m/s].
         speed_after: at which the winner meets it [m/s].
-        reactions_before: largest force [N] of the task's pose with nominal stiffness, by the time
-            [s] for which motors drive on; empty without rotor inertias.
+        reactions_before: largest force [N] of the task's pose with the reference's springs, by the
+            time [s] for which motors drive on; empty without rotor inertias.
         reactions_after: the same of the winner.
         band: where the winner's largest force lies in 95 of 100 cases [N]; None if not computed.
     """
@@ -106,7 +107,7 @@ def design_report(design: Design) -> DesignReport:
     worst = max(design.poses, key=lambda pose: pose.force_before)
     history = simulated(study, winner.q, winner.springs)
     full = simulated(study, winner.q, winner.springs, "full")
-    task = next(p for p in design.poses if p.candidate.pose.name == study.task_pose.name)
+    task, before = task_result(design), design.answers.reference.springs
     return DesignReport(
         design=design,
         poses=poses,
@@ -114,11 +115,30 @@ def design_report(design: Design) -> DesignReport:
         check=Check(winner.force, history.peak, full.peak),
         winner_history=history,
         worst_history=simulated(study, worst.candidate.q, study.nominal),
-        speed_before=safe_speed(study, task.candidate.q, study.nominal),
+        speed_before=safe_speed(study, task.candidate.q, before),
         speed_after=safe_speed(study, winner.q, winner.springs),
-        reactions_before=_reactions(study, task.candidate.q, study.nominal),
+        reactions_before=_reactions(study, task.candidate.q, before),
         reactions_after=_reactions(study, winner.q, winner.springs),
         band=peak_band(study, winner.q, winner.springs),
+    )
+
+
+def task_result(design: Design) -> PoseResult:
+    """Return what was found for the task's pose."""
+    name = design.study.task_pose.name
+    return next(pose for pose in design.poses if pose.candidate.pose.name == name)
+
+
+def nominal_in_words(design: Design) -> str | None:
+    """Return what is compared with instead of nominal springs that break a bound, if they do."""
+    task, reference, study = task_result(design), design.answers.reference, design.study
+    if task.keeps_before:
+        return None
+    broken = [b.name for b in kept(study, task.candidate.q, study.nominal) if b.share > 1 + 1e-5]
+    return (
+        f"nominal springs break {' and '.join(broken)} in {study.task_pose.name} "
+        f"({task.force_before:.1f} N, {1e3 * task.deflection_before:.3g} mm); before means springs "
+        f"in their proportions that are just stiff enough: {reference.force:.1f} N"
     )
 
 
@@ -130,6 +150,7 @@ def design_record(report: DesignReport) -> dict[str, Any]:
     """Return a report as plain data, for ``results.json``."""
     study, design = report.study, report.design
     region = study.contact.region
+    check = report.check
     return {
         "generator": GENERATOR,
         "versions": versions(),
@@ -165,14 +186,14 @@ def design_record(report: DesignReport) -> dict[str, Any]:
             for o in design.optima
         ],
         "reference": design.answers.reference,
-        "check": vars(report.check),
+        "check": vars(check),
         "gains": None if design.gains is None else vars(design.gains),
         "safe_speed": {"before": report.speed_before, "after": report.speed_after},
         "band": report.band,
         "reactions": {"before": report.reactions_before, "after": report.reactions_after},
         "peak_definition": "peak",
-        "warnings": study_warnings(study),
-        "poses": [_pose(pose, study.max_deflection) for pose in report.poses],
+        "warnings": [*study_warnings(study), *doubts(check.nlp, check.linearised, check.full)],
+        "poses": [_pose(pose) for pose in report.poses],
     }
 
 
@@ -232,7 +253,7 @@ def peak_in_words(study: Study) -> str:
     return f"largest force within {study.horizon:g} s; motors {kinds}{worse}; {until}"
 
 
-def _pose(pose: RankedPose, max_deflection: float) -> dict[str, Any]:
+def _pose(pose: RankedPose) -> dict[str, Any]:
     result, candidate = pose.result, pose.result.candidate
     figures = pose.figures
     return {
@@ -253,7 +274,8 @@ def _pose(pose: RankedPose, max_deflection: float) -> dict[str, Any]:
         "directional_giaf": figures.directional_giaf,
         "force_before": result.force_before,
         "deflection_before": result.deflection_before,
-        "keeps_bounds_before": result.deflection_before <= max_deflection,
+        "keeps_bounds_before": result.keeps_before,
+        "force_compared": result.compared,
         "table": result.table,
         "free": result.free,
     }
@@ -268,20 +290,21 @@ def gains_in_words(gains: Gains, report: DesignReport) -> Sequence[str]:
     """Return what springs, posture and speed buy, a sentence each."""
 
     def share(force: float) -> str:
-        return f"{100 * (gains.before - force) / gains.before:.1f} %"
+        saved = 100 * (gains.before - force) / gains.before
+        return f"{abs(saved):.1f} % {'less' if saved > -0.05 else 'more'}"
 
     limit = report.limit
     posture = (
-        f"Posture alone, with the nominal stiffness: {gains.before:.1f} → {gains.posture:.1f} N "
-        f"({share(gains.posture)} less).",
+        f"Posture alone, with the stiffness as before: {gains.before:.1f} → {gains.posture:.1f} N "
+        f"({share(gains.posture)}).",
     )
     both = "Both" if has_other_postures(report) else "All, as there is no other posture"
     verdict = "meets" if gains.both <= limit else f"is {gains.both / limit:.1f} times"
     return (
         f"Springs alone, in the task's pose: {gains.before:.1f} → {gains.springs:.1f} N "
-        f"({share(gains.springs)} less).",
+        f"({share(gains.springs)}).",
         *(posture if len(report.poses) > 1 else ()),
-        f"{both}: {gains.before:.1f} → {gains.both:.1f} N ({share(gains.both)} less), which "
+        f"{both}: {gains.before:.1f} → {gains.both:.1f} N ({share(gains.both)}), which "
         f"{verdict} the limit of {limit:g} N.",
         f"Speed: the limit is met at {report.speed_after:.3f} m/s "
         f"({report.speed_before:.3f} m/s before the design).",

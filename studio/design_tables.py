@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 from rich.console import Console
 
 from softimpact.optimize import Outcome
@@ -17,6 +16,7 @@ from .design_report import (
     band_in_words,
     gains_in_words,
     limit_kind,
+    nominal_in_words,
     peak_in_words,
     reactions_in_words,
 )
@@ -75,7 +75,7 @@ def _row(pose: RankedPose) -> list[Cell]:
         None if figures.k_r is None else 1e-3 * figures.k_r,
         figures.m_a,
         figures.giaf,
-        _force(result.force_before),
+        _force(result.force_before, "" if result.keeps_before else "!"),
         _force(None if result.table is None else result.table.force),
         _force(None if result.free is None else result.free.force),
         _status(result.table, result.free),
@@ -88,8 +88,8 @@ def _marks(pose: RankedPose) -> str:
     return ("*" if candidate.pose.recovered else "") + ("~" if candidate.turned else "")
 
 
-def _force(force: float | None) -> str | None:
-    return None if force is None else f"{force:.1f}"
+def _force(force: float | None, mark: str = "") -> str | None:
+    return None if force is None else f"{force:.1f}{mark}"
 
 
 def _stiffness(springs: Array) -> str:
@@ -109,6 +109,8 @@ def _notes(report: DesignReport) -> list[str]:
     notes = []
     if any(pose.result.candidate.pose.recovered for pose in report.poses):
         notes.append("* not in the source, recovered between its neighbours")
+    if any(not pose.result.keeps_before for pose in report.poses):
+        notes.append("! nominal springs that break a bound in that pose")
     turned = [
         f"{pose.result.candidate.pose.name} by {pose.result.candidate.turned:.2f} rad"
         for pose in report.poses
@@ -155,22 +157,23 @@ def _winner(report: DesignReport) -> list[str]:
     ]
 
 
+UNBENT = 1e-9
+"""Deflection [m] that counts as none."""
+
+
 def _meaning(report: DesignReport) -> list[str]:
     """What binds, which numbers matter, and whether the nominal springs are a fair reference."""
     study, answers = report.study, report.design.answers
     bound, reference = study.max_deflection, answers.reference
+    bent = "" if answers.deflection > UNBENT else " (no force of the study bends a spring)"
     lines = [
-        f"deflection {1e3 * answers.deflection:.4g} mm of {1e3 * bound:.4g} mm; motors "
+        f"deflection {1e3 * answers.deflection:.4g} mm of {1e3 * bound:.4g} mm{bent}; motors "
         f"{answers.worst_motors.kind} are the worst",
         *answers_in_words(study, answers.indifferent, answers.prices),
     ]
-    if not np.array_equal(reference.springs, study.nominal):
-        saved = 100 * (1 - report.design.winner.force / reference.force)
-        lines.append(
-            f"nominal springs break the bound on the deflection in {study.task_pose.name}; just "
-            f"stiff enough (k_s = {_stiffness(reference.springs)} kN·m/rad) they give "
-            f"{reference.force:.1f} N, of which the design saves {saved:.1f} %"
-        )
+    unfair = nominal_in_words(report.design)
+    if unfair is not None:
+        lines.append(f"{unfair} (k_s = {_stiffness(reference.springs)} kN·m/rad)")
     return lines
 
 

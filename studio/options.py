@@ -15,7 +15,7 @@ ModelArgument = Annotated[
     str,
     typer.Argument(
         metavar="MODEL",
-        help="Built-in robot, or path of a .urdf or MJCF .xml file.",
+        help="Built-in robot, file (URDF, MJCF, xacro), or name of robot_descriptions.",
         show_default=False,
     ),
 ]
@@ -43,7 +43,11 @@ MotorAnglesOption = Annotated[
 ]
 DirectionOption = Annotated[
     str,
-    typer.Option("--direction", metavar="LIST", help="Direction of the impact in the base's axes."),
+    typer.Option(
+        "--direction",
+        metavar="LIST",
+        help="Direction of the impact in the base's axes, of any length.",
+    ),
 ]
 TipsOption = Annotated[
     list[str] | None,
@@ -59,7 +63,7 @@ DirectionsOption = Annotated[
     typer.Option(
         "--direction",
         metavar="LIST",
-        help="Direction of the impact in the base's axes; may be repeated.",
+        help="Direction of the impact in the base's axes, of any length; may be repeated.",
     ),
 ]
 JointStiffnessOption = Annotated[
@@ -140,7 +144,7 @@ StoppingTimeOption = Annotated[
     float | None,
     typer.Option(
         metavar="S",
-        help="The motors come to rest in that time (s) instead of being released.",
+        help="The motors come to rest in that time (s); default: they are released.",
         rich_help_panel=MOTORS,
     ),
 ]
@@ -149,12 +153,15 @@ EndOption = Annotated[
     typer.Option(
         "--end",
         metavar="FRAME",
-        help="End of the arm: all joints on the way to it stay, also beyond the contact point.",
+        help="End of the arm: all joints on the way to it stay, also beyond the contact point; "
+        "default the model's own tip if they are on the way to it.",
     ),
 ]
 LockOption = Annotated[
     str | None,
-    typer.Option(metavar="JOINT=X,...", help="Joints to weld, and where; others off the way at 0."),
+    typer.Option(
+        metavar="JOINT=X,...", help="Joints to weld, and where (rad, m); others off the way at 0."
+    ),
 ]
 HoldBaseOption = Annotated[
     bool,
@@ -166,37 +173,47 @@ PayloadOption = Annotated[
     str | None,
     typer.Option(
         metavar="MASS[@x,y,z]",
-        help="What the end holds (kg), and its centre in the end's axes (m).",
+        help="What the end holds (kg), and its centre in the end's axes (m); default nothing.",
     ),
 ]
 ToolOption = Annotated[
     str | None,
-    typer.Option(metavar="FILE", help="Tool at the end: TOML with mass, com and inertia."),
+    typer.Option(
+        metavar="FILE", help="Tool at the end: TOML with mass (kg), com (m) and inertia (kg m²)."
+    ),
 ]
 GravityOption = Annotated[
     str | None,
-    typer.Option(metavar="LIST", help="Gravity that enters K0 (m/s²); default none."),
+    typer.Option(
+        metavar="LIST", help="Gravity in the base's axes (m/s²), which enters K0; default none."
+    ),
 ]
 FidelityOption = Annotated[
-    str, typer.Option("--model", help="one_mass, two_mass, chain, linearised or full.")
+    str,
+    typer.Option("--model", help="Of the impact: one_mass, two_mass, chain, linearised or full."),
 ]
-OrderOption = Annotated[int, typer.Option(min=1, help="Number of masses of the chain.")]
+OrderOption = Annotated[
+    int, typer.Option(min=1, help="Masses of the chain, where that is the model.")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 OutOption = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")]
 StudyFileArgument = Annotated[
-    str, typer.Argument(metavar="STUDY", help="Study file (.toml).", show_default=False)
+    str,
+    typer.Argument(
+        metavar="STUDY",
+        help="Study file (.toml), or the name of a built-in study.",
+        show_default=False,
+    ),
 ]
 RegionOption = Annotated[
-    str | None, typer.Option(metavar="NAME", help="Body region instead of the study's.")
+    str | None, typer.Option(metavar="NAME", help="Region of the body; default the study's.")
 ]
 SpeedOption = Annotated[
-    float | None, typer.Option(metavar="V", help="Speed (m/s) instead of the study's.")
+    float | None, typer.Option(metavar="V", help="Speed (m/s); default the study's.")
 ]
 StudyMotorsOption = Annotated[
     str | None,
-    typer.Option(
-        "--motors", metavar="KIND", help="free, servo or driven instead of the study's motors."
-    ),
+    typer.Option("--motors", metavar="KIND", help="free, servo or driven; default the study's."),
 ]
 ReportOption = Annotated[
     Path | None,
@@ -207,7 +224,9 @@ ReportOption = Annotated[
 
 WorkersOption = Annotated[
     int | None,
-    typer.Option("--workers", metavar="N", help="Processes that search; default one a core."),
+    typer.Option(
+        "--workers", metavar="N", help="Processes that search; default one for each core."
+    ),
 ]
 DaskOption = Annotated[
     str | None,

@@ -51,7 +51,9 @@ MotionArgument = Annotated[
 RobotOption = Annotated[
     str,
     typer.Option(
-        "--model", metavar="MODEL", help="Built-in robot, or path of a .urdf or MJCF .xml file."
+        "--model",
+        metavar="MODEL",
+        help="Built-in robot, file (URDF, MJCF, xacro), or name of robot_descriptions.",
     ),
 ]
 PointsOption = Annotated[
@@ -92,7 +94,7 @@ EngineOption = Annotated[
 BandOption = Annotated[
     bool,
     typer.Option(
-        "--band", help="Where 95 of 100 cases of the worst moments lie, for what is not known."
+        "--band", help="Show where 95 of 100 cases of the worst moments lie, for what is not known."
     ),
 ]
 OutOption = Annotated[

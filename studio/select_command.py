@@ -10,7 +10,10 @@ import typer
 from . import options as o
 
 ByOption = Annotated[
-    str, typer.Option(metavar="FIGURE", help="peak_force, m_c, giaf or directional_giaf.")
+    str,
+    typer.Option(
+        metavar="FIGURE", help="What ranks the poses: peak_force, m_c, giaf or directional_giaf."
+    ),
 ]
 
 

@@ -22,7 +22,9 @@ RegionsOption = Annotated[
 ]
 BodyOption = Annotated[
     str | None,
-    typer.Option(metavar="FILE", help="A body of your own (TOML).", rich_help_panel=BODY),
+    typer.Option(
+        metavar="FILE", help="A body of your own (TOML) instead of --region.", rich_help_panel=BODY
+    ),
 ]
 CoverOption = Annotated[
     str | None,
@@ -59,15 +61,15 @@ JointVelocityOption = Annotated[
     str | None,
     typer.Option(
         metavar="LIST",
-        help="Joint velocities before the impact, scaled to --speed if both are given; default "
-        "those of least norm.",
+        help="Joint velocities before the impact (rad/s, m/s), scaled to --speed if both are "
+        "given; default those of least norm.",
     ),
 ]
 PeakOption = Annotated[
     str,
     typer.Option(
-        help="Which one peak_force is: peak (largest of all contacts), first_contact or "
-        "first_peak; verdict and safe speed are by peak."
+        help="Which force peak_force of --json is: peak (largest of all contacts), "
+        "first_contact or first_peak; verdict and safe speed are by peak."
     ),
 ]
 PidOption = Annotated[
@@ -82,7 +84,8 @@ PidOption = Annotated[
 ReferenceOption = Annotated[
     str | None,
     typer.Option(
-        help="Of that controller after first touch: moving (on, the default) or held.",
+        help="Where that controller leads the motors after first touch: moving (on, the default) "
+        "or held.",
         rich_help_panel=o.MOTORS,
     ),
 ]
@@ -93,7 +96,7 @@ HorizonOption = Annotated[
 BandOption = Annotated[
     bool,
     typer.Option(
-        "--band", help="Where 95 of 100 cases lie, for what is not known exactly (tolerances)."
+        "--band", help="Show where 95 of 100 cases lie, for what is not known exactly (tolerances)."
     ),
 ]
 SafeSpeedOption = Annotated[

@@ -8,7 +8,7 @@ import math
 import re
 import tomllib
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, Literal, get_args, get_origin
 
 from softimpact.symbolic import InvalidValue, Robot, UnknownName
 from softimpact.symbolic.impact.drives import PerJoint
@@ -102,6 +102,8 @@ def named_numbers(field: str, text: str) -> dict[str, float]:
 
 def one_of(what: str, name: str, names: Any) -> Any:
     """Return a name that a ``Literal`` type allows; raises UnknownName, which lists those."""
+    if get_origin(names) is not Literal:  # no checker sees what comes in and goes out here
+        raise TypeError(f"{names} is no Literal")
     if name not in get_args(names):
         raise UnknownName(what, name, get_args(names))
     return name

@@ -74,7 +74,8 @@ def worst_directions(
         flat = tried.reshape(-1, 3)
         safe = ask(np.repeat(q, tried.shape[1], axis=0), flat).reshape(tried.shape[:2])
         along = abs(np.einsum("skx,sxi->ski", tried, J))
-        reach = np.where(along > NOTHING, along * most, 0.0).sum(axis=2)
+        felt = np.where(along > NOTHING, most, 0.0)  # inf where no limit is known
+        reach = (along * felt).sum(axis=2)
         speeds = np.where(np.isnan(safe) | (safe > reach), np.inf, safe)
         rows, best = np.arange(len(q)), speeds.argmin(axis=1)
         return tried[rows, best], speeds[rows, best]

@@ -91,6 +91,11 @@ def _shown(cell: Any) -> str:
 
 def plain(value: Any) -> Any:
     """Return a value as JSON has it: dataclasses and arrays opened, NaN and infinity as null."""
+    # most of what long tables hold is a number or a name
+    return _scalar(value) if type(value) in (float, str) else _opened(value)
+
+
+def _opened(value: Any) -> Any:
     if isinstance(value, Record):
         return value.to_dict()
     if is_dataclass(value) and not isinstance(value, type):
@@ -100,7 +105,8 @@ def plain(value: Any) -> Any:
     if hasattr(value, "full"):  # a CasADi matrix of numbers
         value = value.full().ravel() if 1 in value.shape else value.full()
     if isinstance(value, (np.ndarray, np.generic)):
-        return plain(value.tolist())
+        finite = value.dtype.kind == "f" and bool(np.isfinite(value).all())
+        return value.tolist() if finite else plain(value.tolist())
     if isinstance(value, (list, tuple)):
         return [plain(item) for item in value]
     return _scalar(value)

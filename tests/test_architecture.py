@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 MAY_IMPORT = {
     "robots": set(),
     "symbolic": {"robots"},
-    "codegen": {"symbolic"},
+    "codegen": {"symbolic", "toolchain"},
     "simulate": {"symbolic"},
     "optimize": {"robots", "symbolic", "toolchain"},  # built-in studies by name
     "studio": {"robots", "symbolic", "codegen", "simulate", "optimize", "batch", "toolchain"},

@@ -10,7 +10,7 @@
 #include "robot_state.h"
 
 /* Halley's iterations, and the relative change after which the next would be nothing. */
-#define ITERATIONS 32
+#define ITERATIONS 8
 #define CLOSE ROBOT_R(0.01)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3

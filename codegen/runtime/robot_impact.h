@@ -107,6 +107,9 @@ typedef struct {
 
 typedef struct robot_watch robot_watch;
 
+/* Steps of the budget that a run takes before its first: it is prepared, and motors are let go. */
+#define ROBOT_STEPS_OF_RUN 6
+
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
@@ -186,6 +189,16 @@ robot_real robot_two_body_speed(const robot_region *region, robot_real mobility,
  */
 int robot_find_speed(const robot_region *region, const robot_params *p, robot_real limit,
     robot_real cap, robot_impact *impact, robot_safe_speed_t *found);
+
+/* Largest force of an arrival by any of the motors that p stands for: OK, BOUNDED or another status. */
+int robot_find_peak(const robot_region *region, const robot_params *p, robot_real speed,
+    robot_impact *impact, robot_peak_force_t *out);
+
+#if ROBOT_FRAMES > 0
+/* Links, with the motion of a place in a frame in place of that of the package's own point. */
+int robot_links_on(const robot_real q[ROBOT_JOINTS], int frame, const robot_real place[3],
+    const robot_params *p, robot_links_t *links);
+#endif
 
 /* Largest force over all contacts of an impact at a speed. */
 void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budget,

@@ -14,8 +14,15 @@
 #define SHORTEST_ROUGH 2
 /* Steps in contact after which it is looked whether the rest matters. */
 #define LOOKS 2
+/* Share of a first step within which the damper has to press the skin in, and the share of that time missed. */
+#define BRIEF ROBOT_R(0.3)
+#define MISSED ROBOT_R(1.2)
+/* Level of such a first step. */
+#define LONGEST 4
+#define LONGEST_ROUGH 1
 /* Share of what a harder contact takes up to which rough runs take it to be out of reach. */
 #define ROUGHLY ROBOT_R(1.3)
+
 /* Changes the length of the next step. */
 static void change_level(robot_state *s, int level)
 {
@@ -133,6 +140,26 @@ static bool step_apart(robot_state *s, const robot_trial *t, int shortest, robot
     return true;
 }
 
+/*
+ * A damper that meets the skin at once pushes c v as soon as the skin is deep enough, after a time of depth/v:
+ * where that is brief the first step is long, and begins with what c v is on average.
+ */
+static void begin(const robot_region *region, int longest, robot_state *s)
+{
+    const robot_real pushed = region->damping*s->speed;
+    const robot_real slow = robot_law_depth(region, pushed)/s->speed;
+    if (s->phase->level[longest].h*BRIEF >= slow) {
+        s->level = longest;
+    }
+    const robot_real share = ROBOT_R(1.0) - MISSED*slow/s->phase->level[s->level].h;
+    if (share > ROBOT_R(0.0)) {
+        s->f = share*pushed;
+        s->now = robot_law_depth(region, s->f);
+        s->u = s->now + s->phase->compliance*s->f;
+        s->root = ROBOT_SQRT(s->now);
+    }
+}
+
 static void start(robot_impact *impact, robot_real speed, bool rough, robot_state *s)
 {
     const robot_phase *const phase = &impact->phase[impact->first];
@@ -164,6 +191,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->rest = zero;
     s->depth = zero;
     s->swings = zero;
+    begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
 }
 
 /* Steps through a phase, a rough run until they part; false if the steps do not do. */
@@ -202,23 +230,24 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
 void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budget, robot_peak *peak)
 {
     robot_state s;
-    start(impact, speed, budget->rough, &s);
     peak->force = ROBOT_R(0.0);
     peak->time = ROBOT_R(0.0);
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
-    for (int k = impact->first; k <= impact->last && !peak->ended; ++k) {
-        if (k > impact->first) {
-            robot_impact_let_go(impact);
-            if (impact->status != ROBOT_OK) {
-                return;
-            }
-            robot_release(&s);
-        }
-        if (impact->phase[k].blurred || !run_phase(&s, budget, peak)) {
+    budget->steps -= ROBOT_STEPS_OF_RUN;
+    if (budget->steps <= 0 || impact->phase[impact->first].blurred) {
+        return;
+    }
+    start(impact, speed, budget->rough, &s);
+    bool goes_on = run_phase(&s, budget, peak);
+    if (goes_on && !peak->ended && impact->last > impact->first) {
+        robot_impact_let_go(impact);
+        if (impact->status != ROBOT_OK || impact->phase[impact->last].blurred) {
             return;
         }
+        robot_release(&s);
+        goes_on = run_phase(&s, budget, peak);
     }
-    peak->ended = true;
+    peak->ended = goes_on;
 }

@@ -10,7 +10,7 @@
 #define NEAR ROBOT_R(0.977)
 #define KEPT ROBOT_R(0.99)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
-#define TRIALS 24
+#define TRIALS 16
 #define APART ROBOT_R(4e-3)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP ROBOT_R(8.0)

@@ -15,7 +15,7 @@
  */
 #define SMALL ROBOT_R(1e-8)
 /* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
-#define MOST_STEPS 4
+#define MOST_STEPS 3
 
 /* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
 static void turn(int first, int size, const robot_real *v, robot_real scale, robot_matrix A)
@@ -131,6 +131,12 @@ static void chase(int first, int last, int size, robot_real *d, robot_real *e, r
     }
 }
 
+/* Whether an entry beside the diagonal is more than none. */
+static bool counts(int row, const robot_real *d, const robot_real *e, robot_real noise)
+{
+    return e[row]*e[row] > noise + SMALL*ROBOT_FABS(d[row]*d[row + 1]);
+}
+
 bool robot_spectrum(int size, robot_matrix A, robot_real *values, robot_matrix vectors)
 {
     robot_real e[ROBOT_SYSTEM];
@@ -141,21 +147,16 @@ bool robot_spectrum(int size, robot_matrix A, robot_real *values, robot_matrix v
     }
     const robot_real noise = ROBOT_EPSILON*ROBOT_EPSILON*all*all;
     int last = size - 1;
-    for (int step = 0; step < MOST_STEPS*size; ++step) {
-        int first = last;
-        while (first > 0) {
-            const robot_real square = e[first - 1]*e[first - 1];
-            if (square > noise + SMALL*ROBOT_FABS(values[first - 1]*values[first])) {
-                --first;
-            } else if (first == last) {
-                --last;
-                first = last;
-            } else {
-                break;
-            }
+    for (int step = 0; step <= MOST_STEPS*size; ++step) {
+        while (last > 0 && !counts(last - 1, values, e, noise)) {
+            --last;
         }
         if (last == 0) {
             return true;
+        }
+        int first = last - 1;
+        while (first > 0 && counts(first - 1, values, e, noise)) {
+            --first;
         }
         chase(first, last, size, values, e, vectors);
     }

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import shlex
 import shutil
+import tempfile
+from functools import cache
 from pathlib import Path
 
 from platformdirs import user_cache_path
@@ -48,10 +51,30 @@ def cache_folder() -> Path | None:
 def usable_cache() -> Path | None:
     """Return ``cache_folder``, made if need be; None where there is none or it cannot be written."""
     folder = cache_folder()
-    if folder is None:
-        return None
+    return folder if folder is not None and _made(folder) else None
+
+
+@cache
+def passing_folder() -> Path:
+    """Return a folder for this process alone, where no cache can be used."""
+    folder = Path(tempfile.mkdtemp(prefix="softimpact-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def zig_environment() -> dict[str, str]:
+    """Return this process's environment with a cache for Zig, without which it does not run."""
+    told = os.name == "nt" or any(os.environ.get(name) for name in ("XDG_CACHE_HOME", "HOME"))
+    if told and _made(user_cache_path("zig", appauthor=False)):
+        return dict(os.environ)
+    place = (usable_cache() or passing_folder()) / "zig"
+    return {"ZIG_GLOBAL_CACHE_DIR": str(place), **os.environ}
+
+
+def _made(folder: Path) -> bool:
+    """Return whether a folder is there or could be made, and can be written."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
-        return None
-    return folder if os.access(folder, os.W_OK) else None
+        return False
+    return os.access(folder, os.W_OK)

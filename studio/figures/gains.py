@@ -9,7 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from softimpact.optimize import Gains
-from softimpact.studio.design_report import DesignReport, has_other_postures
+from softimpact.studio.design_report import DesignReport, has_other_postures, task_result
 
 from .style import (
     BEFORE,
@@ -34,9 +34,18 @@ def figure_of_gains(report: DesignReport, gains: Gains) -> Figure:
     forces, speeds = figure.subplots(1, 2, width_ratios=(2, 1.2))
     limit = _draw_forces(forces, report, gains)
     asked = _draw_speeds(speeds, report)
-    figure.suptitle(f"{_message(report, gains)}\n{setting(report)}", fontsize=TEXT + 1)
+    unfair = "" if task_result(report.design).keeps_before else f"\n{_unfair(report)}"
+    figure.suptitle(f"{_message(report, gains)}\n{setting(report)}{unfair}", fontsize=TEXT + 1)
     legend_below(figure, [limit, asked], columns=2)
     return figure
+
+
+def _unfair(report: DesignReport) -> str:
+    """Return why before is not the nominal springs."""
+    return (
+        f"nominal springs break a bound ({task_result(report.design).force_before:.1f} N); before: "
+        "their proportions, just stiff enough"
+    )
 
 
 def _message(report: DesignReport, gains: Gains) -> str:

@@ -44,7 +44,7 @@ def figure_of_ranking(report: DesignReport) -> Figure:
     low, high = _range(report)
     axes.set_xlim(low, high)
     _draw_spans(axes, poses)
-    handles = [_draw_before(axes, poses), *_draw_modes(axes, report)]
+    handles = [*_draw_before(axes, poses), *_draw_modes(axes, report)]
     handles += [*_draw_limit(axes, report), *_explanations(poses)]
     axes.set_ylim(len(poses) + 0.5, 0.5)
     axes.set_yticks([pose.rank for pose in poses], [_row_label(pose) for pose in poses])
@@ -98,18 +98,19 @@ def _draw_spans(axes: Any, poses: Sequence[RankedPose]) -> None:
         axes.hlines(pose.rank, min(ends), max(ends), color=LIGHT, linewidth=2.0, zorder=1)
 
 
-def _draw_before(axes: Any, poses: Sequence[RankedPose]) -> Any:
-    (points,) = axes.plot(
-        [pose.result.force_before for pose in poses],
-        [pose.rank for pose in poses],
-        "D",
-        color=BEFORE,
-        markersize=6,
-        markeredgecolor=BLACK,
-        markeredgewidth=0.6,
-        label="before: the pose with nominal springs",
-    )
-    return points
+def _draw_before(axes: Any, poses: Sequence[RankedPose]) -> list[Any]:
+    handles = []
+    for keeps, colour, edge, label in (
+        (True, BEFORE, BLACK, "before: the pose with nominal springs"),
+        (False, "white", BEFORE, "before, but nominal springs break a bound there"),
+    ):
+        shown = [pose for pose in poses if pose.result.keeps_before == keeps]
+        if shown:
+            look: dict[str, Any] = {"color": colour, "markeredgecolor": edge, "label": label}
+            look |= {"markersize": 6, "markeredgewidth": 0.6 if keeps else 1.6}
+            forces = [pose.result.force_before for pose in shown]
+            handles += axes.plot(forces, [pose.rank for pose in shown], "D", **look)
+    return handles
 
 
 def _draw_modes(axes: Any, report: DesignReport) -> list[Any]:

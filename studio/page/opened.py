@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from softimpact.optimize import Study, load_study
+from softimpact.optimize.coordinates import is_plain
 from softimpact.robots import built_in_robots, study_path
 from softimpact.simulate.trajectory import Trajectory
 from softimpact.symbolic import (
@@ -23,6 +24,7 @@ from softimpact.symbolic import (
     drives,
     load_robot,
 )
+from softimpact.symbolic.impact.floating import BASE_COORDINATES, base_held, is_floating
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
@@ -166,21 +168,36 @@ def of_model(typed: TypedArm) -> Opened:
 
 
 def of_study(study: Study) -> Opened:
-    """Return a study in the posture of its task."""
+    """Return a study in the posture of its task; the base of a floating robot is held."""
     kinds = {motors.kind for motors in study.motors}
+    model, base = study.model, _base(study)
+    if base:
+        model = base_held(model)
+    if not is_plain(model) and not model.robot.loops:  # loops are told of by what shows them
+        raise InvalidValue(
+            "model", "has joints without a motor and a spring behind it; the page shows none such"
+        )
     return Opened(
         title=study.title,
-        robot=replace(study.robot, tip=study.model.tip),
-        drives=study.model.drives,
-        q=study.task_pose.q,
+        robot=replace(model.robot, tip=model.tip),
+        drives=model.drives,
+        q=study.task_pose.q[base:],
         direction=study.direction,
         speed=study.speed,
         body=study.contact,
         kind=kinds.pop() if len(kinds) == 1 else None,
         reaction_time=study.motors[0].reaction_time,
         horizon=study.horizon,
-        postures={pose.name: pose.q for pose in study.poses},
+        postures={pose.name: pose.q[base:] for pose in study.poses},
+        assumed=("The base is held here: heavier than in the air, and so safer to look at.",)
+        if base
+        else (),
     )
+
+
+def _base(study: Study) -> int:
+    """Return how many coordinates of a posture are those of a floating base."""
+    return BASE_COORDINATES if is_floating(study.robot) else 0
 
 
 def _of_results(folder: Path) -> Opened:
@@ -207,7 +224,9 @@ def _of_results(folder: Path) -> Opened:
             f"{folder} came from the study {source}, which is not there; run the command where "
             "it is",
         )
-    shown, designs = of_study(load_study(source)), tuple(points(record))
+    study = load_study(source)
+    shown, base = of_study(study), _base(study)
+    designs = tuple(replace(point, q=point.q[base:]) for point in points(record))
     first = designs[0]
     at_first = replace(shown.drives, springs=type(shown.drives.springs)(list(first.springs)))
     return replace(

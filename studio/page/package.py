@@ -17,6 +17,7 @@ from softimpact.codegen.description import CFunction, Output
 from softimpact.codegen.directions import directions_of_motion
 from softimpact.codegen.functions import Symbols, coordinates_of, has_potential, links_of
 from softimpact.codegen.functions.catalogue import moves_in_space
+from softimpact.codegen.functions.frames import frames_of
 from softimpact.codegen.functions.guards import fastest_arrival, heaviest
 from softimpact.codegen.functions.impact_factors import directional_factor, impact_factors
 from softimpact.codegen.functions.reductions import reduced_model, reflected_mass
@@ -37,7 +38,7 @@ from softimpact.symbolic import (
     frame_jacobian,
     frame_pose,
 )
-from softimpact.symbolic.dynamics.kinematics import motions, placed_point_jacobian, poses
+from softimpact.symbolic.dynamics.kinematics import placed_point_jacobian
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.robot import BASE
@@ -86,7 +87,7 @@ def page_package(robot: Robot, drives: Drives) -> Package:
     directions = directions_of_motion(replace(at_tip, robot=robot))
     if directions is None:
         raise InvalidValue("model", f"'{robot.name}' moves its tip in no direction of its own")
-    functions = [reflected_mass(symbols), _frames(symbols), _end(symbols, tip)]
+    functions = [reflected_mass(symbols), _end(symbols, tip)]
     if coordinates_of(robot) > 1:
         functions.append(reduced_model(symbols))
     if moves_in_space(replace(at_tip, robot=robot)):
@@ -114,6 +115,7 @@ def page_package(robot: Robot, drives: Drives) -> Package:
             fastest=fastest_arrival(replace(at_tip, robot=robot)),
             heaviest=heaviest(robot),
             record=ImpactRecord((TIP,), 0, PEAK_ERROR, HORIZON, REACTION_TIME, DEFAULT_BUDGET),
+            joint_frames=_source(robot, parameters, frames_of(symbols)),
             golden=(),
         ),
     )
@@ -144,18 +146,6 @@ def _links(symbols: Symbols, tip: str) -> CFunction:
     )
     built = function_over(symbols, plain.name, plain.summary, outputs)
     return replace(built, open_ended=True)
-
-
-def _frames(symbols: Symbols) -> CFunction:
-    robot = symbols.robot
-    known = poses(robot, motions(robot, symbols.q))
-    rows = [
-        ca.horzcat(*[known[i].rotation[k, :] for k in range(3)], known[i].position.T)
-        for i in range(robot.n)
-    ]
-    value = ca.densify(ca.vertcat(*rows))
-    output = Output("poses", value, "1, m", "of each joint: rotation row by row, then origin")
-    return function_over(symbols, "frames", "Where the joints' frames are.", (output,))
 
 
 def _end(symbols: Symbols, tip: str) -> CFunction:

@@ -31,7 +31,6 @@ SCRIPTS = [
     "plot",
     "state",
     "solver",
-    "worst",
     "motion",
     "controls",
     "strip",

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TypeVar
 
 import casadi as ca
 import numpy as np
@@ -34,6 +34,8 @@ from .extreme_directions import Extremes, extreme_directional_giaf, extreme_mass
 from .impact_mitigation import impact_mitigation
 from .joint_impulse import JointImpulse, impulse_along
 from .rotor_influence import giaf_by_gear, giaf_by_rotor, rotor_mass, single_joint_giaf
+
+Figures = TypeVar("Figures", Ellipsoid, Extremes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,7 +253,7 @@ def _array(matrix: ArrayLike) -> Array:
     return values.ravel() if values.shape[1] == 1 else values
 
 
-def _numbers(figures: Any) -> Any:
+def _numbers(figures: Figures) -> Figures:
     """Return an ellipsoid or extremes of CasADi numbers with floats and arrays."""
     arrays = {name: _array(value) for name, value in vars(figures).items()}
     plain = {name: float(x[0]) if x.size == 1 else x for name, x in arrays.items()}

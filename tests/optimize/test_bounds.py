@@ -12,7 +12,7 @@ from scipy.linalg import eigh
 from small_arm import small_study
 from studies import InProcess
 
-from softimpact.optimize import Infeasible, Study
+from softimpact.optimize import Infeasible, Outcome, SolverFailure, Study
 from softimpact.optimize import bounds as package
 from softimpact.optimize.bounds import Bound, Deflection
 from softimpact.optimize.bounds.cartesian_stiffness import CartesianStiffness
@@ -21,6 +21,7 @@ from softimpact.optimize.bounds.giaf import Giaf
 from softimpact.optimize.bounds.joint_range import JointRange
 from softimpact.optimize.bounds.joint_speed import JointSpeed
 from softimpact.optimize.bounds.manipulability import Manipulability
+from softimpact.optimize.bounds.mass import Mass
 from softimpact.optimize.bounds.natural_frequency import NaturalFrequency
 from softimpact.optimize.bounds.torque import Torque
 from softimpact.optimize.evaluation import figures, kept
@@ -231,3 +232,51 @@ def test_rigid_drives_have_no_say(study: Study) -> None:
     np.testing.assert_array_equal(
         figures(bound, other, Q, SPRINGS), figures(bound, study, Q, SPRINGS)
     )
+
+
+@pytest.mark.parametrize(
+    ("tables", "told"),
+    [
+        (
+            "[bounds.natural_frequency]\nleast = 80",
+            r"above 80 Hz .*is 33\.\d+ Hz, with k_s = .*stiffness\.upper of turn, lift, bend$",
+        ),
+        ("[bounds.energy]\nmost = 1e-3", r"0\.3457 J; change bounds\.energy\.most or the pose"),
+        (
+            "[hardware.link_mass]\nlower = 0.8\nupper = 1.2\n[bounds.mass]\nmost = 5.0",
+            r"is 7\.2 kg; change bounds\.mass\.most or hardware\.link_mass\.lower of turn, lift",
+        ),
+    ],
+)
+def test_what_holds_a_design_back_is_named(tmp_path: Path, tables: str, told: str) -> None:
+    """Springs where springs would help, other hardware where that would, and else neither."""
+    study = small_study(tmp_path, tables)
+    with pytest.raises(Infeasible, match=told):
+        robust_design(study, scenarios_of(study), InProcess())
+
+
+def test_a_margin_is_told_where_it_is_in_the_way(tmp_path: Path) -> None:
+    study = small_study(tmp_path, deflection=5e-4, accuracy="margin = 0.3")
+    with pytest.raises(Infeasible, match=r"off by up to 30 %; .* or accuracy\.margin$"):
+        robust_design(study, scenarios_of(study), InProcess())
+
+
+def test_mass(tmp_path: Path) -> None:
+    study = small_study(tmp_path, "[hardware.link_mass]\nlower = 0.8\nupper = 1.2")
+    factors = np.array([0.9, 1.1, 1.0])
+    expected = 4 * 0.9 + 3 * 1.1 + 2 * 1.0
+    assert figures(Mass(1.0), study, Q, SPRINGS, factors)[0] == pytest.approx(expected)
+
+
+def test_a_failure_tells_each_bound_in_its_own_unit(study: Study) -> None:
+    """Not one number for metres, radians and shares of bounds."""
+    bounded = replace(study, max_deflection=1e-3, other_bounds=(NaturalFrequency(50.0),))
+    q = study.task_pose.q
+    best = Outcome("bent", "free", "Stopped", False, 1, 1, 0.0, q + 0.01, SPRINGS, 90.0, 0.4)
+    said = str(SolverFailure([best], bounded))
+    assert "mm of accuracy.max_deflection, at most 1 mm," in said
+    assert "Hz of bounds.natural_frequency.least, at least 50 Hz," in said
+    assert "mm and 0.0" in said
+    assert "rad off the task, and has 90.0 N" in said
+    held = replace(best, mode="table", springs=np.full(3, 1e9))
+    assert "misses by a share of 0.4" in str(SolverFailure([held], study))

@@ -5,25 +5,27 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
 import pytest
 from mechanisms import FOUR_BAR
+from robot_files import many_joints
 from studies import InProcess, written
 
 from softimpact.optimize import Study, design, load_study
 from softimpact.optimize.bounds.natural_frequency import NaturalFrequency
-from softimpact.optimize.coordinates import closure
+from softimpact.optimize.coordinates import closure, side_function
 from softimpact.optimize.evaluation import figures, largest_share
-from softimpact.optimize.impact_program import impact_program
+from softimpact.optimize.impact_program import _posture, _pulled_back, impact_program
 from softimpact.optimize.poses import leaves_a_choice
 from softimpact.optimize.problem import peak_force, prepare
 from softimpact.optimize.timing import Timing
 from softimpact.simulate import Approach, many_peaks
 from softimpact.symbolic import InvalidValue, Motors
 from softimpact.symbolic.impact.floating import base_held
+from softimpact.symbolic.loops.loops import closed_chain, nearest_to_closed
 
 RMIN: dict[str, Any] = {
     "robot": {"model": "rmin", "tip": "O13"},
@@ -174,7 +176,7 @@ def test_what_a_floating_robot_cannot_have(
     ("q", "reason"),
     [
         ([0.0] * 6, "loop 'end_point' does not close"),
-        ([0.1, 0.2, 0.3], "has 3 values, but 6 are needed"),
+        ([0.1, 0.2, 0.3], "has 3 values, but 6 are needed, or 2 of the motors alone (q11, q21)"),
         ([3.1416, 0.0], "loop 'end_point' does not close"),
     ],
 )
@@ -182,6 +184,21 @@ def test_poses_close_their_loops(tmp_path: Path, q: list[float], reason: str) ->
     with pytest.raises(InvalidValue) as caught:
         study_of(tmp_path, {**RMIN, "poses": [{"name": "impact", "q": q}]})
     assert reason in str(caught.value)
+
+
+def test_two_ways_to_assemble_a_chain_differ(tmp_path: Path) -> None:
+    """A free search may not end in another one than it began with."""
+    study = study_of(tmp_path, RMIN)
+    side, q = side_function(study.model), study.poses[0].q
+    assert side is not None
+    chain, flipped = closed_chain(study.robot), q.copy()
+    flipped[list(chain.dependent)] *= -0.3
+    flipped = nearest_to_closed(chain, flipped, chain.dependent)
+    assert abs(np.array(closure(study.model, ca.DM(flipped)))).max() < 1e-9
+    assert abs(flipped - q).max() > 0.5
+    assert float(side(q)) * float(side(flipped)) < 0
+    (tmp_path / "open").mkdir()
+    assert side_function(study_of(tmp_path / "open", LEG).model) is None
 
 
 def test_springs_of_joints_that_follow_are_refused(tmp_path: Path) -> None:
@@ -192,28 +209,43 @@ def test_springs_of_joints_that_follow_are_refused(tmp_path: Path) -> None:
     assert "joint 'rocker' has a spring of its own, but follows from others" in str(caught.value)
 
 
-def planar(*, coupled: bool) -> str:
-    """Four links in a plane; coupled, the second joint is two of half its angle each."""
-    links, ends = "", 0
+RODS = (
+    "<body pos='0.1 0 0'><joint name='j1' axis='0 0 1' armature='0.3'/>{light}"
+    "<body pos='0 0.1 0'><joint name='rod' axis='0 0 1'/>{light}<site name='eye' pos='0.2 0 0'/>"
+    "</body></body>"
+)
+"""A crank and a rod that move the second link as a parallelogram."""
+
+Kind = Literal["plain", "coupled", "looped"]
+
+
+def planar(kind: Kind) -> str:
+    """Four links in a plane, the second moved by its motor, by half its angle, or through rods."""
+    light = "<inertial mass='1e-9' pos='0 0 0' diaginertia='1e-12 1e-12 1e-12'/>"
+    links, ends, more = "", 4, ""
     for i in range(4):
         usual = {"at": 0.3 if i else 0.0, "mass": 2, "about": 0.02}
-        if coupled and i == 1:
+        if kind == "coupled" and i == 1:
             half = {"at": 0.3, "mass": 1e-9, "about": 1e-12, "rotor": 0.0}
             links += LINK.format(name="half", **half)
             links += LINK.format(name="j1", **(usual | {"at": 0.0, "rotor": 4 * 0.3}))
-            ends += 1
+            ends, more = 5, "<joint joint1='half' joint2='j1'/>"
+        elif kind == "looped" and i == 1:
+            links += RODS.format(light=light) + LINK.format(name="follows", rotor=0.0, **usual)
+            links += "<site name='knuckle' pos='0 0.1 0'/>"
+            more = "<connect name='rods' site1='knuckle' site2='eye'/>"
         else:
             links += LINK.format(name=f"j{i}", rotor=0.3, **usual)
-    links += "<site name='tool' pos='0.3 0 0'/>" + "</body>" * (4 + ends)
-    more = "<equality><joint joint1='half' joint2='j1'/></equality>" if coupled else ""
+    links += "<site name='tool' pos='0.3 0 0'/>" + "</body>" * ends
     motors = "".join(f"<motor joint='j{i}'/>" for i in range(4))
-    return PLANAR.format(links=links, more=f"{more}<actuator>{motors}</actuator>")
+    tied = f"<equality>{more}</equality><actuator>{motors}</actuator>"
+    return PLANAR.format(links=links, more=tied)
 
 
-def planar_study(folder: Path, *, coupled: bool) -> Study:
-    (folder / "arm.xml").write_text(planar(coupled=coupled))
+def planar_study(folder: Path, kind: Kind) -> Study:
+    (folder / "arm.xml").write_text(planar(kind))
     ends = np.array([[300.0] * 4, [1e4] * 4, [3e3] * 4])
-    if coupled:
+    if kind == "coupled":
         ends[:, 1] *= 4  # half the angle
     lower, upper, nominal = ends.tolist()
     content = {
@@ -223,29 +255,51 @@ def planar_study(folder: Path, *, coupled: bool) -> Study:
         "stiffness": {"lower": lower, "upper": upper, "nominal": nominal},
         "accuracy": {"forces": [[30.0, 0.0, 0.0], [0.0, 30.0, 0.0]], "max_deflection": 5e-3},
         "task": {"pose_of": "impact", "exact": True},
-        "poses": [{"name": "impact", "q": [0.3, 0.35 if coupled else 0.7, 0.7, 0.7]}],
+        "poses": [{"name": "impact", "q": [0.3, 0.35 if kind == "coupled" else 0.7, 0.7, 0.7]}],
         "bounds.natural_frequency": {"least": 3.0},
     }
     return study_of(folder, content)
 
 
 @pytest.mark.slow
-def test_a_coupled_arm_is_designed_as_the_arm_that_it_is(tmp_path: Path) -> None:
-    """Springs and posture sought, the coupling kept: the same as if one joint turned twice."""
-    found = []
-    for coupled in (False, True):
-        folder = tmp_path / str(coupled)
+def test_tied_arms_are_designed_as_the_arm_that_they_are(tmp_path: Path) -> None:
+    """Springs and posture sought, couplings and loops kept: as with a motor at the joint."""
+    kinds: tuple[Kind, ...] = ("plain", "coupled", "looped")
+    forces = []
+    for kind in kinds:
+        folder = tmp_path / kind
         folder.mkdir()
-        study = planar_study(folder, coupled=coupled)
+        study = planar_study(folder, kind)
         assert leaves_a_choice(study)
-        found.append((study, design(study, executor=InProcess()).winner))
-    (_, plain), (study, tied) = found
-    assert tied.mode == plain.mode == "free"
-    assert tied.force == pytest.approx(plain.force, rel=2e-3)
-    assert abs(np.array(closure(study.model, ca.DM(tied.q)))).max() < 1e-6
-    assert simulated(replace(study, poses=(replace(study.poses[0], q=tied.q),)), tied.springs) == (
-        pytest.approx(tied.force, rel=3e-3)
-    )
+        found = design(study, executor=InProcess()).winner
+        assert found.mode == "free"
+        assert abs(np.array(closure(study.model, ca.DM(found.q)))).max(initial=0.0) < 1e-6
+        at = replace(study, poses=(replace(study.poses[0], q=found.q),))
+        assert simulated(at, found.springs) == pytest.approx(found.force, rel=3e-3)
+        forces.append(found.force)
+    assert forces == pytest.approx([forces[0]] * 3, rel=2e-3)
+
+
+@pytest.mark.slow
+def test_fourteen_joints_have_derivatives_that_compile(tmp_path: Path) -> None:
+    """A row of derivatives takes few operations; all rows at once took 208,000, and minutes."""
+    (tmp_path / "arm.urdf").write_text(many_joints(14))
+    content = {
+        **LEG,
+        "robot": {"model": "arm.urdf", "tip": "tool", "rotor_inertia": 0.3},
+        "poses": [{"name": "impact", "q": [0.3] * 14}],
+    }
+    study = study_of(tmp_path, content)
+    posture = _posture(study.model, study.model.tip, ("springs",))
+    back = _pulled_back(posture)
+    assert posture.n_instructions() < 12_000
+    assert back.n_instructions() < 4 * posture.n_instructions()
+    x, p, rows = np.random.default_rng(0).uniform(0.3, 0.6, (3, 1000))
+    x, p, row = x[: back.numel_in(0)], p[: back.numel_in(1)], rows[: back.numel_in(2)]
+    step = 1e-6 * np.cos(np.arange(x.size))
+    ahead, behind = (np.array(posture(x + s * step, p)).ravel() for s in (1, -1))
+    slope = float(np.array(back(x, p, row)).ravel() @ step)
+    assert slope == pytest.approx(float(row @ (ahead - behind)) / 2, rel=1e-6)
 
 
 def test_motors_are_known_by_the_joints_they_drive(tmp_path: Path) -> None:

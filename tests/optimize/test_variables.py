@@ -11,7 +11,7 @@ import pytest
 from small_arm import small_study
 from studies import InProcess
 
-from softimpact.optimize import Study
+from softimpact.optimize import Study, load_study
 from softimpact.optimize import variables as package
 from softimpact.optimize.evaluation import largest_share
 from softimpact.optimize.impact_program import impact_program
@@ -180,3 +180,18 @@ def test_a_cover_that_is_pressed_through_is_refused_with_what_would_do(tmp_path:
     study = small_study(tmp_path, text)
     with pytest.raises(InvalidValue, match=r"press the cover by .* raise it to .* N/m\^1.5"):
         robust_design(study, scenarios_of(study), InProcess())
+
+
+def test_joints_that_share_a_spring_need_a_common_stiffness(tmp_path: Path) -> None:
+    text = (small_study(tmp_path).source).read_text(encoding="utf-8")
+    apart = text.replace("lower = 500.0", "lower = [500.0, 2e4, 500.0]")
+    apart = apart.replace("upper = 3e4", "upper = [1e4, 3e4, 3e4]")
+    apart = apart.replace("nominal = 8000.0", "nominal = [8000.0, 2e4, 8000.0]")
+    for grouping, reason in (
+        ('"equal"', "'lift' and 'turn' share a spring, but 'lift' needs 20000 at least"),
+        ('[["turn"], ["lift", "bend"], []]', "group 3 names no joint"),
+    ):
+        path = tmp_path / "apart.toml"
+        path.write_text(f"{apart}\n[hardware]\njoint_stiffness = {grouping}\n", encoding="utf-8")
+        with pytest.raises(InvalidValue, match=rf"hardware\.joint_stiffness: .*{reason}"):
+            load_study(path)

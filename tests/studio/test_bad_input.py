@@ -14,6 +14,8 @@ from command_line import refusal, run
 from oracles import example_urdf
 
 from softimpact import cli
+from softimpact.studio.generate_command import RealOption
+from softimpact.studio.values import one_of
 from softimpact.symbolic import load_robot
 
 Q = "[0, 0.3, 0, -1.8, 0.1, 2, 0.5]"
@@ -334,3 +336,9 @@ def test_folder_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_main_reads_the_process_arguments(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["softimpact", "analyze", "pandora"])
     assert cli.main() == 2
+
+
+def test_names_are_asked_of_a_literal() -> None:
+    """A checker does not see it: an option's type taken for the names would refuse all of them."""
+    with pytest.raises(TypeError, match="no Literal"):
+        one_of("number type", "double", RealOption)

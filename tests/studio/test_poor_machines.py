@@ -4,6 +4,9 @@
 from __future__ import annotations
 
 import os
+import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +15,7 @@ from command_line import Outcome, refusal, run
 from small_arm import small_study
 
 from softimpact import toolchain
+from softimpact.batch import build
 from softimpact.optimize import impact_program
 from softimpact.optimize.impact_program import impact_program as program_of
 
@@ -30,7 +34,21 @@ COMMANDS: dict[str, tuple[object, ...]] = {
     "generate": (*MODEL, "--out", "out"),
     **{name: ("study.toml", *options) for name, options in STUDY.items()},
 }
-WRITING = [name for name, words in COMMANDS.items() if "--out" in words]
+LONGER: dict[str, tuple[object, ...]] = {
+    "pareto": ("study.toml", "--points", 2, "--out", "out"),
+    "map": (*MODEL, "--step", 0.8, "--out", "out"),
+}
+"""These are tried on the poorest machine alone."""
+
+ENDLESS: dict[str, tuple[object, ...]] = {
+    "studio": (*MODEL, "--out", "out"),
+    "factors-study": ("study.toml", "--out", "out"),
+    "reproduce": ("--out", "out"),
+}
+"""They are as the others, but take minutes: that they refuse at once is tested."""
+
+EVERY = COMMANDS | LONGER | ENDLESS
+WRITING = [name for name, words in EVERY.items() if "--out" in words]
 
 
 @pytest.fixture
@@ -44,7 +62,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def works(name: str) -> Outcome:
     impact_program._loaded.cache_clear()
-    outcome = run(name, *COMMANDS[name])
+    outcome = run(name, *EVERY[name])
     assert outcome.code == 0, outcome.err
     assert outcome.out
     return outcome
@@ -77,9 +95,41 @@ def test_every_command_works(
     works(name)
 
 
+@pytest.mark.slow
+def test_fronts_are_found_on_the_poorest_machine(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    no_compiler(folder, monkeypatch)
+    no_home(folder, monkeypatch)
+    works("pareto")
+
+
+def test_a_map_without_any_compiler_says_which_package_brings_one(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(build, "_compiler", lambda: None)
+    assert "pip install ziglang" in refusal("map", *EVERY["map"])
+
+
+@pytest.mark.slow
+def test_zig_needs_neither_home_nor_cache(folder: Path) -> None:
+    """A process of its own: Zig is one, too, and looks for its cache itself."""
+    words = ["map", *map(str, EVERY["map"])]
+    environment = {"PATH": os.defpath, "CC": "/none/cc", "PYTHONIOENCODING": "ascii:strict"}
+    environment |= {name: os.environ[name] for name in ("PYTHONPATH",) if name in os.environ}
+    environment["XDG_CACHE_HOME"] = f"{os.devnull}/cache"
+    script = "import sys; from softimpact.cli import main; sys.exit(main(sys.argv[1:]))"
+    command = [sys.executable, "-c", script, *words]
+    done = subprocess.run(
+        command, env=environment, cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert not {"error", "Warning", "Traceback"} & set(re.findall(r"\w+", done.stderr))
+
+
 @pytest.mark.parametrize("name", WRITING)
 def test_where_nothing_can_be_written_one_line_says_so(name: str, folder: Path) -> None:
-    words = [f"{os.devnull}/out" if word == "out" else word for word in COMMANDS[name]]
+    words = [f"{os.devnull}/out" if word == "out" else word for word in EVERY[name]]
     assert os.devnull in refusal(name, *words)
 
 

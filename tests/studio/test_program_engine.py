@@ -19,7 +19,15 @@ from softimpact.simulate.sampled import SampledImpacts, Samples
 from softimpact.simulate.zones import Somebody
 from softimpact.studio import program_engine
 from softimpact.studio.program_engine import why_not_in_c
-from softimpact.symbolic import Contact, Motors, body_region, drives, impact_model, load_robot
+from softimpact.symbolic import (
+    Contact,
+    Motors,
+    body_region,
+    close_loops,
+    drives,
+    impact_model,
+    load_robot,
+)
 from softimpact.symbolic.body.laws import PowerLaw
 
 PANDA = load_robot("panda")
@@ -94,6 +102,30 @@ def test_both_engines_agree_from_the_safe_side(files: tuple[Path, Path], elastic
     ]
     assert np.mean(same) > 0.9
     assert {row["region"] for row in right["binding"] if row} == {"chest", "hand"}
+
+
+@pytest.mark.slow
+def test_closed_chains_are_slowed_down_by_c(tmp_path: Path) -> None:
+    tool("gcc")
+    robot, t = load_robot("rmin"), np.linspace(0, 0.7, 9)
+    way = np.sin(np.pi * t / 0.7)
+    angles = np.array([-2.2794, -0.872665]) + np.outer(way, [-0.5, -0.4])
+    q = [close_loops(robot, [*motors, 0.0, 0.0]) for motors in angles]
+    header = ",".join(("t", *robot.joint_names))
+    path, table = tmp_path / "motion.csv", np.column_stack([t, q])
+    np.savetxt(path, table, delimiter=",", header=header, comments="")
+    factors = []
+    for engine in ("c", "python"):
+        outcome = run(
+            *("program", path, "--model", "rmin", "--points", "P", "O13", "--regions", "chest"),
+            *("--motors", "driven", "--free", "--horizon", 0.03, "--engine", engine, "--json"),
+        )
+        assert outcome.code == 0, outcome.err
+        factors.append(np.array(json.loads(outcome.out)["factor"]))
+    by_c, right = factors
+    assert (right < 0.9).any()
+    assert (by_c <= 1.001 * right).all()
+    assert (by_c >= 0.97 * right).all()
 
 
 @pytest.mark.slow
@@ -188,8 +220,11 @@ def test_what_c_does_not_know_is_named() -> None:
     assert why_not_in_c(elastic, skin, kinds) is None
     plate = replace(body_region("chest"), plate_mass=0.5)
     assert why_not_in_c(elastic, [Somebody(Contact(plate))], kinds) == "a device's plate"
-    closed = impact_model(load_robot("rmin"))
-    assert "closed chains" in (why_not_in_c(closed, chest, kinds) or "")
+    closed = load_robot("rmin")
+    assert why_not_in_c(impact_model(closed), chest, kinds) is None
+    springs = [1e4, np.inf, np.inf, 1e4, np.inf, np.inf]
+    sprung = impact_model(closed, drives=drives(closed, springs, 0.1))
+    assert "springs behind motors" in (why_not_in_c(sprung, chest, kinds) or "")
 
 
 def test_without_a_compiler_python_does_it_and_says_so(

@@ -78,7 +78,7 @@ typedef enum {
 } panda_motors;
 
 /* What structs and functions look like, in this number type. */
-#define PANDA_LAYOUT (0x9a696a0u + (unsigned int)sizeof(panda_real))
+#define PANDA_LAYOUT (0xe68a4b30u + (unsigned int)sizeof(panda_real))
 
 typedef struct {
     unsigned int layout; /* PANDA_LAYOUT; panda_default_params sets it */
@@ -315,14 +315,32 @@ int panda_joint_impulse(
     const panda_params *p,
     panda_joint_impulse_t *out);
 
-/* What an impact hits: the skin's Hertz contact in series with a spring and damper (MSM 3.1). */
+/*
+ * A point of a law of contact. From it to the next the force follows the parabola whose tangents at both
+ * meet at the knee; the law goes on straight from the last point through its knee. The first point is at 0.
+ */
+typedef struct {
+    panda_real depth; /* m */
+    panda_real force; /* N */
+    panda_real knee_depth; /* m */
+    panda_real knee_force; /* N */
+} panda_law_point;
+
+#define PANDA_MOST_LAW_POINTS 128
+
+/*
+ * What an impact hits: a law of contact in series with a spring and damper (MSM 3.1). The law is Hertz's,
+ * or what softimpact.codegen.region_parameters makes of skin, pad and cover.
+ */
 typedef struct {
     panda_real stiffness; /* k_h of the body, N/m, > 0 */
     panda_real damping; /* c_h of the body, N s/m, >= 0 */
     panda_real effective_mass; /* that gives way with it, kg, > 0; not read if clamped */
-    panda_real hertz_stiffness; /* k_f of the skin, N/m^1.5, > 0 */
+    panda_real hertz_stiffness; /* k_f of the skin, N/m^1.5, > 0; not read if there is another law */
     panda_real quasi_static_limit; /* of the force while clamped, N; for the caller */
     panda_real force_limit; /* of the first milliseconds, N; for the caller */
+    const panda_law_point *law; /* NULL for Hertz's; else its points, which rise */
+    int law_points; /* how many there are, 1 to 128; not read without a law */
     int clamped; /* 0 if the body can give way */
 } panda_region;
 
@@ -417,6 +435,88 @@ typedef struct {
 int panda_speed_factor_over(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
     const int points[], const panda_region regions[], const panda_real limits[], int count,
     const panda_params *p, panda_speed_factor_over_t *out);
+
+/*
+ * Largest force with which a point presses on a clamped body from 0.5 to 0.6 s after first touch, when the
+ * quasi-static limit counts; 0 on one that gives way. p->horizon does not matter.
+ * PANDA_BOUNDED: the force is a bound that none exceeds.
+ */
+int panda_pressing_force_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
+    panda_real speed, const panda_region *region, const panda_params *p, panda_real *force);
+
+/* Frames that move: a contact point can be given in any of them. */
+typedef enum {
+    PANDA_FRAME_LINK1 = 0, /* link1 */
+    PANDA_FRAME_LINK2 = 1, /* link2 */
+    PANDA_FRAME_LINK3 = 2, /* link3 */
+    PANDA_FRAME_LINK4 = 3, /* link4 */
+    PANDA_FRAME_LINK5 = 4, /* link5 */
+    PANDA_FRAME_LINK6 = 5, /* link6 */
+    PANDA_FRAME_LINK7 = 6, /* link7 */
+    PANDA_FRAME_HAND = 7, /* hand */
+    PANDA_FRAME_LEFT_FINGER = 8, /* left_finger */
+    PANDA_FRAME_RIGHT_FINGER = 9, /* right_finger */
+    PANDA_FRAME_FLANGE = 10, /* flange */
+    PANDA_FRAME_HAND_TCP = 11 /* hand_tcp */
+} panda_frame;
+
+/* As panda_peak_force and panda_safe_speed, of a place (m) in a frame, a panda_frame. */
+int panda_peak_force_on(const panda_real q[PANDA_JOINTS], int frame, const panda_real place[3],
+    const panda_real n[3], panda_real speed, const panda_region *region, const panda_params *p,
+    panda_peak_force_t *out);
+int panda_safe_speed_on(const panda_real q[PANDA_JOINTS], int frame, const panda_real place[3],
+    const panda_real n[3], panda_real limit, const panda_region *region, const panda_params *p,
+    panda_safe_speed_t *out);
+
+typedef struct {
+    panda_real n[3]; /* of the impact, a unit vector */
+    panda_real force; /* N; along it */
+    panda_real error; /* share of the force by which another direction may be harder */
+} panda_worst_direction_t;
+
+/*
+ * The direction in which a contact point (panda_point) hits hardest at a speed, among those in which the
+ * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of directions.
+ */
+int panda_worst_direction_at(const panda_real q[PANDA_JOINTS], int point, panda_real speed,
+    const panda_region *region, const panda_params *p, panda_worst_direction_t *out);
+
+/* The same of a place (m) in a frame, a panda_frame. */
+int panda_worst_direction_on(const panda_real q[PANDA_JOINTS], int frame, const panda_real place[3],
+    panda_real speed, const panda_region *region, const panda_params *p, panda_worst_direction_t *out);
+
+typedef struct {
+    panda_real speed; /* m/s */
+    panda_real force; /* N; largest at this speed up to the horizon, or at a greater one */
+    int pressed; /* 1 if what presses later needs this speed, 0 if the force */
+} panda_allowed_speed_t;
+
+/*
+ * As panda_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
+ * region->quasi_static_limit from 0.5 to 0.6 s. PANDA_UNRESOLVED if no speed is known to keep both.
+ */
+int panda_allowed_speed_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
+    const panda_region *region, const panda_params *p, panda_allowed_speed_t *out);
+
+typedef struct {
+    panda_real factor; /* of all joint velocities, 0 to 1 */
+    int point; /* panda_point that needs it, -1 if none moves */
+    panda_real speed; /* m/s; that this point may have */
+    panda_real force; /* N; largest at that speed up to the horizon, or at a greater one */
+    int pressed; /* 1 if what presses later needs it */
+} panda_allowed_factor_t;
+
+/* As panda_speed_factor, for all limits of a region. */
+int panda_allowed_factor(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    const panda_region *region, const panda_params *p, panda_allowed_factor_t *out);
+
+/*
+ * Whether a contact point that moves as joints do might press on a clamped body harder than a limit from
+ * 0.5 to 0.6 s: 0 where it is proven or integrated that none does.
+ */
+int panda_may_press(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    panda_real limit, const panda_region *region, const panda_params *p, int *may);
 
 /*
  * Built-in candidates for panda_select_configuration:

@@ -391,6 +391,127 @@ inline result<panda_speed_factor_t> speed_factor(
     return found;
 }
 
+/* Largest force with which a point presses on a clamped body from 0.5 to 0.6 s after first touch,
+ * when the
+ * quasi-static limit counts; 0 on one that gives way. p->horizon does not matter.
+ * PANDA_BOUNDED: the force is a bound that none exceeds. */
+inline result<real> pressing_force_at(
+    const vector<7> &q,
+    int point,
+    const vector<3> &n,
+    real speed,
+    const panda_region &region,
+    const panda_params &p) noexcept
+{
+    result<real> found;
+    found.status = panda_pressing_force_at(q.data(), point, n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+/* As panda_peak_force and panda_safe_speed, of a place (m) in a frame, a panda_frame. */
+inline result<panda_peak_force_t> peak_force_on(
+    const vector<7> &q,
+    int frame,
+    const vector<3> &place,
+    const vector<3> &n,
+    real speed,
+    const panda_region &region,
+    const panda_params &p) noexcept
+{
+    result<panda_peak_force_t> found;
+    found.status = panda_peak_force_on(q.data(), frame, place.data(), n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+inline result<panda_safe_speed_t> safe_speed_on(
+    const vector<7> &q,
+    int frame,
+    const vector<3> &place,
+    const vector<3> &n,
+    real limit,
+    const panda_region &region,
+    const panda_params &p) noexcept
+{
+    result<panda_safe_speed_t> found;
+    found.status = panda_safe_speed_on(q.data(), frame, place.data(), n.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
+/* The direction in which a contact point (panda_point) hits hardest at a speed, among those in
+ * which the
+ * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control
+ * loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of
+ * directions. */
+inline result<panda_worst_direction_t> worst_direction_at(
+    const vector<7> &q,
+    int point,
+    real speed,
+    const panda_region &region,
+    const panda_params &p) noexcept
+{
+    result<panda_worst_direction_t> found;
+    found.status = panda_worst_direction_at(q.data(), point, speed, &region, &p, &found.value);
+    return found;
+}
+
+/* The same of a place (m) in a frame, a panda_frame. */
+inline result<panda_worst_direction_t> worst_direction_on(
+    const vector<7> &q,
+    int frame,
+    const vector<3> &place,
+    real speed,
+    const panda_region &region,
+    const panda_params &p) noexcept
+{
+    result<panda_worst_direction_t> found;
+    found.status = panda_worst_direction_on(q.data(), frame, place.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+/* As panda_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and,
+ * clamped,
+ * region->quasi_static_limit from 0.5 to 0.6 s. PANDA_UNRESOLVED if no speed is known to keep
+ * both. */
+inline result<panda_allowed_speed_t> allowed_speed_at(
+    const vector<7> &q,
+    int point,
+    const vector<3> &n,
+    const panda_region &region,
+    const panda_params &p) noexcept
+{
+    result<panda_allowed_speed_t> found;
+    found.status = panda_allowed_speed_at(q.data(), point, n.data(), &region, &p, &found.value);
+    return found;
+}
+
+/* As panda_speed_factor, for all limits of a region. */
+inline result<panda_allowed_factor_t> allowed_factor(
+    const vector<7> &q,
+    const vector<7> &dq,
+    const panda_region &region,
+    const panda_params &p) noexcept
+{
+    result<panda_allowed_factor_t> found;
+    found.status = panda_allowed_factor(q.data(), dq.data(), &region, &p, &found.value);
+    return found;
+}
+
+/* Whether a contact point that moves as joints do might press on a clamped body harder than a
+ * limit from
+ * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
+inline result<panda_int> may_press(
+    const vector<7> &q,
+    const vector<7> &dq,
+    real limit,
+    const panda_region &region,
+    const panda_params &p) noexcept
+{
+    result<panda_int> found;
+    found.status = panda_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
 } // namespace panda
 
 #endif

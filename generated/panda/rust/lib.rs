@@ -18,12 +18,13 @@ pub type panda_real = f32;
 pub const PANDA_JOINTS: usize = 7;
 pub const PANDA_COORDINATES: usize = 14;
 pub const PANDA_CHAIN_ORDER: usize = 3;
+pub const PANDA_MOST_LAW_POINTS: usize = 128;
 pub const PANDA_POINTS: usize = 1;
 pub const PANDA_CANDIDATES: usize = 24;
 pub const PANDA_VERSION: &str = "0.2.0";
 pub const PANDA_MODEL_DIGEST: &str = "4d55b88b1dbb963dbf3ba6052077da0bf8d34700e10b93eac36c486e0b89b1d5";
 /// What structs and functions look like, in this number type.
-pub const PANDA_LAYOUT: c_uint = 0x9a696a0 + core::mem::size_of::<panda_real>() as c_uint;
+pub const PANDA_LAYOUT: c_uint = 0xe68a4b30 + core::mem::size_of::<panda_real>() as c_uint;
 
 pub const PANDA_OK: c_int = 0;
 pub const PANDA_NULL_POINTER: c_int = 1;
@@ -56,6 +57,19 @@ pub const PANDA_THIGH: c_int = 10;
 pub const PANDA_LOWER_LEG: c_int = 11;
 
 pub const PANDA_POINT_TIP: c_int = 0;
+
+pub const PANDA_FRAME_LINK1: c_int = 0;
+pub const PANDA_FRAME_LINK2: c_int = 1;
+pub const PANDA_FRAME_LINK3: c_int = 2;
+pub const PANDA_FRAME_LINK4: c_int = 3;
+pub const PANDA_FRAME_LINK5: c_int = 4;
+pub const PANDA_FRAME_LINK6: c_int = 5;
+pub const PANDA_FRAME_LINK7: c_int = 6;
+pub const PANDA_FRAME_HAND: c_int = 7;
+pub const PANDA_FRAME_LEFT_FINGER: c_int = 8;
+pub const PANDA_FRAME_RIGHT_FINGER: c_int = 9;
+pub const PANDA_FRAME_FLANGE: c_int = 10;
+pub const PANDA_FRAME_HAND_TCP: c_int = 11;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,6 +187,19 @@ pub struct panda_joint_impulse_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct panda_law_point {
+    /// m
+    pub depth: panda_real,
+    /// N
+    pub force: panda_real,
+    /// m
+    pub knee_depth: panda_real,
+    /// N
+    pub knee_force: panda_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct panda_region {
     /// k_h of the body, N/m, > 0
     pub stiffness: panda_real,
@@ -180,12 +207,16 @@ pub struct panda_region {
     pub damping: panda_real,
     /// that gives way with it, kg, > 0; not read if clamped
     pub effective_mass: panda_real,
-    /// k_f of the skin, N/m^1.5, > 0
+    /// k_f of the skin, N/m^1.5, > 0; not read if there is another law
     pub hertz_stiffness: panda_real,
     /// of the force while clamped, N; for the caller
     pub quasi_static_limit: panda_real,
     /// of the first milliseconds, N; for the caller
     pub force_limit: panda_real,
+    /// NULL for Hertz's; else its points, which rise
+    pub law: *const panda_law_point,
+    /// how many there are, 1 to 128; not read without a law
+    pub law_points: c_int,
     /// 0 if the body can give way
     pub clamped: c_int,
 }
@@ -236,6 +267,43 @@ pub struct panda_speed_factor_over_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct panda_worst_direction_t {
+    /// of the impact, a unit vector
+    pub n: [panda_real; 3],
+    /// N; along it
+    pub force: panda_real,
+    /// share of the force by which another direction may be harder
+    pub error: panda_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct panda_allowed_speed_t {
+    /// m/s
+    pub speed: panda_real,
+    /// N; largest at this speed up to the horizon, or at a greater one
+    pub force: panda_real,
+    /// 1 if what presses later needs this speed, 0 if the force
+    pub pressed: c_int,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct panda_allowed_factor_t {
+    /// of all joint velocities, 0 to 1
+    pub factor: panda_real,
+    /// panda_point that needs it, -1 if none moves
+    pub point: c_int,
+    /// m/s; that this point may have
+    pub speed: panda_real,
+    /// N; largest at that speed up to the horizon, or at a greater one
+    pub force: panda_real,
+    /// 1 if what presses later needs it
+    pub pressed: c_int,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct panda_selection_t {
     /// row of the pose with the least peak force; the first of equals
     pub best: c_int,
@@ -280,6 +348,14 @@ extern "C" {
     pub fn panda_safe_speed_at(q: *const panda_real, point: c_int, n: *const panda_real, limit: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_safe_speed_t) -> c_int;
     pub fn panda_speed_factor(q: *const panda_real, dq: *const panda_real, limit: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_speed_factor_t) -> c_int;
     pub fn panda_speed_factor_over(q: *const panda_real, dq: *const panda_real, points: *const c_int, regions: *const panda_region, limits: *const panda_real, count: c_int, p: *const panda_params, out: *mut panda_speed_factor_over_t) -> c_int;
+    pub fn panda_pressing_force_at(q: *const panda_real, point: c_int, n: *const panda_real, speed: panda_real, region: *const panda_region, p: *const panda_params, force: *mut panda_real) -> c_int;
+    pub fn panda_peak_force_on(q: *const panda_real, frame: c_int, place: *const panda_real, n: *const panda_real, speed: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_peak_force_t) -> c_int;
+    pub fn panda_safe_speed_on(q: *const panda_real, frame: c_int, place: *const panda_real, n: *const panda_real, limit: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_safe_speed_t) -> c_int;
+    pub fn panda_worst_direction_at(q: *const panda_real, point: c_int, speed: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_worst_direction_t) -> c_int;
+    pub fn panda_worst_direction_on(q: *const panda_real, frame: c_int, place: *const panda_real, speed: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_worst_direction_t) -> c_int;
+    pub fn panda_allowed_speed_at(q: *const panda_real, point: c_int, n: *const panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_allowed_speed_t) -> c_int;
+    pub fn panda_allowed_factor(q: *const panda_real, dq: *const panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_allowed_factor_t) -> c_int;
+    pub fn panda_may_press(q: *const panda_real, dq: *const panda_real, limit: panda_real, region: *const panda_region, p: *const panda_params, may: *mut c_int) -> c_int;
     pub fn panda_select_configuration(poses: *const [panda_real; 7], count: c_int, allowed: *const c_uchar, n: *const panda_real, speed: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_selection_t) -> c_int;
 }
 

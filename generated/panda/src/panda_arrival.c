@@ -4,6 +4,8 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE PANDA_R(1e-6)
+/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+#define ASTRAY PANDA_R(1e-3)
 #define MOST_STEPS 1000000
 
 int panda_check_impact(const panda_region *region, const panda_params *p)
@@ -11,13 +13,14 @@ int panda_check_impact(const panda_region *region, const panda_params *p)
     if (p->layout != PANDA_LAYOUT) {
         return PANDA_FOREIGN_PARAMS;
     }
-    const panda_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
+    const panda_real numbers[4] = {region->stiffness, region->damping,
+        region->law != NULL ? PANDA_R(1.0) : region->hertz_stiffness,
         region->clamped != 0 ? PANDA_R(1.0) : region->effective_mass};
     if (!panda_all_finite(numbers, 4)) {
         return PANDA_NOT_FINITE;
     }
     const bool body = region->stiffness > PANDA_R(0.0) && region->damping >= PANDA_R(0.0)
-        && region->hertz_stiffness > PANDA_R(0.0) && numbers[3] > PANDA_R(0.0);
+        && numbers[3] > PANDA_R(0.0) && panda_law_is_one(region);
     const panda_real horizon = PANDA_HORIZON(p);
     const panda_real reaction = PANDA_REACTION_TIME(p);
     int status = panda_check_positive(&horizon, 1);
@@ -77,6 +80,7 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
     panda_forward(PANDA_REACH, square, share);
     panda_backward(PANDA_REACH, square, share);
     panda_real fast = PANDA_R(0.0);
+    panda_real along = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
         panda_real rate = PANDA_R(0.0);
         for (int k = 0; k < PANDA_REACH; ++k) {
@@ -84,8 +88,29 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
+        along += rate*arrival->row[i];
     }
-    return fast < PANDA_FASTEST ? PANDA_OK : PANDA_SINGULAR;
+    return fast < PANDA_FASTEST && PANDA_FABS(along - PANDA_R(1.0)) < ASTRAY ? PANDA_OK : PANDA_SINGULAR;
+}
+
+panda_real panda_arrive_as_it_moves(int point, const panda_real rates[PANDA_N], panda_arrival *arrival)
+{
+    panda_real v[3];
+    for (int k = 0; k < 3; ++k) {
+        v[k] = PANDA_R(0.0);
+        for (int i = 0; i < PANDA_N; ++i) {
+            v[k] += arrival->links.J[3*point + k][i]*rates[i];
+        }
+    }
+    const panda_real speed = PANDA_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    for (int i = 0; i < PANDA_N && speed > PANDA_R(0.0); ++i) {
+        arrival->row[i] = PANDA_R(0.0);
+        for (int k = 0; k < 3; ++k) {
+            arrival->row[i] += v[k]/speed*arrival->links.J[3*point + k][i];
+        }
+        arrival->rates[i] = rates[i]/speed;
+    }
+    return speed;
 }
 
 void panda_kinds_of_motors(const panda_params *p, int *first, int *last)

@@ -14,6 +14,8 @@
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
  * y^2 v with y^2 <= y sqrt(2 t K) + c, K = k + c^2 mobility. Released after t, the robot has at most
  * (sqrt(E) + sqrt(v^2/2 r'(M + B)r))^2, as the energies of both motions add like squares of lengths.
+ * Joints with damping of their own: motors are taken to go on with what that needed before, so the same holds
+ * whatever motors do, to the horizon.
  */
 #include "panda_impact.h"
 
@@ -88,12 +90,15 @@ panda_real panda_bound(const panda_impact *impact)
     }
     const panda_real hold = impact->hold;
     const panda_real twice = panda_twice_energy(impact);
+    const panda_real horizon = PANDA_HORIZON(impact->p);
+    const panda_real always = while_driven(horizon, hold, impact->region->damping);
+    if (PANDA_DAMPED) {
+        return always;
+    }
     if (impact->first == PANDA_LOOSE) {
         return PANDA_SQRT(twice*hold);
     }
-    const panda_real horizon = PANDA_HORIZON(impact->p);
     const panda_real reaction = PANDA_FMIN(PANDA_REACTION_TIME(impact->p), horizon);
-    const panda_real always = while_driven(horizon, hold, impact->region->damping);
     const panda_real until = while_driven(reaction, hold, impact->region->damping);
     const panda_real root = PANDA_SQRT(PANDA_R(2.0)*until*reaction) + PANDA_SQRT(twice);
     return PANDA_FMIN(always, PANDA_FMAX(until, root*PANDA_SQRT(hold)));

@@ -40,15 +40,15 @@ static void scale_by_springs(const panda_arrival *arrival, const panda_params *p
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int spring_modes(panda_square C, const panda_real b[PANDA_N], panda_modes *modes)
+static int spring_modes(panda_matrix C, const panda_real b[PANDA_N], panda_modes *modes)
 {
     panda_real squares[PANDA_N];
-    panda_square vectors;
+    panda_matrix vectors;
     panda_real all = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
         all += C[i][i];
     }
-    if (!panda_spectrum(C, squares, vectors)) {
+    if (!panda_spectrum(PANDA_N, C, squares, vectors)) {
         return PANDA_SINGULAR;
     }
     const panda_real least = NOISE*all;
@@ -78,7 +78,7 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     panda_real *drift)
 {
     spring_scaled s;
-    panda_square C;
+    panda_matrix C;
     scale_by_springs(arrival, p, &s);
     for (int i = 0; i < PANDA_N; ++i) {
         for (int j = 0; j <= i; ++j) {
@@ -96,8 +96,8 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
 {
     spring_scaled s;
     panda_matrix G;
-    panda_square Y; /* columns of L_G^-1 L' */
-    panda_square C;
+    panda_matrix Y; /* columns of L_G^-1 L' */
+    panda_matrix C;
     panda_real z[PANDA_N];
     scale_by_springs(arrival, p, &s);
     if (!panda_cholesky(PANDA_N, s.S)) {

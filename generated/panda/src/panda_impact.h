@@ -17,6 +17,7 @@
 #else
 #define PANDA_SYSTEM PANDA_N
 #endif
+#define PANDA_DAMPERS (PANDA_DAMPED ? PANDA_SYSTEM : PANDA_N) /* of the last ones of these */
 #define PANDA_MODES (PANDA_SYSTEM + 1) /* one for a body that gives way */
 #define PANDA_LEVELS 7 /* lengths of steps, each half the one before */
 
@@ -27,8 +28,7 @@ typedef struct {
     panda_real rates[PANDA_N]; /* joint velocities for an approach of 1 m/s */
 } panda_arrival;
 
-/* Matrices over the links alone, and of up to PANDA_SYSTEM rows. */
-typedef panda_real panda_square[PANDA_N][PANDA_N];
+/* Matrices of up to PANDA_SYSTEM rows. */
 typedef panda_real panda_matrix[PANDA_SYSTEM][PANDA_SYSTEM];
 
 /*
@@ -76,8 +76,8 @@ typedef struct {
     panda_real compliance; /* of those that stand, m/N */
     panda_real reach; /* of all that vibrate, m/N */
     panda_real drift; /* velocity of the contact point that motors keep up, over the speed */
-    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
-    panda_real damping[PANDA_N];
+    bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
+    panda_real damping[PANDA_DAMPERS];
     int steps; /* of the longest level until the time is over */
     panda_level level[PANDA_LEVELS];
 } panda_phase;
@@ -105,11 +105,14 @@ typedef struct {
 #define PANDA_LED 0
 #define PANDA_LOOSE 1
 
+typedef struct panda_watch panda_watch;
+
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
     bool rough; /* longer steps do */
     panda_real stop_above; /* force after whose passing the rest does not matter, N */
+    panda_watch *watch; /* who sees each step and ends the impact, or NULL; panda_state.h */
 } panda_budget;
 
 typedef struct {
@@ -125,6 +128,9 @@ int panda_check_impact(const panda_region *region, const panda_params *p);
 
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival);
+
+/* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
+panda_real panda_arrive_as_it_moves(int point, const panda_real rates[PANDA_N], panda_arrival *arrival);
 
 /* Checks and links of an impact of one of the contact points. */
 int panda_approach(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
@@ -155,6 +161,21 @@ panda_real panda_bound(const panda_impact *impact);
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void panda_kinds_of_motors(const panda_params *p, int *first, int *last);
 
+/*
+ * What is known of a region's law of contact: its depth under a force, twice the work done by then, and the
+ * largest stiffness up to it.
+ */
+panda_real panda_law_depth(const panda_region *region, panda_real force);
+panda_real panda_law_twice_work(const panda_region *region, panda_real force);
+panda_real panda_law_stiffness(const panda_region *region, panda_real force);
+
+/* Force of a law through points whose depth d makes hold d + soft f(d) = pressed > 0; and that depth. */
+panda_real panda_law_press(const panda_region *region, panda_real hold, panda_real soft, panda_real pressed,
+    panda_real *depth);
+
+/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+bool panda_law_is_one(const panda_region *region);
+
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 panda_real panda_two_body_force(const panda_region *region, panda_real mobility, panda_real speed);
 panda_real panda_two_body_speed(const panda_region *region, panda_real mobility, panda_real force);
@@ -165,6 +186,16 @@ panda_real panda_two_body_speed(const panda_region *region, panda_real mobility,
  */
 int panda_find_speed(const panda_region *region, const panda_params *p, panda_real limit,
     panda_real cap, panda_impact *impact, panda_safe_speed_t *found);
+
+/* Largest force of an arrival by any of the motors that p stands for: OK, BOUNDED or another status. */
+int panda_find_peak(const panda_region *region, const panda_params *p, panda_real speed,
+    panda_impact *impact, panda_peak_force_t *out);
+
+#if PANDA_FRAMES > 0
+/* Links, with the motion of a place in a frame in place of that of the package's own point. */
+int panda_links_on(const panda_real q[PANDA_JOINTS], int frame, const panda_real place[3],
+    const panda_params *p, panda_links_t *links);
+#endif
 
 /* Largest force over all contacts of an impact at a speed. */
 void panda_impact_run(panda_impact *impact, panda_real speed, panda_budget *budget,
@@ -197,7 +228,7 @@ void panda_backward(int size, panda_matrix L, panda_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool panda_diagonalise(int size, panda_matrix A, panda_matrix X, panda_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
-bool panda_spectrum(panda_square A, panda_real values[PANDA_N], panda_square vectors);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
+bool panda_spectrum(int size, panda_matrix A, panda_real *values, panda_matrix vectors);
 
 #endif

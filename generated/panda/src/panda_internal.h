@@ -127,7 +127,8 @@ static inline int panda_unit_vector(const panda_real n[3], panda_real u[3])
 #define PANDA_N 7 /* independent joints */
 #define PANDA_ELASTIC 1 /* a spring behind every motor */
 #define PANDA_POTENTIAL 0 /* gravity, or springs of the model file */
-#define PANDA_STRUCTURED (PANDA_ELASTIC && !PANDA_POTENTIAL)
+#define PANDA_DAMPED 0 /* joints have damping of their own */
+#define PANDA_STRUCTURED (PANDA_ELASTIC && !PANDA_POTENTIAL && !PANDA_DAMPED)
 #define PANDA_REACH 3 /* directions in which motors move contact points */
 #define PANDA_FASTEST PANDA_R(27000.0) /* squared joint velocity for 1 m/s: singular */
 #define PANDA_LEAST_MOBILITY PANDA_R(5.88e-05) /* 1/kg; below: singular */
@@ -139,6 +140,20 @@ typedef struct {
 
 /* Links as they arrive at an impact. */
 int panda_links(const panda_real q[7], panda_links_t *out);
+
+#define PANDA_FRAMES 12 /* frames of links in which contact points can be given */
+typedef struct {
+    int joint; /* whose link it is fixed to */
+    panda_real rotation[3][3];
+    panda_real position[3]; /* m; both in the joint's frame */
+} panda_frame_place;
+
+/* Where the joints' frames are. */
+int panda_joint_frames(const panda_real q[7], panda_real poses[7][12]);
+
+extern const panda_frame_place panda_frame_places[PANDA_FRAMES];
+extern const bool panda_joint_slides[PANDA_N];
+extern const bool panda_joint_moves[PANDA_N][PANDA_N]; /* the link of another */
 
 extern const panda_real panda_directions[PANDA_REACH][3];
 extern const bool panda_has_motor[PANDA_N];

@@ -9,3 +9,39 @@ const panda_real panda_directions[PANDA_REACH][3] = {
     {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)},
 };
 const bool panda_has_motor[PANDA_N] = {true, true, true, true, true, true, true};
+const bool panda_joint_slides[PANDA_N] = {false, false, false, false, false, false, false};
+const bool panda_joint_moves[PANDA_N][PANDA_N] = {
+    {true, true, true, true, true, true, true},
+    {false, true, true, true, true, true, true},
+    {false, false, true, true, true, true, true},
+    {false, false, false, true, true, true, true},
+    {false, false, false, false, true, true, true},
+    {false, false, false, false, false, true, true},
+    {false, false, false, false, false, false, true},
+};
+const panda_frame_place panda_frame_places[PANDA_FRAMES] = {
+    {0, {{PANDA_R(1.0), PANDA_R(0.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(1.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)} }, /* link1 */
+    {1, {{PANDA_R(1.0), PANDA_R(0.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(1.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)} }, /* link2 */
+    {2, {{PANDA_R(1.0), PANDA_R(0.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(1.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)} }, /* link3 */
+    {3, {{PANDA_R(1.0), PANDA_R(0.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(1.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)} }, /* link4 */
+    {4, {{PANDA_R(1.0), PANDA_R(0.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(1.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)} }, /* link5 */
+    {5, {{PANDA_R(1.0), PANDA_R(0.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(1.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)} }, /* link6 */
+    {6, {{PANDA_R(1.0), PANDA_R(0.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(1.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)} }, /* link7 */
+    {6, {{PANDA_R(0.7071067811865478), PANDA_R(0.7071067811865474), PANDA_R(0.0)}, {PANDA_R(-0.7071067811865474), PANDA_R(0.7071067811865478), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.107)} }, /* hand */
+    {6, {{PANDA_R(0.7071067811865478), PANDA_R(0.7071067811865474), PANDA_R(0.0)}, {PANDA_R(-0.7071067811865474), PANDA_R(0.7071067811865478), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.1654)} }, /* left_finger */
+    {6, {{PANDA_R(0.7071067811865478), PANDA_R(0.7071067811865474), PANDA_R(0.0)}, {PANDA_R(-0.7071067811865474), PANDA_R(0.7071067811865478), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.1654)} }, /* right_finger */
+    {6, {{PANDA_R(1.0), PANDA_R(0.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(1.0), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.107)} }, /* flange */
+    {6, {{PANDA_R(0.7071067811865478), PANDA_R(0.7071067811865474), PANDA_R(0.0)}, {PANDA_R(-0.7071067811865474), PANDA_R(0.7071067811865478), PANDA_R(0.0)}, {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(1.0)}},
+        {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.2104)} }, /* hand_tcp */
+};

@@ -5,27 +5,6 @@
 /* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
 #define BLURS PANDA_R(1.6e-2)
 
-/* Largest stiffness of the skin up to a force. */
-static panda_real skin_stiffness(const panda_region *region, panda_real force)
-{
-    const panda_real third = PANDA_R(1.0)/PANDA_R(3.0);
-    return PANDA_R(1.5)*PANDA_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
-}
-
-panda_real panda_two_body_force(const panda_region *region, panda_real mobility, panda_real speed)
-{
-    const panda_real spring = speed*PANDA_SQRT(region->stiffness/mobility);
-    const panda_real energy = PANDA_R(1.25)*speed*speed/mobility;
-    const panda_real skin = PANDA_POW(energy, PANDA_R(0.6))*PANDA_POW(region->hertz_stiffness, PANDA_R(0.4));
-    return PANDA_R(1.0)/(PANDA_R(1.0)/spring + PANDA_R(1.0)/skin);
-}
-
-panda_real panda_two_body_speed(const panda_region *region, panda_real mobility, panda_real force)
-{
-    const panda_real depth = PANDA_POW(force/region->hertz_stiffness, PANDA_R(2.0)/PANDA_R(3.0));
-    return PANDA_SQRT(mobility*force*(force/region->stiffness + PANDA_R(0.8)*depth));
-}
-
 void panda_impact_forget(panda_impact *impact)
 {
     impact->phase[PANDA_LED].known = false;
@@ -56,8 +35,9 @@ static int led_modes(panda_impact *impact, panda_phase *phase)
         return panda_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < PANDA_N; ++i) {
-        phase->damping[i] = PANDA_DAMPING_GAIN(impact->p, i);
-        phase->damped = phase->damped || phase->damping[i] > PANDA_R(0.0);
+        const panda_real gain = PANDA_DAMPING_GAIN(impact->p, i);
+        phase->damping[PANDA_DAMPERS - PANDA_N + i] += gain;
+        phase->damped = phase->damped || gain > PANDA_R(0.0);
     }
     return panda_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
@@ -72,11 +52,16 @@ static int modes_of(panda_impact *impact, int which)
     }
     phase->has_body = false;
     phase->drift = PANDA_R(0.0);
-    phase->damped = false;
+    phase->damped = PANDA_DAMPED != 0;
     phase->modes.noise = PANDA_R(0.0);
-    for (int i = 0; i < PANDA_N; ++i) {
+    for (int i = 0; i < PANDA_DAMPERS; ++i) {
         phase->damping[i] = PANDA_R(0.0);
     }
+#if PANDA_DAMPED
+    for (int i = 0; i < PANDA_N; ++i) {
+        phase->damping[i] = panda_joint_damping[i];
+    }
+#endif
     const int status = which == PANDA_LED ? led_modes(impact, phase)
         : panda_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     phase->known = status == PANDA_OK;
@@ -166,11 +151,11 @@ int panda_impact_prepare(const panda_region *region, const panda_params *p, int 
     }
     const panda_real size =
         force > PANDA_R(0.0) ? force : panda_two_body_force(region, impact->mobility, -force);
-    impact->scale = PANDA_R(0.2)*size;
+    impact->scale = PANDA_R(0.5)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const panda_real damped = region->damping*PANDA_SQRT(impact->mobility/region->stiffness);
     impact->smooth = PANDA_R(1.0)/(PANDA_R(1.0) + PANDA_R(4.0)*damped);
-    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    impact->skin_rate = panda_law_stiffness(region, size)*impact->mobility;
     const panda_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!panda_all_finite(numbers, 3) || panda_check_positive(numbers, 3) != PANDA_OK) {
         return PANDA_SINGULAR;

@@ -3,46 +3,70 @@
 #include "panda_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS PANDA_R(0.0125)
+#define BENDS PANDA_R(0.03)
 #define BENDS_ROUGH PANDA_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
-#define STRAIGHT PANDA_R(0.12)
+#define STRAIGHT PANDA_R(0.22)
+/* Force from which robot and body may part within a step, over the bend that is allowed. */
+#define PARTS PANDA_R(4.0)
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (PANDA_LEVELS - 1)
 #define SHORTEST_ROUGH 2
 /* Steps in contact after which it is looked whether the rest matters. */
 #define LOOKS 2
+/* Share of a first step within which the damper has to press the skin in, and the share of that time missed. */
+#define BRIEF PANDA_R(0.3)
+#define MISSED PANDA_R(1.2)
+/* Level of such a first step. */
+#define LONGEST 4
+#define LONGEST_ROUGH 1
 /* Share of what a harder contact takes up to which rough runs take it to be out of reach. */
 #define ROUGHLY PANDA_R(1.3)
+
+/* Changes the length of the next step. */
+static void change_level(panda_state *s, int level)
+{
+    s->level = level;
+    s->even = 0;
+}
+
 /* Advances the clock, and lengthens the next step where it may. */
 static void tick(panda_state *s, bool longer)
 {
-    const panda_level *const level = &s->phase->level[s->level];
     s->h_before = s->h;
-    s->h = level->h;
-    s->time += level->h;
-    s->drifted += s->phase->drift*s->speed*level->h;
+    s->h = s->phase->level[s->level].h;
+    s->time += s->h;
+    s->drifted += s->phase->drift*s->speed*s->h;
     s->ticks -= 1 << (PANDA_LEVELS - 1 - s->level);
+    ++s->even;
     if (longer && s->level > 0 && s->ticks % (1 << (PANDA_LEVELS - s->level)) == 0) {
-        --s->level;
+        change_level(s, s->level - 1);
     }
 }
 
-/* Notes a top of the parabola through the last three forces. */
-static void see(const panda_state *s, panda_real f, panda_real h, panda_peak *peak)
+/* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
+static void see(panda_state *s, const panda_trial *t, panda_peak *peak)
 {
-    panda_real force = f;
+    const panda_real h = s->phase->level[s->level].h;
+    panda_real force = t->f;
     panda_real time = s->time + h;
-    if (s->past > 0 && s->rise >= PANDA_R(0.0) && f < s->f) {
+    if (t->f < s->f && s->past > 0 && s->rise >= PANDA_R(0.0)) {
         const panda_real before = s->rise/s->h;
-        const panda_real after = (f - s->f)/h;
+        const panda_real after = (t->f - s->f)/h;
         const panda_real bend = (after - before)/(h + s->h);
         const panda_real slope = before + bend*s->h;
-        force = s->f - PANDA_R(0.25)*slope*slope/bend;
-        time = s->time - PANDA_R(0.5)*slope/bend;
+        const panda_real since = PANDA_R(-0.5)*slope/bend; /* the last node */
+        force = s->f + PANDA_R(0.5)*slope*since;
+        time = s->time + since;
+        if (s->past > 1) {
+            const panda_real bent = PANDA_R(-6.0)*s->bump/(s->h*s->h); /* at the last node */
+            const panda_real twist = (bend - bent)/(h + s->h + s->h_before);
+            force += twist*since*(since + s->h)*(since - h);
+        }
     }
-    if (force > peak->force) {
-        peak->force = force;
+    if (force + s->swings > peak->force) {
+        s->depth = t->f > peak->force ? t->depth : s->depth;
+        peak->force = force + s->swings;
         peak->time = time;
         peak->contact = peak->contacts;
     }
@@ -52,48 +76,56 @@ static void see(const panda_state *s, panda_real f, panda_real h, panda_peak *pe
 static bool step_pressed(panda_state *s, panda_trial *t, panda_real bends, int shortest, panda_peak *peak)
 {
     panda_press(s, t);
-    const panda_real size = PANDA_FMAX(s->scale, peak->force);
+    const panda_real allowed = bends*PANDA_FMAX(s->scale, peak->force);
     const panda_real bent = PANDA_R(6.0)*PANDA_FABS(t->bump);
-    if (s->level < shortest && !(bent <= bends*size)) {
-        ++s->level;
+    const bool parts = !(t->f > PANDA_R(0.0));
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+        change_level(s, s->level + 1);
         return false;
     }
-    const panda_level *const level = &s->phase->level[s->level];
     panda_take(t, s);
-    s->depth = t->f > peak->force ? t->root*t->root : s->depth;
-    see(s, t->f, level->h, peak);
-    const panda_real rest = (s->x - s->u)*level->relax;
+    see(s, t, peak);
+    if (parts) {
+        s->touching = false;
+        s->rest = PANDA_FMAX(t->x, (s->x - s->u)*s->phase->level[s->level].relax);
+    }
+    const bool straight = bent <= STRAIGHT*allowed && PANDA_R(6.0)*PANDA_FABS(s->bump) <= STRAIGHT*allowed;
     s->bump = t->bump;
     s->rise = t->f - s->f;
     s->f = t->f;
     s->u_before = s->u;
     s->u = t->u;
+    s->now = t->depth;
     s->root = t->root;
     s->x = t->x;
     ++s->past;
-    if (!(t->f > PANDA_R(0.0))) {
-        s->touching = false;
-        s->rest = PANDA_FMAX(s->x, rest);
-    }
-    tick(s, bent <= STRAIGHT*bends*size && s->past > 1);
+    tick(s, straight && s->past > 1);
     return true;
 }
 
 /* A step out of contact; false if it must be shorter, or is one in contact. */
-static bool step_apart(panda_state *s, panda_trial *t, int shortest, panda_peak *peak)
+static bool step_apart(panda_state *s, const panda_trial *t, int shortest, panda_peak *peak)
 {
-    const panda_level *const level = &s->phase->level[s->level];
-    const panda_real rest = s->rest*level->relax;
+    const panda_real rest = s->rest*s->phase->level[s->level].relax;
     if (t->x > rest) {
-        if (s->level < shortest) {
-            ++s->level;
+        if (s->level < shortest) { /* to a step that ends before they touch, if both approach evenly */
+            panda_real share = (s->rest - s->x)/(s->rest - s->x + t->x - rest);
+            int level = s->level;
+            do {
+                ++level;
+                share += share;
+            } while (level < shortest && !(share >= PANDA_R(1.0)));
+            change_level(s, level);
             return false;
         }
         s->touching = true;
         s->past = 0;
+        s->even = 0;
         s->u = s->x - s->rest;
         s->f = PANDA_R(0.0);
         s->rise = PANDA_R(0.0);
+        s->bump = PANDA_R(0.0);
+        s->now = PANDA_R(0.0);
         s->root = PANDA_R(0.0);
         ++peak->contacts;
         return false;
@@ -108,6 +140,26 @@ static bool step_apart(panda_state *s, panda_trial *t, int shortest, panda_peak 
     return true;
 }
 
+/*
+ * A damper that meets the skin at once pushes c v as soon as the skin is deep enough, after a time of depth/v:
+ * where that is brief the first step is long, and begins with what c v is on average.
+ */
+static void begin(const panda_region *region, int longest, panda_state *s)
+{
+    const panda_real pushed = region->damping*s->speed;
+    const panda_real slow = panda_law_depth(region, pushed)/s->speed;
+    if (s->phase->level[longest].h*BRIEF >= slow) {
+        s->level = longest;
+    }
+    const panda_real share = PANDA_R(1.0) - MISSED*slow/s->phase->level[s->level].h;
+    if (share > PANDA_R(0.0)) {
+        s->f = share*pushed;
+        s->now = panda_law_depth(region, s->f);
+        s->u = s->now + s->phase->compliance*s->f;
+        s->root = PANDA_SQRT(s->now);
+    }
+}
+
 static void start(panda_impact *impact, panda_real speed, bool rough, panda_state *s)
 {
     const panda_phase *const phase = &impact->phase[impact->first];
@@ -116,7 +168,7 @@ static void start(panda_impact *impact, panda_real speed, bool rough, panda_stat
     s->phase = phase;
     s->speed = speed;
     s->scale = impact->scale;
-    s->level = rough ? SHORTEST_ROUGH : SHORTEST;
+    change_level(s, rough ? SHORTEST_ROUGH : SHORTEST);
     s->ticks = phase->steps*(1 << (PANDA_LEVELS - 1));
     s->time = zero;
     s->drifted = zero;
@@ -134,12 +186,15 @@ static void start(panda_impact *impact, panda_real speed, bool rough, panda_stat
     s->rise = zero;
     s->u = zero;
     s->u_before = zero;
+    s->now = zero;
     s->root = zero;
     s->rest = zero;
     s->depth = zero;
+    s->swings = zero;
+    begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
 }
 
-/* Steps through a phase; false if the steps do not do. */
+/* Steps through a phase, a rough run until they part; false if the steps do not do. */
 static bool run_phase(panda_state *s, panda_budget *budget, panda_peak *peak)
 {
     const panda_real bends = s->impact->smooth*(budget->rough ? BENDS_ROUGH : BENDS);
@@ -157,10 +212,14 @@ static bool run_phase(panda_state *s, panda_budget *budget, panda_peak *peak)
         if (taken && s->phase->damped) {
             panda_damp(s->phase, s->speed, PANDA_R(0.5)*s->h, s->rate);
         }
+        if (taken && budget->watch != NULL && panda_pass(s, budget->watch)) {
+            peak->ended = true;
+            return true;
+        }
         const bool falls = taken && s->f < peak->force;
-        const bool looks = falls && (s->past % LOOKS == 0 || !s->touching);
-        if ((falls && peak->force > budget->stop_above)
-            || (looks && panda_is_settled(s, peak->force, share))) {
+        const bool looks = falls && budget->watch == NULL && (s->past % LOOKS == 0 || !s->touching);
+        if ((falls && peak->force > budget->stop_above) || (budget->rough && taken && !s->touching)
+            || (looks && panda_is_settled(s, peak->force - s->swings, s->depth, share))) {
             peak->ended = true;
             return true;
         }

@@ -6,11 +6,11 @@
  * Share of the limit at which trials aim, the share from which on one is near enough, and the largest
  * that counts as kept: forces are within 2e-3 of the right ones, in the worst of 100,000 within 5e-3.
  */
-#define AIM PANDA_R(0.9875)
+#define AIM PANDA_R(0.987)
 #define NEAR PANDA_R(0.98)
-#define KEPT PANDA_R(0.995)
+#define KEPT PANDA_R(0.994)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
-#define TRIALS 24
+#define TRIALS 16
 #define APART PANDA_R(4e-3)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP PANDA_R(8.0)
@@ -93,16 +93,14 @@ static bool find(panda_impact *impact, panda_real guess, panda_real cap, search 
 /* Whether loose motors bring too little energy for a force: panda_settled.c, w = 0 at first touch. */
 static bool are_weak(const panda_impact *impact, panda_real speed, panda_real force)
 {
-    const panda_real depth =
-        PANDA_POW(force/impact->region->hertz_stiffness, PANDA_R(2.0)/PANDA_R(3.0));
-    const panda_real needed = force*force/impact->hold + PANDA_R(0.8)*force*depth;
+    const panda_real needed = force*force/impact->hold + panda_law_twice_work(impact->region, force);
     return PANDA_STRUCTURED && speed*speed*panda_twice_energy(impact) <= needed;
 }
 
 int panda_find_speed(const panda_region *region, const panda_params *p, panda_real limit,
     panda_real cap, panda_impact *impact, panda_safe_speed_t *found)
 {
-    panda_budget budget = {p->steps, false, limit};
+    panda_budget budget = {p->steps, false, limit, NULL};
     bool bounded = false;
     int first;
     int last;

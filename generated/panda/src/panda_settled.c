@@ -6,15 +6,15 @@
  * body's own mass; w the part of what vibrates, of energy E. The contact force only pushes r back, so once
  * r' < 0 it stays so, r does not grow, and with the energy V of skin, body and standing modes, E + V does
  * not either: (E + V)' = f r' - c s'^2 <= 0. At the largest force F of a later contact f = k s + c x' with
- * x' <= w', which takes F^2/(2 K) in w' and s (panda_bound.c), 0.4 F depth in the skin, and depth + s - r = w
- * takes w^2/(2 reach) in the vibration. With less than that there is no such F.
+ * x' <= w', which takes F^2/(2 K) in w' and s (panda_bound.c), its work in the skin (0.4 F depth in
+ * Hertz's), and depth + s - r = w takes w^2/(2 reach) in the vibration. With less than that there is no such F.
  *
  * Driven motors that are let go later: seen from their motion before, E is of links and rotors, these
  * move at most sqrt(2 E rotors) on, and the rest holds if r' < 0 by more than that.
  */
 #include "panda_state.h"
 
-bool panda_is_settled(const panda_state *s, panda_real force, panda_real share)
+bool panda_is_settled(const panda_state *s, panda_real force, panda_real depth, panda_real share)
 {
     const panda_impact *const impact = s->impact;
     const panda_phase *const phase = s->phase;
@@ -34,9 +34,10 @@ bool panda_is_settled(const panda_state *s, panda_real force, panda_real share)
     if (!phase->settles || !(away < PANDA_R(0.0))) {
         return false;
     }
+    const bool is_hertz = region->law == NULL;
     const panda_real bent = s->touching ? s->x - s->u : s->rest;
     panda_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
-        + PANDA_R(0.8)*s->f*s->root*s->root;
+        + (is_hertz ? PANDA_R(0.8) : PANDA_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
         twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
     }
@@ -46,7 +47,8 @@ bool panda_is_settled(const panda_state *s, panda_real force, panda_real share)
     }
     const panda_real slip = region->damping*PANDA_SQRT(twice*impact->mobility);
     const panda_real pressed = PANDA_FMAX(force - slip, PANDA_R(0.0))/region->stiffness;
-    const panda_real gap = PANDA_FMAX(s->depth + pressed - r, PANDA_R(0.0));
-    const panda_real needed = force*force/impact->hold + PANDA_R(0.8)*force*s->depth;
+    const panda_real gap = PANDA_FMAX(depth + pressed - r, PANDA_R(0.0));
+    const panda_real skin = is_hertz ? PANDA_R(0.8)*force*depth : panda_law_twice_work(region, force);
+    const panda_real needed = force*force/impact->hold + skin;
     return twice*phase->reach <= share*(needed*phase->reach + gap*gap);
 }

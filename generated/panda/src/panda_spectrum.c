@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * Eigenvectors of a symmetric matrix of panda_ of N rows: Householder's reflections to three diagonals,
- * then QL steps with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
+ * Eigenvectors of a symmetric matrix of panda_: Householder's reflections to three diagonals, then QR steps
+ * with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
  *
  * Of a compliance the slow modes, which count, come out with all their digits; the fastest keep few
- * when there are frequencies a thousand times lower.
+ * when there are frequencies a thousand times lower. Joints come in the order from the base, so that
+ * compliances fall from the first row on, and small eigenvalues are found first, at the end.
  */
 #include "panda_impact.h"
 
@@ -13,48 +14,50 @@
  * as none: energies change by less than its root.
  */
 #define SMALL PANDA_R(1e-8)
-/* QL takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
-#define MOST_STEPS (12*PANDA_N)
+/* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
+#define MOST_STEPS 3
 
-/* One reflection I - scale v v' of rows and columns first to last: A - v w' - w v'. */
-static void turn(int first, const panda_real v[PANDA_N], panda_real scale, panda_square A)
+/* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
+static void turn(int first, int size, const panda_real *v, panda_real scale, panda_matrix A)
 {
-    panda_real w[PANDA_N];
+    panda_real w[PANDA_SYSTEM];
     panda_real along = PANDA_R(0.0);
-    for (int i = first; i < PANDA_N; ++i) {
+    for (int i = first; i < size; ++i) {
         panda_real sum = PANDA_R(0.0);
-        for (int j = first; j < PANDA_N; ++j) {
+        for (int j = first; j < size; ++j) {
             sum += A[i][j]*v[j];
         }
         w[i] = scale*sum;
         along += w[i]*v[i];
     }
     along *= PANDA_R(0.5)*scale;
-    for (int i = first; i < PANDA_N; ++i) {
+    for (int i = first; i < size; ++i) {
         w[i] -= along*v[i];
         const panda_real vi = v[i];
         const panda_real wi = w[i];
         for (int j = first; j <= i; ++j) {
-            A[i][j] -= vi*w[j] + wi*v[j];
-            A[j][i] = A[i][j];
+            const panda_real entry = A[i][j] - vi*w[j] - wi*v[j];
+            A[i][j] = entry;
+            A[j][i] = entry;
         }
     }
 }
 
-/* Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. */
-static void reflect(panda_square A, panda_real d[PANDA_N], panda_real e[PANDA_N], panda_square Q)
+/*
+ * Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. Of each
+ * reflection, v stays in A's own row.
+ */
+static void reflect(int size, panda_matrix A, panda_real *d, panda_real *e, panda_matrix Q)
 {
-    panda_square vectors; /* of each reflection */
-    panda_real scale[PANDA_N]; /* 2/v'v */
-    for (int k = 0; k + 1 < PANDA_N; ++k) {
-        panda_real *const v = vectors[k];
-        const panda_real first = A[k][k + 1];
+    panda_real scale[PANDA_SYSTEM]; /* 2/v'v */
+    for (int k = 0; k + 1 < size; ++k) {
+        panda_real *const v = A[k];
+        const panda_real first = v[k + 1];
         panda_real square = PANDA_R(0.0);
-        for (int i = k + 2; i < PANDA_N; ++i) {
-            v[i] = A[k][i];
+        for (int i = k + 2; i < size; ++i) {
             square += v[i]*v[i];
         }
-        d[k] = A[k][k];
+        d[k] = v[k];
         e[k] = first;
         scale[k] = PANDA_R(0.0);
         if (square > PANDA_R(0.0)) {
@@ -62,103 +65,99 @@ static void reflect(panda_square A, panda_real d[PANDA_N], panda_real e[PANDA_N]
             e[k] = first > PANDA_R(0.0) ? -length : length;
             v[k + 1] = first - e[k];
             scale[k] = PANDA_R(1.0)/(length*(length + PANDA_FABS(first)));
-            turn(k + 1, v, scale[k], A);
+            turn(k + 1, size, v, scale[k], A);
         }
     }
-    d[PANDA_N - 1] = A[PANDA_N - 1][PANDA_N - 1];
-    e[PANDA_N - 1] = PANDA_R(0.0);
-    for (int i = 0; i < PANDA_N; ++i) {
-        for (int j = 0; j < PANDA_N; ++j) {
+    d[size - 1] = A[size - 1][size - 1];
+    for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) {
             Q[i][j] = PANDA_R(0.0);
         }
         Q[i][i] = PANDA_R(1.0);
     }
-    for (int k = PANDA_N - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
-        const panda_real *const v = vectors[k];
-        for (int i = k + 1; i < PANDA_N && scale[k] > PANDA_R(0.0); ++i) {
+    for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
+        const panda_real *const v = A[k];
+        for (int i = k + 1; i < size && scale[k] > PANDA_R(0.0); ++i) {
             panda_real along = PANDA_R(0.0);
-            for (int j = k + 1; j < PANDA_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 along += Q[i][j]*v[j];
             }
             along *= scale[k];
-            for (int j = k + 1; j < PANDA_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 Q[i][j] -= along*v[j];
             }
         }
     }
 }
 
-/* One QL step on rows first to last; turns the rows of Q, too. */
-static void chase(int first, int last, panda_real d[PANDA_N], panda_real e[PANDA_N], panda_square Q)
+/* Turns two rows of Q by an angle. */
+static void turn_rows(int size, panda_real c, panda_real s, panda_real *upper, panda_real *lower)
 {
-    const panda_real one = PANDA_R(1.0);
-    const panda_real half = PANDA_R(0.5)*(d[first + 1] - d[first])/e[first];
-    const panda_real length = PANDA_FABS(half) + PANDA_SQRT(half*half + one);
-    panda_real g = d[last] - d[first] + e[first]/(half < PANDA_R(0.0) ? -length : length);
-    panda_real s = one;
-    panda_real c = one;
-    panda_real p = PANDA_R(0.0);
-    for (int i = last - 1; i >= first; --i) {
-        const panda_real f = s*e[i];
-        const panda_real b = c*e[i];
-        const panda_real r = PANDA_SQRT(f*f + g*g);
-        e[i + 1] = r;
-        if (!(r > PANDA_R(0.0))) {
-            d[i + 1] -= p;
-            e[last] = PANDA_R(0.0);
-            return;
-        }
-        s = f/r;
-        c = g/r;
-        g = d[i + 1] - p;
-        const panda_real t = (d[i] - g)*s + PANDA_R(2.0)*c*b;
-        p = s*t;
-        d[i + 1] = g + p;
-        g = c*t - b;
-        for (int j = 0; j < PANDA_N; ++j) {
-            const panda_real x = Q[i][j];
-            const panda_real y = Q[i + 1][j];
-            Q[i + 1][j] = s*x + c*y;
-            Q[i][j] = c*x - s*y;
-        }
+    for (int j = 0; j < size; ++j) {
+        const panda_real x = upper[j];
+        const panda_real y = lower[j];
+        upper[j] = c*x + s*y;
+        lower[j] = c*y - s*x;
     }
-    d[first] -= p;
-    e[first] = g;
-    e[last] = PANDA_R(0.0);
 }
 
-/* Whether an entry between two of the diagonal is more than none. */
-static bool counts(panda_real before, panda_real after, panda_real entry)
+/* One QR step on rows first to last; turns the rows of Q, too. */
+static void chase(int first, int last, int size, panda_real *d, panda_real *e, panda_matrix Q)
 {
-    const panda_real noise = PANDA_EPSILON*(PANDA_FABS(before) + PANDA_FABS(after));
-    return entry*entry > PANDA_FMAX(SMALL*PANDA_FABS(before*after), noise*noise);
-}
-
-/* Last row of the block that begins at a row. */
-static int end_of_block(int first, const panda_real values[PANDA_N], const panda_real e[PANDA_N])
-{
-    int last = first;
-    while (last + 1 < PANDA_N && counts(values[last], values[last + 1], e[last])) {
-        ++last;
-    }
-    return last;
-}
-
-bool panda_spectrum(panda_square A, panda_real values[PANDA_N], panda_square vectors)
-{
-    panda_real e[PANDA_N];
-    reflect(A, values, e, vectors);
-    int first = 0;
-    for (int step = 0; step <= MOST_STEPS; ++step) {
-        while (first < PANDA_N && end_of_block(first, values, e) == first) {
-            ++first;
+    const panda_real end = e[last - 1];
+    const panda_real half = PANDA_R(0.5)*(d[last - 1] - d[last]);
+    const panda_real length = PANDA_SQRT(half*half + end*end);
+    panda_real x = d[first] - d[last] + end*end/(half < PANDA_R(0.0) ? half - length : half + length);
+    panda_real z = e[first];
+    for (int k = first; k < last; ++k) {
+        const panda_real r = PANDA_SQRT(x*x + z*z);
+        const panda_real inverse = PANDA_R(1.0)/r;
+        const bool turns = r > PANDA_R(0.0);
+        const panda_real c = turns ? x*inverse : PANDA_R(1.0);
+        const panda_real s = turns ? z*inverse : PANDA_R(0.0);
+        if (k > first) {
+            e[k - 1] = r;
         }
-        if (first == PANDA_N) {
+        const panda_real u = s*(d[k + 1] - d[k]) + PANDA_R(2.0)*c*e[k];
+        d[k] += s*u;
+        d[k + 1] -= s*u;
+        e[k] = c*u - e[k];
+        if (k + 1 < last) {
+            x = e[k];
+            z = s*e[k + 1];
+            e[k + 1] *= c;
+        }
+        turn_rows(size, c, s, Q[k], Q[k + 1]);
+    }
+}
+
+bool panda_spectrum(int size, panda_matrix A, panda_real *values, panda_matrix vectors)
+{
+    panda_real e[PANDA_SYSTEM];
+    panda_real all = PANDA_R(0.0);
+    reflect(size, A, values, e, vectors);
+    for (int i = 0; i < size; ++i) {
+        all += PANDA_FABS(values[i]);
+    }
+    const panda_real noise = PANDA_EPSILON*PANDA_EPSILON*all*all;
+    int last = size - 1;
+    for (int step = 0; step < MOST_STEPS*size; ++step) {
+        int first = last;
+        while (first > 0) {
+            const panda_real square = e[first - 1]*e[first - 1];
+            if (square > noise + SMALL*PANDA_FABS(values[first - 1]*values[first])) {
+                --first;
+            } else if (first == last) {
+                --last;
+                first = last;
+            } else {
+                break;
+            }
+        }
+        if (last == 0) {
             return true;
         }
-        if (step < MOST_STEPS) {
-            chase(first, end_of_block(first, values, e), values, e, vectors);
-        }
+        chase(first, last, size, values, e, vectors);
     }
     return false;
 }

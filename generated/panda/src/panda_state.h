@@ -5,12 +5,22 @@
 
 #include "panda_impact.h"
 
+/* What the next step takes of those before it, and of its own length. */
+typedef struct {
+    panda_real ratio; /* of its length to the last one's */
+    panda_real share, more, before; /* of the bend, see panda_press */
+    panda_real u, u_before; /* in u', 1/s */
+    panda_real hold, soft, yields; /* depth hold + soft f = what presses; x gives way by yields f */
+} panda_pace;
+
 typedef struct {
     panda_impact *impact;
     const panda_phase *phase;
     panda_real speed;
     panda_real scale; /* of forces, N */
     int level;
+    int even; /* steps in a row of this length */
+    panda_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     panda_real time;
     panda_real drifted; /* by the motors, m */
@@ -20,27 +30,40 @@ typedef struct {
     panda_real h, h_before, x; /* last steps, contact point */
     panda_real bump; /* what the bend adds to the force on average of the last step */
     panda_real f, rise; /* force, and by how much it grew in the last step */
-    panda_real u, u_before, root; /* deformation of the skin; root of its depth */
+    panda_real u, u_before; /* deformation of the skin and of what stands */
+    panda_real now, root; /* depth of the skin, and its root where it is Hertz's */
     panda_real rest; /* deflection of the body out of contact */
     panda_real depth; /* of the skin at the largest force so far */
+    panda_real swings; /* most that modes that stand add to the force as they swing, N */
 } panda_state;
+
+/* What is looked for in the steps of an impact that goes on after its peak. */
+struct panda_watch {
+    panda_real matters; /* force that may still come, N */
+    panda_real depth; /* of the skin under it, m */
+    panda_real late; /* the largest force from 0.5 s on, N */
+    panda_real before, last; /* forces of the last steps, N */
+};
+
+/* Notes a step that was taken: the late force; says whether none that matters can come. */
+bool panda_pass(const panda_state *s, panda_watch *watch);
 
 /* A step on trial. */
 typedef struct {
     panda_real amplitude[PANDA_MODES], rate[PANDA_MODES];
     panda_real x, v; /* of the contact point without the force at the end */
     panda_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    panda_real u, root;
+    panda_real u, depth, root;
 } panda_trial;
 
-/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+/* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, panda_real *rate);
 
 /* Moves all modes by a step without forces. */
 void panda_glide(const panda_state *s, panda_trial *t);
 
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
-void panda_press(const panda_state *s, panda_trial *t);
+void panda_press(panda_state *s, panda_trial *t);
 
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void panda_take(const panda_trial *t, panda_state *s);
@@ -49,9 +72,9 @@ void panda_take(const panda_trial *t, panda_state *s);
 void panda_release(panda_state *s);
 
 /*
- * Whether no later force exceeds the largest so far: proven, but for a share by which the energy may
- * exceed what that takes.
+ * Whether no later force exceeds one, the present one being less, under which the skin is so deep: proven,
+ * but for a share by which the energy may exceed what that takes.
  */
-bool panda_is_settled(const panda_state *s, panda_real force, panda_real share);
+bool panda_is_settled(const panda_state *s, panda_real force, panda_real depth, panda_real share);
 
 #endif

@@ -5,7 +5,7 @@
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
 #define CONTACT_STEP PANDA_R(1.0)
 #define MODE_STEP PANDA_R(5.6)
-/* Most damping of a servo in the longest step, as a share of what it acts on. */
+/* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP PANDA_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
@@ -17,8 +17,14 @@
  * through the damper, by more than this share of the force.
  */
 #define FELT PANDA_R(2e-4)
-/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+/* Nor may it swing as motors are released so that spring and damper feel more than this share of it. */
 #define LEFT PANDA_R(5e-5)
+/*
+ * Where the damper's jump at first touch is more than this share of the force, squared, the longest
+ * step is at most so many times as long as the skin takes for it, c over its stiffness.
+ */
+#define JUMPS PANDA_R(0.1)
+#define JUMP_STEP PANDA_R(24.0)
 /* Steps counted; more than any budget has. */
 #define MOST PANDA_R(1e6)
 
@@ -62,9 +68,11 @@ static void let_stand(const panda_impact *impact, panda_real contact, bool relea
         const bool body = impact->gives_way && i == modes->count - 1;
         const panda_real weight = modes->row[i]*modes->row[i];
         const panda_real along = modes->row[i]*modes->start[i];
+        const panda_real held = region->stiffness
+            + region->damping*PANDA_SQRT(PANDA_FMAX(modes->squared[i], PANDA_R(0.0)));
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
-            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && (!released || weight*held < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
         if (i >= modes->rigid && !body) {
             phase->settles = phase->settles && modes->squared[i] > PANDA_R(0.0);
@@ -116,14 +124,14 @@ static void mode_steps(panda_phase *phase, int i)
     }
 }
 
-/* Most that a servo's gains damp a mode, 1/s. */
+/* Most that joints and a servo's gains damp a mode, 1/s. */
 static panda_real damping_rate(const panda_phase *phase)
 {
     panda_real rate = PANDA_R(0.0);
-    for (int i = 0; i < PANDA_N && phase->damped; ++i) {
+    for (int i = 0; i < PANDA_DAMPERS && phase->damped; ++i) {
         panda_real of_motor = PANDA_R(0.0);
         for (int k = 0; k < phase->modes.count; ++k) {
-            const panda_real shape = phase->modes.shape[k][PANDA_SYSTEM - PANDA_N + i];
+            const panda_real shape = phase->modes.shape[k][PANDA_SYSTEM - PANDA_DAMPERS + i];
             of_motor += shape*shape;
         }
         rate = PANDA_FMAX(rate, phase->damping[i]*of_motor);
@@ -159,7 +167,10 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
     }
     const panda_real share = PANDA_FMIN(moving/impact->mobility, PANDA_R(1.0));
     rate2 = PANDA_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
-    const panda_real slowest = PANDA_R(1.0)/time;
+    const panda_real jump = region->damping*impact->mobility;
+    const panda_real rise = jump*region->damping > JUMPS*region->stiffness
+        ? impact->skin_rate/(JUMP_STEP*jump) : PANDA_R(0.0);
+    const panda_real slowest = PANDA_FMAX(PANDA_R(1.0)/time, rise);
     const panda_real rate = PANDA_FMAX(slowest, PANDA_FMAX(PANDA_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const panda_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;

@@ -1253,6 +1253,12 @@ static void test_joint_impulse(void)
            name, "nothing written for bad inputs");
 }
 
+/* What a golden impact hits. */
+static int golden_region(const panda_golden_impact *in, panda_region *region)
+{
+    return panda_body_region(in->part, in->clamped, region);
+}
+
 static void test_impacts(void)
 {
     double worst = 0.0;
@@ -1262,7 +1268,7 @@ static void test_impacts(void)
         panda_peak_force_t peak = {0, 0};
         panda_peak_force_t again = {0, 0};
         panda_safe_speed_t safe = {0, 0};
-        expect(panda_body_region(in->part, in->clamped, &region) == PANDA_OK, "panda_body_region", "status");
+        expect(golden_region(in, &region) == PANDA_OK, "panda_body_region", "status");
         const int found = panda_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak);
         if (found == PANDA_BOUNDED) { /* a servo that float has too few digits for */
             expect((double)peak.force >= in->force, "panda_peak_force", "bound of a golden impact");
@@ -1417,7 +1423,7 @@ static void check_selection(const panda_real poses[][7], int count, const panda_
     panda_real force = 0;
     panda_real next = 0;
     memset(allowed, 1, sizeof allowed);
-    expect(panda_body_region(in->part, in->clamped, &region) == PANDA_OK, "panda_body_region", "status");
+    expect(golden_region(in, &region) == PANDA_OK, "panda_body_region", "status");
     const int best = best_of(poses, count, allowed, in, &region, &force);
     if (best < 0) { /* all are bounded */
         return;

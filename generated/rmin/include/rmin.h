@@ -79,7 +79,7 @@ typedef enum {
 } rmin_motors;
 
 /* What structs and functions look like, in this number type. */
-#define RMIN_LAYOUT (0xfff911b0u + (unsigned int)sizeof(rmin_real))
+#define RMIN_LAYOUT (0x530c2c90u + (unsigned int)sizeof(rmin_real))
 
 typedef struct {
     unsigned int layout; /* RMIN_LAYOUT; rmin_default_params sets it */
@@ -192,14 +192,32 @@ typedef struct {
  */
 int rmin_chain(const rmin_real q[6], const rmin_real n[3], const rmin_params *p, rmin_chain_t *out);
 
-/* What an impact hits: the skin's Hertz contact in series with a spring and damper (MSM 3.1). */
+/*
+ * A point of a law of contact. From it to the next the force follows the parabola whose tangents at both
+ * meet at the knee; the law goes on straight from the last point through its knee. The first point is at 0.
+ */
+typedef struct {
+    rmin_real depth; /* m */
+    rmin_real force; /* N */
+    rmin_real knee_depth; /* m */
+    rmin_real knee_force; /* N */
+} rmin_law_point;
+
+#define RMIN_MOST_LAW_POINTS 128
+
+/*
+ * What an impact hits: a law of contact in series with a spring and damper (MSM 3.1). The law is Hertz's,
+ * or what softimpact.codegen.region_parameters makes of skin, pad and cover.
+ */
 typedef struct {
     rmin_real stiffness; /* k_h of the body, N/m, > 0 */
     rmin_real damping; /* c_h of the body, N s/m, >= 0 */
     rmin_real effective_mass; /* that gives way with it, kg, > 0; not read if clamped */
-    rmin_real hertz_stiffness; /* k_f of the skin, N/m^1.5, > 0 */
+    rmin_real hertz_stiffness; /* k_f of the skin, N/m^1.5, > 0; not read if there is another law */
     rmin_real quasi_static_limit; /* of the force while clamped, N; for the caller */
     rmin_real force_limit; /* of the first milliseconds, N; for the caller */
+    const rmin_law_point *law; /* NULL for Hertz's; else its points, which rise */
+    int law_points; /* how many there are, 1 to 128; not read without a law */
     int clamped; /* 0 if the body can give way */
 } rmin_region;
 
@@ -295,6 +313,70 @@ int rmin_speed_factor_over(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RM
     const int points[], const rmin_region regions[], const rmin_real limits[], int count,
     const rmin_params *p, rmin_speed_factor_over_t *out);
 
+/*
+ * Largest force with which a point presses on a clamped body from 0.5 to 0.6 s after first touch, when the
+ * quasi-static limit counts; 0 on one that gives way. p->horizon does not matter.
+ * RMIN_BOUNDED: the force is a bound that none exceeds.
+ */
+int rmin_pressing_force_at(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
+    rmin_real speed, const rmin_region *region, const rmin_params *p, rmin_real *force);
+
+typedef struct {
+    rmin_real n[3]; /* of the impact, a unit vector */
+    rmin_real force; /* N; along it */
+    rmin_real error; /* share of the force by which another direction may be harder */
+} rmin_worst_direction_t;
+
+/*
+ * The direction in which a contact point (rmin_point) hits hardest at a speed, among those in which the
+ * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of directions.
+ */
+int rmin_worst_direction_at(const rmin_real q[RMIN_JOINTS], int point, rmin_real speed,
+    const rmin_region *region, const rmin_params *p, rmin_worst_direction_t *out);
+
+typedef struct {
+    rmin_real speed; /* m/s */
+    rmin_real force; /* N; largest at this speed up to the horizon, or at a greater one */
+    int pressed; /* 1 if what presses later needs this speed, 0 if the force */
+} rmin_allowed_speed_t;
+
+/*
+ * As rmin_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
+ * region->quasi_static_limit from 0.5 to 0.6 s. RMIN_UNRESOLVED if no speed is known to keep both.
+ */
+int rmin_allowed_speed_at(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
+    const rmin_region *region, const rmin_params *p, rmin_allowed_speed_t *out);
+
+typedef struct {
+    rmin_real factor; /* of all joint velocities, 0 to 1 */
+    int point; /* rmin_point that needs it, -1 if none moves */
+    rmin_real speed; /* m/s; that this point may have */
+    rmin_real force; /* N; largest at that speed up to the horizon, or at a greater one */
+    int pressed; /* 1 if what presses later needs it */
+} rmin_allowed_factor_t;
+
+/* As rmin_speed_factor, for all limits of a region. */
+int rmin_allowed_factor(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
+    const rmin_region *region, const rmin_params *p, rmin_allowed_factor_t *out);
+
+/*
+ * Whether a contact point that moves as joints do might press on a clamped body harder than a limit from
+ * 0.5 to 0.6 s: 0 where it is proven or integrated that none does.
+ */
+int rmin_may_press(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
+    rmin_real limit, const rmin_region *region, const rmin_params *p, int *may);
+
+/*
+ * Built-in candidates for rmin_select_configuration:
+ * 0 impact,
+ * 1 near,
+ * 2 left,
+ * 3 far
+ */
+#define RMIN_CANDIDATES 4
+extern const rmin_real rmin_candidates[RMIN_CANDIDATES][6];
+
 typedef struct {
     int best;    /* row of the pose with the least peak force; the first of equals */
     int second;  /* row of the next, -1 if there is none */
@@ -305,7 +387,7 @@ typedef struct {
 
 /*
  * Which of several poses hits a body region least: by rmin_peak_force, one call a pose.
- * poses: `count` rows of joint coordinates.
+ * poses: `count` rows of joint coordinates, such as rmin_candidates.
  * allowed: `count` entries, 0 for poses to be left out (out of reach, in collision); NULL allows all.
  * Poses that are singular or not resolved are left out too; if none is left, RMIN_SINGULAR.
  * Anything else that is wrong with an input is returned as rmin_peak_force returns it.

@@ -266,6 +266,83 @@ inline result<rmin_speed_factor_t> speed_factor(
     return found;
 }
 
+/* Largest force with which a point presses on a clamped body from 0.5 to 0.6 s after first touch,
+ * when the
+ * quasi-static limit counts; 0 on one that gives way. p->horizon does not matter.
+ * RMIN_BOUNDED: the force is a bound that none exceeds. */
+inline result<real> pressing_force_at(
+    const vector<6> &q,
+    int point,
+    const vector<3> &n,
+    real speed,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<real> found;
+    found.status = rmin_pressing_force_at(q.data(), point, n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+/* The direction in which a contact point (rmin_point) hits hardest at a speed, among those in
+ * which the
+ * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control
+ * loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of
+ * directions. */
+inline result<rmin_worst_direction_t> worst_direction_at(
+    const vector<6> &q,
+    int point,
+    real speed,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_worst_direction_t> found;
+    found.status = rmin_worst_direction_at(q.data(), point, speed, &region, &p, &found.value);
+    return found;
+}
+
+/* As rmin_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and,
+ * clamped,
+ * region->quasi_static_limit from 0.5 to 0.6 s. RMIN_UNRESOLVED if no speed is known to keep both. */
+inline result<rmin_allowed_speed_t> allowed_speed_at(
+    const vector<6> &q,
+    int point,
+    const vector<3> &n,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_allowed_speed_t> found;
+    found.status = rmin_allowed_speed_at(q.data(), point, n.data(), &region, &p, &found.value);
+    return found;
+}
+
+/* As rmin_speed_factor, for all limits of a region. */
+inline result<rmin_allowed_factor_t> allowed_factor(
+    const vector<6> &q,
+    const vector<6> &dq,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_allowed_factor_t> found;
+    found.status = rmin_allowed_factor(q.data(), dq.data(), &region, &p, &found.value);
+    return found;
+}
+
+/* Whether a contact point that moves as joints do might press on a clamped body harder than a
+ * limit from
+ * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
+inline result<rmin_int> may_press(
+    const vector<6> &q,
+    const vector<6> &dq,
+    real limit,
+    const rmin_region &region,
+    const rmin_params &p) noexcept
+{
+    result<rmin_int> found;
+    found.status = rmin_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
 } // namespace rmin
 
 #endif

@@ -18,11 +18,13 @@ pub type rmin_real = f32;
 pub const RMIN_JOINTS: usize = 6;
 pub const RMIN_COORDINATES: usize = 4;
 pub const RMIN_CHAIN_ORDER: usize = 3;
+pub const RMIN_MOST_LAW_POINTS: usize = 128;
 pub const RMIN_POINTS: usize = 1;
+pub const RMIN_CANDIDATES: usize = 4;
 pub const RMIN_VERSION: &str = "0.2.0";
 pub const RMIN_MODEL_DIGEST: &str = "9aef78915461144e8c584f0d2e2b92eeefff44bc17b988d6df56b13ba4a63606";
 /// What structs and functions look like, in this number type.
-pub const RMIN_LAYOUT: c_uint = 0xfff911b0 + core::mem::size_of::<rmin_real>() as c_uint;
+pub const RMIN_LAYOUT: c_uint = 0x530c2c90 + core::mem::size_of::<rmin_real>() as c_uint;
 
 pub const RMIN_OK: c_int = 0;
 pub const RMIN_NULL_POINTER: c_int = 1;
@@ -99,6 +101,19 @@ pub struct rmin_chain_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rmin_law_point {
+    /// m
+    pub depth: rmin_real,
+    /// N
+    pub force: rmin_real,
+    /// m
+    pub knee_depth: rmin_real,
+    /// N
+    pub knee_force: rmin_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct rmin_region {
     /// k_h of the body, N/m, > 0
     pub stiffness: rmin_real,
@@ -106,12 +121,16 @@ pub struct rmin_region {
     pub damping: rmin_real,
     /// that gives way with it, kg, > 0; not read if clamped
     pub effective_mass: rmin_real,
-    /// k_f of the skin, N/m^1.5, > 0
+    /// k_f of the skin, N/m^1.5, > 0; not read if there is another law
     pub hertz_stiffness: rmin_real,
     /// of the force while clamped, N; for the caller
     pub quasi_static_limit: rmin_real,
     /// of the first milliseconds, N; for the caller
     pub force_limit: rmin_real,
+    /// NULL for Hertz's; else its points, which rise
+    pub law: *const rmin_law_point,
+    /// how many there are, 1 to 128; not read without a law
+    pub law_points: c_int,
     /// 0 if the body can give way
     pub clamped: c_int,
 }
@@ -162,6 +181,43 @@ pub struct rmin_speed_factor_over_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rmin_worst_direction_t {
+    /// of the impact, a unit vector
+    pub n: [rmin_real; 3],
+    /// N; along it
+    pub force: rmin_real,
+    /// share of the force by which another direction may be harder
+    pub error: rmin_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rmin_allowed_speed_t {
+    /// m/s
+    pub speed: rmin_real,
+    /// N; largest at this speed up to the horizon, or at a greater one
+    pub force: rmin_real,
+    /// 1 if what presses later needs this speed, 0 if the force
+    pub pressed: c_int,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rmin_allowed_factor_t {
+    /// of all joint velocities, 0 to 1
+    pub factor: rmin_real,
+    /// rmin_point that needs it, -1 if none moves
+    pub point: c_int,
+    /// m/s; that this point may have
+    pub speed: rmin_real,
+    /// N; largest at that speed up to the horizon, or at a greater one
+    pub force: rmin_real,
+    /// 1 if what presses later needs it
+    pub pressed: c_int,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct rmin_selection_t {
     /// row of the pose with the least peak force; the first of equals
     pub best: c_int,
@@ -176,6 +232,7 @@ pub struct rmin_selection_t {
 }
 
 extern "C" {
+    pub static rmin_candidates: [[rmin_real; 6]; 4];
     pub fn rmin_status_text(status: c_int) -> *const c_char;
     pub fn rmin_version() -> *const c_char;
     pub fn rmin_model_digest() -> *const c_char;
@@ -196,6 +253,11 @@ extern "C" {
     pub fn rmin_safe_speed_at(q: *const rmin_real, point: c_int, n: *const rmin_real, limit: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_safe_speed_t) -> c_int;
     pub fn rmin_speed_factor(q: *const rmin_real, dq: *const rmin_real, limit: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_speed_factor_t) -> c_int;
     pub fn rmin_speed_factor_over(q: *const rmin_real, dq: *const rmin_real, points: *const c_int, regions: *const rmin_region, limits: *const rmin_real, count: c_int, p: *const rmin_params, out: *mut rmin_speed_factor_over_t) -> c_int;
+    pub fn rmin_pressing_force_at(q: *const rmin_real, point: c_int, n: *const rmin_real, speed: rmin_real, region: *const rmin_region, p: *const rmin_params, force: *mut rmin_real) -> c_int;
+    pub fn rmin_worst_direction_at(q: *const rmin_real, point: c_int, speed: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_worst_direction_t) -> c_int;
+    pub fn rmin_allowed_speed_at(q: *const rmin_real, point: c_int, n: *const rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_allowed_speed_t) -> c_int;
+    pub fn rmin_allowed_factor(q: *const rmin_real, dq: *const rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_allowed_factor_t) -> c_int;
+    pub fn rmin_may_press(q: *const rmin_real, dq: *const rmin_real, limit: rmin_real, region: *const rmin_region, p: *const rmin_params, may: *mut c_int) -> c_int;
     pub fn rmin_select_configuration(poses: *const [rmin_real; 6], count: c_int, allowed: *const c_uchar, n: *const rmin_real, speed: rmin_real, region: *const rmin_region, p: *const rmin_params, out: *mut rmin_selection_t) -> c_int;
 }
 

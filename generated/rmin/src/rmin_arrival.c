@@ -4,6 +4,8 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE RMIN_R(1e-6)
+/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+#define ASTRAY RMIN_R(1e-3)
 #define MOST_STEPS 1000000
 
 int rmin_check_impact(const rmin_region *region, const rmin_params *p)
@@ -11,13 +13,14 @@ int rmin_check_impact(const rmin_region *region, const rmin_params *p)
     if (p->layout != RMIN_LAYOUT) {
         return RMIN_FOREIGN_PARAMS;
     }
-    const rmin_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
+    const rmin_real numbers[4] = {region->stiffness, region->damping,
+        region->law != NULL ? RMIN_R(1.0) : region->hertz_stiffness,
         region->clamped != 0 ? RMIN_R(1.0) : region->effective_mass};
     if (!rmin_all_finite(numbers, 4)) {
         return RMIN_NOT_FINITE;
     }
     const bool body = region->stiffness > RMIN_R(0.0) && region->damping >= RMIN_R(0.0)
-        && region->hertz_stiffness > RMIN_R(0.0) && numbers[3] > RMIN_R(0.0);
+        && numbers[3] > RMIN_R(0.0) && rmin_law_is_one(region);
     const rmin_real horizon = RMIN_HORIZON(p);
     const rmin_real reaction = RMIN_REACTION_TIME(p);
     int status = rmin_check_positive(&horizon, 1);
@@ -77,6 +80,7 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
     rmin_forward(RMIN_REACH, square, share);
     rmin_backward(RMIN_REACH, square, share);
     rmin_real fast = RMIN_R(0.0);
+    rmin_real along = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
         rmin_real rate = RMIN_R(0.0);
         for (int k = 0; k < RMIN_REACH; ++k) {
@@ -84,8 +88,29 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
+        along += rate*arrival->row[i];
     }
-    return fast < RMIN_FASTEST ? RMIN_OK : RMIN_SINGULAR;
+    return fast < RMIN_FASTEST && RMIN_FABS(along - RMIN_R(1.0)) < ASTRAY ? RMIN_OK : RMIN_SINGULAR;
+}
+
+rmin_real rmin_arrive_as_it_moves(int point, const rmin_real rates[RMIN_N], rmin_arrival *arrival)
+{
+    rmin_real v[3];
+    for (int k = 0; k < 3; ++k) {
+        v[k] = RMIN_R(0.0);
+        for (int i = 0; i < RMIN_N; ++i) {
+            v[k] += arrival->links.J[3*point + k][i]*rates[i];
+        }
+    }
+    const rmin_real speed = RMIN_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    for (int i = 0; i < RMIN_N && speed > RMIN_R(0.0); ++i) {
+        arrival->row[i] = RMIN_R(0.0);
+        for (int k = 0; k < 3; ++k) {
+            arrival->row[i] += v[k]/speed*arrival->links.J[3*point + k][i];
+        }
+        arrival->rates[i] = rates[i]/speed;
+    }
+    return speed;
 }
 
 void rmin_kinds_of_motors(const rmin_params *p, int *first, int *last)

@@ -14,6 +14,8 @@
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
  * y^2 v with y^2 <= y sqrt(2 t K) + c, K = k + c^2 mobility. Released after t, the robot has at most
  * (sqrt(E) + sqrt(v^2/2 r'(M + B)r))^2, as the energies of both motions add like squares of lengths.
+ * Joints with damping of their own: motors are taken to go on with what that needed before, so the same holds
+ * whatever motors do, to the horizon.
  */
 #include "rmin_impact.h"
 
@@ -88,12 +90,15 @@ rmin_real rmin_bound(const rmin_impact *impact)
     }
     const rmin_real hold = impact->hold;
     const rmin_real twice = rmin_twice_energy(impact);
+    const rmin_real horizon = RMIN_HORIZON(impact->p);
+    const rmin_real always = while_driven(horizon, hold, impact->region->damping);
+    if (RMIN_DAMPED) {
+        return always;
+    }
     if (impact->first == RMIN_LOOSE) {
         return RMIN_SQRT(twice*hold);
     }
-    const rmin_real horizon = RMIN_HORIZON(impact->p);
     const rmin_real reaction = RMIN_FMIN(RMIN_REACTION_TIME(impact->p), horizon);
-    const rmin_real always = while_driven(horizon, hold, impact->region->damping);
     const rmin_real until = while_driven(reaction, hold, impact->region->damping);
     const rmin_real root = RMIN_SQRT(RMIN_R(2.0)*until*reaction) + RMIN_SQRT(twice);
     return RMIN_FMIN(always, RMIN_FMAX(until, root*RMIN_SQRT(hold)));

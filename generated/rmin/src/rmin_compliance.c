@@ -40,15 +40,15 @@ static void scale_by_springs(const rmin_arrival *arrival, const rmin_params *p, 
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int spring_modes(rmin_square C, const rmin_real b[RMIN_N], rmin_modes *modes)
+static int spring_modes(rmin_matrix C, const rmin_real b[RMIN_N], rmin_modes *modes)
 {
     rmin_real squares[RMIN_N];
-    rmin_square vectors;
+    rmin_matrix vectors;
     rmin_real all = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
         all += C[i][i];
     }
-    if (!rmin_spectrum(C, squares, vectors)) {
+    if (!rmin_spectrum(RMIN_N, C, squares, vectors)) {
         return RMIN_SINGULAR;
     }
     const rmin_real least = NOISE*all;
@@ -78,7 +78,7 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     rmin_real *drift)
 {
     spring_scaled s;
-    rmin_square C;
+    rmin_matrix C;
     scale_by_springs(arrival, p, &s);
     for (int i = 0; i < RMIN_N; ++i) {
         for (int j = 0; j <= i; ++j) {
@@ -96,8 +96,8 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
 {
     spring_scaled s;
     rmin_matrix G;
-    rmin_square Y; /* columns of L_G^-1 L' */
-    rmin_square C;
+    rmin_matrix Y; /* columns of L_G^-1 L' */
+    rmin_matrix C;
     rmin_real z[RMIN_N];
     scale_by_springs(arrival, p, &s);
     if (!rmin_cholesky(RMIN_N, s.S)) {

@@ -17,6 +17,7 @@
 #else
 #define RMIN_SYSTEM RMIN_N
 #endif
+#define RMIN_DAMPERS (RMIN_DAMPED ? RMIN_SYSTEM : RMIN_N) /* of the last ones of these */
 #define RMIN_MODES (RMIN_SYSTEM + 1) /* one for a body that gives way */
 #define RMIN_LEVELS 7 /* lengths of steps, each half the one before */
 
@@ -27,8 +28,7 @@ typedef struct {
     rmin_real rates[RMIN_N]; /* joint velocities for an approach of 1 m/s */
 } rmin_arrival;
 
-/* Matrices over the links alone, and of up to RMIN_SYSTEM rows. */
-typedef rmin_real rmin_square[RMIN_N][RMIN_N];
+/* Matrices of up to RMIN_SYSTEM rows. */
 typedef rmin_real rmin_matrix[RMIN_SYSTEM][RMIN_SYSTEM];
 
 /*
@@ -76,8 +76,8 @@ typedef struct {
     rmin_real compliance; /* of those that stand, m/N */
     rmin_real reach; /* of all that vibrate, m/N */
     rmin_real drift; /* velocity of the contact point that motors keep up, over the speed */
-    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
-    rmin_real damping[RMIN_N];
+    bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
+    rmin_real damping[RMIN_DAMPERS];
     int steps; /* of the longest level until the time is over */
     rmin_level level[RMIN_LEVELS];
 } rmin_phase;
@@ -105,11 +105,14 @@ typedef struct {
 #define RMIN_LED 0
 #define RMIN_LOOSE 1
 
+typedef struct rmin_watch rmin_watch;
+
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
     bool rough; /* longer steps do */
     rmin_real stop_above; /* force after whose passing the rest does not matter, N */
+    rmin_watch *watch; /* who sees each step and ends the impact, or NULL; rmin_state.h */
 } rmin_budget;
 
 typedef struct {
@@ -125,6 +128,9 @@ int rmin_check_impact(const rmin_region *region, const rmin_params *p);
 
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival);
+
+/* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
+rmin_real rmin_arrive_as_it_moves(int point, const rmin_real rates[RMIN_N], rmin_arrival *arrival);
 
 /* Checks and links of an impact of one of the contact points. */
 int rmin_approach(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
@@ -155,6 +161,21 @@ rmin_real rmin_bound(const rmin_impact *impact);
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void rmin_kinds_of_motors(const rmin_params *p, int *first, int *last);
 
+/*
+ * What is known of a region's law of contact: its depth under a force, twice the work done by then, and the
+ * largest stiffness up to it.
+ */
+rmin_real rmin_law_depth(const rmin_region *region, rmin_real force);
+rmin_real rmin_law_twice_work(const rmin_region *region, rmin_real force);
+rmin_real rmin_law_stiffness(const rmin_region *region, rmin_real force);
+
+/* Force of a law through points whose depth d makes hold d + soft f(d) = pressed > 0; and that depth. */
+rmin_real rmin_law_press(const rmin_region *region, rmin_real hold, rmin_real soft, rmin_real pressed,
+    rmin_real *depth);
+
+/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+bool rmin_law_is_one(const rmin_region *region);
+
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 rmin_real rmin_two_body_force(const rmin_region *region, rmin_real mobility, rmin_real speed);
 rmin_real rmin_two_body_speed(const rmin_region *region, rmin_real mobility, rmin_real force);
@@ -165,6 +186,16 @@ rmin_real rmin_two_body_speed(const rmin_region *region, rmin_real mobility, rmi
  */
 int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real limit,
     rmin_real cap, rmin_impact *impact, rmin_safe_speed_t *found);
+
+/* Largest force of an arrival by any of the motors that p stands for: OK, BOUNDED or another status. */
+int rmin_find_peak(const rmin_region *region, const rmin_params *p, rmin_real speed,
+    rmin_impact *impact, rmin_peak_force_t *out);
+
+#if RMIN_FRAMES > 0
+/* Links, with the motion of a place in a frame in place of that of the package's own point. */
+int rmin_links_on(const rmin_real q[RMIN_JOINTS], int frame, const rmin_real place[3],
+    const rmin_params *p, rmin_links_t *links);
+#endif
 
 /* Largest force over all contacts of an impact at a speed. */
 void rmin_impact_run(rmin_impact *impact, rmin_real speed, rmin_budget *budget,
@@ -197,7 +228,7 @@ void rmin_backward(int size, rmin_matrix L, rmin_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X, rmin_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
-bool rmin_spectrum(rmin_square A, rmin_real values[RMIN_N], rmin_square vectors);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
+bool rmin_spectrum(int size, rmin_matrix A, rmin_real *values, rmin_matrix vectors);
 
 #endif

@@ -127,7 +127,8 @@ static inline int rmin_unit_vector(const rmin_real n[3], rmin_real u[3])
 #define RMIN_N 4 /* independent joints */
 #define RMIN_ELASTIC 0 /* a spring behind every motor */
 #define RMIN_POTENTIAL 1 /* gravity, or springs of the model file */
-#define RMIN_STRUCTURED (RMIN_ELASTIC && !RMIN_POTENTIAL)
+#define RMIN_DAMPED 0 /* joints have damping of their own */
+#define RMIN_STRUCTURED (RMIN_ELASTIC && !RMIN_POTENTIAL && !RMIN_DAMPED)
 #define RMIN_REACH 2 /* directions in which motors move contact points */
 #define RMIN_FASTEST RMIN_R(110000.0) /* squared joint velocity for 1 m/s: singular */
 #define RMIN_LEAST_MOBILITY RMIN_R(6.67e-05) /* 1/kg; below: singular */
@@ -140,6 +141,8 @@ typedef struct {
 
 /* Links as they arrive at an impact. */
 int rmin_links(const rmin_real q[6], const rmin_params *p, rmin_links_t *out);
+
+#define RMIN_FRAMES 0 /* frames of links in which contact points can be given */
 
 extern const rmin_real rmin_directions[RMIN_REACH][3];
 extern const bool rmin_has_motor[RMIN_N];

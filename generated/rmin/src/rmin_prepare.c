@@ -5,27 +5,6 @@
 /* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
 #define BLURS RMIN_R(1.6e-2)
 
-/* Largest stiffness of the skin up to a force. */
-static rmin_real skin_stiffness(const rmin_region *region, rmin_real force)
-{
-    const rmin_real third = RMIN_R(1.0)/RMIN_R(3.0);
-    return RMIN_R(1.5)*RMIN_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
-}
-
-rmin_real rmin_two_body_force(const rmin_region *region, rmin_real mobility, rmin_real speed)
-{
-    const rmin_real spring = speed*RMIN_SQRT(region->stiffness/mobility);
-    const rmin_real energy = RMIN_R(1.25)*speed*speed/mobility;
-    const rmin_real skin = RMIN_POW(energy, RMIN_R(0.6))*RMIN_POW(region->hertz_stiffness, RMIN_R(0.4));
-    return RMIN_R(1.0)/(RMIN_R(1.0)/spring + RMIN_R(1.0)/skin);
-}
-
-rmin_real rmin_two_body_speed(const rmin_region *region, rmin_real mobility, rmin_real force)
-{
-    const rmin_real depth = RMIN_POW(force/region->hertz_stiffness, RMIN_R(2.0)/RMIN_R(3.0));
-    return RMIN_SQRT(mobility*force*(force/region->stiffness + RMIN_R(0.8)*depth));
-}
-
 void rmin_impact_forget(rmin_impact *impact)
 {
     impact->phase[RMIN_LED].known = false;
@@ -56,8 +35,9 @@ static int led_modes(rmin_impact *impact, rmin_phase *phase)
         return rmin_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < RMIN_N; ++i) {
-        phase->damping[i] = RMIN_DAMPING_GAIN(impact->p, i);
-        phase->damped = phase->damped || phase->damping[i] > RMIN_R(0.0);
+        const rmin_real gain = RMIN_DAMPING_GAIN(impact->p, i);
+        phase->damping[RMIN_DAMPERS - RMIN_N + i] += gain;
+        phase->damped = phase->damped || gain > RMIN_R(0.0);
     }
     return rmin_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
@@ -72,11 +52,16 @@ static int modes_of(rmin_impact *impact, int which)
     }
     phase->has_body = false;
     phase->drift = RMIN_R(0.0);
-    phase->damped = false;
+    phase->damped = RMIN_DAMPED != 0;
     phase->modes.noise = RMIN_R(0.0);
-    for (int i = 0; i < RMIN_N; ++i) {
+    for (int i = 0; i < RMIN_DAMPERS; ++i) {
         phase->damping[i] = RMIN_R(0.0);
     }
+#if RMIN_DAMPED
+    for (int i = 0; i < RMIN_N; ++i) {
+        phase->damping[i] = rmin_joint_damping[i];
+    }
+#endif
     const int status = which == RMIN_LED ? led_modes(impact, phase)
         : rmin_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     phase->known = status == RMIN_OK;
@@ -166,11 +151,11 @@ int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int mot
     }
     const rmin_real size =
         force > RMIN_R(0.0) ? force : rmin_two_body_force(region, impact->mobility, -force);
-    impact->scale = RMIN_R(0.2)*size;
+    impact->scale = RMIN_R(0.5)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rmin_real damped = region->damping*RMIN_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RMIN_R(1.0)/(RMIN_R(1.0) + RMIN_R(4.0)*damped);
-    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    impact->skin_rate = rmin_law_stiffness(region, size)*impact->mobility;
     const rmin_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!rmin_all_finite(numbers, 3) || rmin_check_positive(numbers, 3) != RMIN_OK) {
         return RMIN_SINGULAR;

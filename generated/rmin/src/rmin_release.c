@@ -2,8 +2,8 @@
 /* What is left of an impact of rmin_ when its motors are let go, in modes of loose motors. */
 #include "rmin_state.h"
 
-/* Levels by which the first step is shorter than the last: the bend of the force jumps. */
-#define AFTER 2
+/* Levels by which the first step is shorter than the last: the force may turn within it. */
+#define AFTER 4
 
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const rmin_state *s, int size, rmin_real *place, rmin_real *rate)
@@ -24,6 +24,25 @@ static void coordinates_of(const rmin_state *s, int size, rmin_real *place, rmin
             rate[j] += shape[j]*b;
         }
     }
+}
+
+/*
+ * Most that modes that stand, bent by the force, add to it as they swing about that: springs that
+ * motors wound up may hold more energy than the body does.
+ */
+static rmin_real swings_of(const rmin_state *s, const rmin_phase *next, const rmin_real *a,
+    const rmin_real *b)
+{
+    const rmin_region *const region = s->impact->region;
+    const rmin_modes *const modes = &next->modes;
+    rmin_real sum = RMIN_R(0.0);
+    for (int i = next->active; i < modes->count; ++i) {
+        const rmin_real rate = RMIN_SQRT(modes->squared[i]);
+        const rmin_real away = a[i] + modes->row[i]/modes->squared[i]*s->f;
+        const rmin_real swing = RMIN_SQRT(away*away + b[i]*b[i]/modes->squared[i]);
+        sum += (region->stiffness + region->damping*rate)*RMIN_FABS(modes->row[i])*swing;
+    }
+    return sum;
 }
 
 void rmin_release(rmin_state *s)
@@ -56,7 +75,7 @@ void rmin_release(rmin_state *s)
     }
     a[0] = x/modes->row[0];
     b[0] = v/modes->row[0];
-    for (int i = 1; i < next->active; ++i) {
+    for (int i = 1; i < modes->count; ++i) {
         a[i] = RMIN_R(0.0);
         b[i] = RMIN_R(0.0);
         for (int j = 0; j < RMIN_N; ++j) {
@@ -92,7 +111,7 @@ void rmin_release(rmin_state *s)
         }
 #endif
     }
-    for (int i = 0; i < next->active; ++i) {
+    for (int i = 0; i < modes->count; ++i) {
         a[i] = RMIN_R(0.0);
         b[i] = RMIN_R(0.0);
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
@@ -101,6 +120,7 @@ void rmin_release(rmin_state *s)
         }
     }
 #endif
+    s->swings = swings_of(s, next, a, b);
     /* The body is the last of the modes that move: at least one does. */
     if (impact->gives_way && next->active > 0 && s->phase->active > 0) {
         a[next->active - 1] = s->amplitude[s->phase->active - 1];
@@ -111,6 +131,10 @@ void rmin_release(rmin_state *s)
         s->rate[i] = b[i];
     }
     const rmin_real h = s->phase->level[s->level].h;
+    const rmin_real more = next->compliance - s->phase->compliance; /* of modes that stand from now on */
+    s->x += more*s->f;
+    s->u += more*s->f;
+    s->u_before += more*(s->f - s->rise);
     s->phase = next;
     s->drifted = RMIN_R(0.0);
     s->level = 0;
@@ -119,6 +143,7 @@ void rmin_release(rmin_state *s)
     }
     s->level = s->level + AFTER < RMIN_LEVELS ? s->level + AFTER : RMIN_LEVELS - 1;
     s->past = s->past > 1 ? 1 : s->past;
+    s->even = 0;
     s->ticks = next->steps*(1 << (RMIN_LEVELS - 1));
 }
 

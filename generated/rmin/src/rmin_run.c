@@ -3,46 +3,70 @@
 #include "rmin_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS RMIN_R(0.0125)
+#define BENDS RMIN_R(0.03)
 #define BENDS_ROUGH RMIN_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
-#define STRAIGHT RMIN_R(0.12)
+#define STRAIGHT RMIN_R(0.22)
+/* Force from which robot and body may part within a step, over the bend that is allowed. */
+#define PARTS RMIN_R(4.0)
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (RMIN_LEVELS - 1)
 #define SHORTEST_ROUGH 2
 /* Steps in contact after which it is looked whether the rest matters. */
 #define LOOKS 2
+/* Share of a first step within which the damper has to press the skin in, and the share of that time missed. */
+#define BRIEF RMIN_R(0.3)
+#define MISSED RMIN_R(1.2)
+/* Level of such a first step. */
+#define LONGEST 4
+#define LONGEST_ROUGH 1
 /* Share of what a harder contact takes up to which rough runs take it to be out of reach. */
 #define ROUGHLY RMIN_R(1.3)
+
+/* Changes the length of the next step. */
+static void change_level(rmin_state *s, int level)
+{
+    s->level = level;
+    s->even = 0;
+}
+
 /* Advances the clock, and lengthens the next step where it may. */
 static void tick(rmin_state *s, bool longer)
 {
-    const rmin_level *const level = &s->phase->level[s->level];
     s->h_before = s->h;
-    s->h = level->h;
-    s->time += level->h;
-    s->drifted += s->phase->drift*s->speed*level->h;
+    s->h = s->phase->level[s->level].h;
+    s->time += s->h;
+    s->drifted += s->phase->drift*s->speed*s->h;
     s->ticks -= 1 << (RMIN_LEVELS - 1 - s->level);
+    ++s->even;
     if (longer && s->level > 0 && s->ticks % (1 << (RMIN_LEVELS - s->level)) == 0) {
-        --s->level;
+        change_level(s, s->level - 1);
     }
 }
 
-/* Notes a top of the parabola through the last three forces. */
-static void see(const rmin_state *s, rmin_real f, rmin_real h, rmin_peak *peak)
+/* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
+static void see(rmin_state *s, const rmin_trial *t, rmin_peak *peak)
 {
-    rmin_real force = f;
+    const rmin_real h = s->phase->level[s->level].h;
+    rmin_real force = t->f;
     rmin_real time = s->time + h;
-    if (s->past > 0 && s->rise >= RMIN_R(0.0) && f < s->f) {
+    if (t->f < s->f && s->past > 0 && s->rise >= RMIN_R(0.0)) {
         const rmin_real before = s->rise/s->h;
-        const rmin_real after = (f - s->f)/h;
+        const rmin_real after = (t->f - s->f)/h;
         const rmin_real bend = (after - before)/(h + s->h);
         const rmin_real slope = before + bend*s->h;
-        force = s->f - RMIN_R(0.25)*slope*slope/bend;
-        time = s->time - RMIN_R(0.5)*slope/bend;
+        const rmin_real since = RMIN_R(-0.5)*slope/bend; /* the last node */
+        force = s->f + RMIN_R(0.5)*slope*since;
+        time = s->time + since;
+        if (s->past > 1) {
+            const rmin_real bent = RMIN_R(-6.0)*s->bump/(s->h*s->h); /* at the last node */
+            const rmin_real twist = (bend - bent)/(h + s->h + s->h_before);
+            force += twist*since*(since + s->h)*(since - h);
+        }
     }
-    if (force > peak->force) {
-        peak->force = force;
+    if (force + s->swings > peak->force) {
+        s->depth = t->f > peak->force ? t->depth : s->depth;
+        peak->force = force + s->swings;
         peak->time = time;
         peak->contact = peak->contacts;
     }
@@ -52,48 +76,56 @@ static void see(const rmin_state *s, rmin_real f, rmin_real h, rmin_peak *peak)
 static bool step_pressed(rmin_state *s, rmin_trial *t, rmin_real bends, int shortest, rmin_peak *peak)
 {
     rmin_press(s, t);
-    const rmin_real size = RMIN_FMAX(s->scale, peak->force);
+    const rmin_real allowed = bends*RMIN_FMAX(s->scale, peak->force);
     const rmin_real bent = RMIN_R(6.0)*RMIN_FABS(t->bump);
-    if (s->level < shortest && !(bent <= bends*size)) {
-        ++s->level;
+    const bool parts = !(t->f > RMIN_R(0.0));
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+        change_level(s, s->level + 1);
         return false;
     }
-    const rmin_level *const level = &s->phase->level[s->level];
     rmin_take(t, s);
-    s->depth = t->f > peak->force ? t->root*t->root : s->depth;
-    see(s, t->f, level->h, peak);
-    const rmin_real rest = (s->x - s->u)*level->relax;
+    see(s, t, peak);
+    if (parts) {
+        s->touching = false;
+        s->rest = RMIN_FMAX(t->x, (s->x - s->u)*s->phase->level[s->level].relax);
+    }
+    const bool straight = bent <= STRAIGHT*allowed && RMIN_R(6.0)*RMIN_FABS(s->bump) <= STRAIGHT*allowed;
     s->bump = t->bump;
     s->rise = t->f - s->f;
     s->f = t->f;
     s->u_before = s->u;
     s->u = t->u;
+    s->now = t->depth;
     s->root = t->root;
     s->x = t->x;
     ++s->past;
-    if (!(t->f > RMIN_R(0.0))) {
-        s->touching = false;
-        s->rest = RMIN_FMAX(s->x, rest);
-    }
-    tick(s, bent <= STRAIGHT*bends*size && s->past > 1);
+    tick(s, straight && s->past > 1);
     return true;
 }
 
 /* A step out of contact; false if it must be shorter, or is one in contact. */
-static bool step_apart(rmin_state *s, rmin_trial *t, int shortest, rmin_peak *peak)
+static bool step_apart(rmin_state *s, const rmin_trial *t, int shortest, rmin_peak *peak)
 {
-    const rmin_level *const level = &s->phase->level[s->level];
-    const rmin_real rest = s->rest*level->relax;
+    const rmin_real rest = s->rest*s->phase->level[s->level].relax;
     if (t->x > rest) {
-        if (s->level < shortest) {
-            ++s->level;
+        if (s->level < shortest) { /* to a step that ends before they touch, if both approach evenly */
+            rmin_real share = (s->rest - s->x)/(s->rest - s->x + t->x - rest);
+            int level = s->level;
+            do {
+                ++level;
+                share += share;
+            } while (level < shortest && !(share >= RMIN_R(1.0)));
+            change_level(s, level);
             return false;
         }
         s->touching = true;
         s->past = 0;
+        s->even = 0;
         s->u = s->x - s->rest;
         s->f = RMIN_R(0.0);
         s->rise = RMIN_R(0.0);
+        s->bump = RMIN_R(0.0);
+        s->now = RMIN_R(0.0);
         s->root = RMIN_R(0.0);
         ++peak->contacts;
         return false;
@@ -108,6 +140,26 @@ static bool step_apart(rmin_state *s, rmin_trial *t, int shortest, rmin_peak *pe
     return true;
 }
 
+/*
+ * A damper that meets the skin at once pushes c v as soon as the skin is deep enough, after a time of depth/v:
+ * where that is brief the first step is long, and begins with what c v is on average.
+ */
+static void begin(const rmin_region *region, int longest, rmin_state *s)
+{
+    const rmin_real pushed = region->damping*s->speed;
+    const rmin_real slow = rmin_law_depth(region, pushed)/s->speed;
+    if (s->phase->level[longest].h*BRIEF >= slow) {
+        s->level = longest;
+    }
+    const rmin_real share = RMIN_R(1.0) - MISSED*slow/s->phase->level[s->level].h;
+    if (share > RMIN_R(0.0)) {
+        s->f = share*pushed;
+        s->now = rmin_law_depth(region, s->f);
+        s->u = s->now + s->phase->compliance*s->f;
+        s->root = RMIN_SQRT(s->now);
+    }
+}
+
 static void start(rmin_impact *impact, rmin_real speed, bool rough, rmin_state *s)
 {
     const rmin_phase *const phase = &impact->phase[impact->first];
@@ -116,7 +168,7 @@ static void start(rmin_impact *impact, rmin_real speed, bool rough, rmin_state *
     s->phase = phase;
     s->speed = speed;
     s->scale = impact->scale;
-    s->level = rough ? SHORTEST_ROUGH : SHORTEST;
+    change_level(s, rough ? SHORTEST_ROUGH : SHORTEST);
     s->ticks = phase->steps*(1 << (RMIN_LEVELS - 1));
     s->time = zero;
     s->drifted = zero;
@@ -134,12 +186,15 @@ static void start(rmin_impact *impact, rmin_real speed, bool rough, rmin_state *
     s->rise = zero;
     s->u = zero;
     s->u_before = zero;
+    s->now = zero;
     s->root = zero;
     s->rest = zero;
     s->depth = zero;
+    s->swings = zero;
+    begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
 }
 
-/* Steps through a phase; false if the steps do not do. */
+/* Steps through a phase, a rough run until they part; false if the steps do not do. */
 static bool run_phase(rmin_state *s, rmin_budget *budget, rmin_peak *peak)
 {
     const rmin_real bends = s->impact->smooth*(budget->rough ? BENDS_ROUGH : BENDS);
@@ -157,10 +212,14 @@ static bool run_phase(rmin_state *s, rmin_budget *budget, rmin_peak *peak)
         if (taken && s->phase->damped) {
             rmin_damp(s->phase, s->speed, RMIN_R(0.5)*s->h, s->rate);
         }
+        if (taken && budget->watch != NULL && rmin_pass(s, budget->watch)) {
+            peak->ended = true;
+            return true;
+        }
         const bool falls = taken && s->f < peak->force;
-        const bool looks = falls && (s->past % LOOKS == 0 || !s->touching);
-        if ((falls && peak->force > budget->stop_above)
-            || (looks && rmin_is_settled(s, peak->force, share))) {
+        const bool looks = falls && budget->watch == NULL && (s->past % LOOKS == 0 || !s->touching);
+        if ((falls && peak->force > budget->stop_above) || (budget->rough && taken && !s->touching)
+            || (looks && rmin_is_settled(s, peak->force - s->swings, s->depth, share))) {
             peak->ended = true;
             return true;
         }

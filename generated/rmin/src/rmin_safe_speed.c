@@ -6,11 +6,11 @@
  * Share of the limit at which trials aim, the share from which on one is near enough, and the largest
  * that counts as kept: forces are within 2e-3 of the right ones, in the worst of 100,000 within 5e-3.
  */
-#define AIM RMIN_R(0.9875)
+#define AIM RMIN_R(0.987)
 #define NEAR RMIN_R(0.98)
-#define KEPT RMIN_R(0.995)
+#define KEPT RMIN_R(0.994)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
-#define TRIALS 24
+#define TRIALS 16
 #define APART RMIN_R(4e-3)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP RMIN_R(8.0)
@@ -93,16 +93,14 @@ static bool find(rmin_impact *impact, rmin_real guess, rmin_real cap, search *s,
 /* Whether loose motors bring too little energy for a force: rmin_settled.c, w = 0 at first touch. */
 static bool are_weak(const rmin_impact *impact, rmin_real speed, rmin_real force)
 {
-    const rmin_real depth =
-        RMIN_POW(force/impact->region->hertz_stiffness, RMIN_R(2.0)/RMIN_R(3.0));
-    const rmin_real needed = force*force/impact->hold + RMIN_R(0.8)*force*depth;
+    const rmin_real needed = force*force/impact->hold + rmin_law_twice_work(impact->region, force);
     return RMIN_STRUCTURED && speed*speed*rmin_twice_energy(impact) <= needed;
 }
 
 int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real limit,
     rmin_real cap, rmin_impact *impact, rmin_safe_speed_t *found)
 {
-    rmin_budget budget = {p->steps, false, limit};
+    rmin_budget budget = {p->steps, false, limit, NULL};
     bool bounded = false;
     int first;
     int last;

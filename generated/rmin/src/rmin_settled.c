@@ -6,15 +6,15 @@
  * body's own mass; w the part of what vibrates, of energy E. The contact force only pushes r back, so once
  * r' < 0 it stays so, r does not grow, and with the energy V of skin, body and standing modes, E + V does
  * not either: (E + V)' = f r' - c s'^2 <= 0. At the largest force F of a later contact f = k s + c x' with
- * x' <= w', which takes F^2/(2 K) in w' and s (rmin_bound.c), 0.4 F depth in the skin, and depth + s - r = w
- * takes w^2/(2 reach) in the vibration. With less than that there is no such F.
+ * x' <= w', which takes F^2/(2 K) in w' and s (rmin_bound.c), its work in the skin (0.4 F depth in
+ * Hertz's), and depth + s - r = w takes w^2/(2 reach) in the vibration. With less than that there is no such F.
  *
  * Driven motors that are let go later: seen from their motion before, E is of links and rotors, these
  * move at most sqrt(2 E rotors) on, and the rest holds if r' < 0 by more than that.
  */
 #include "rmin_state.h"
 
-bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real share)
+bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real depth, rmin_real share)
 {
     const rmin_impact *const impact = s->impact;
     const rmin_phase *const phase = s->phase;
@@ -34,9 +34,10 @@ bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real share)
     if (!phase->settles || !(away < RMIN_R(0.0))) {
         return false;
     }
+    const bool is_hertz = region->law == NULL;
     const rmin_real bent = s->touching ? s->x - s->u : s->rest;
     rmin_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
-        + RMIN_R(0.8)*s->f*s->root*s->root;
+        + (is_hertz ? RMIN_R(0.8) : RMIN_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
         twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
     }
@@ -46,7 +47,8 @@ bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real share)
     }
     const rmin_real slip = region->damping*RMIN_SQRT(twice*impact->mobility);
     const rmin_real pressed = RMIN_FMAX(force - slip, RMIN_R(0.0))/region->stiffness;
-    const rmin_real gap = RMIN_FMAX(s->depth + pressed - r, RMIN_R(0.0));
-    const rmin_real needed = force*force/impact->hold + RMIN_R(0.8)*force*s->depth;
+    const rmin_real gap = RMIN_FMAX(depth + pressed - r, RMIN_R(0.0));
+    const rmin_real skin = is_hertz ? RMIN_R(0.8)*force*depth : rmin_law_twice_work(region, force);
+    const rmin_real needed = force*force/impact->hold + skin;
     return twice*phase->reach <= share*(needed*phase->reach + gap*gap);
 }

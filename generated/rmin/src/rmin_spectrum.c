@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * Eigenvectors of a symmetric matrix of rmin_ of N rows: Householder's reflections to three diagonals,
- * then QL steps with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
+ * Eigenvectors of a symmetric matrix of rmin_: Householder's reflections to three diagonals, then QR steps
+ * with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
  *
  * Of a compliance the slow modes, which count, come out with all their digits; the fastest keep few
- * when there are frequencies a thousand times lower.
+ * when there are frequencies a thousand times lower. Joints come in the order from the base, so that
+ * compliances fall from the first row on, and small eigenvalues are found first, at the end.
  */
 #include "rmin_impact.h"
 
@@ -13,48 +14,50 @@
  * as none: energies change by less than its root.
  */
 #define SMALL RMIN_R(1e-8)
-/* QL takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
-#define MOST_STEPS (12*RMIN_N)
+/* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
+#define MOST_STEPS 3
 
-/* One reflection I - scale v v' of rows and columns first to last: A - v w' - w v'. */
-static void turn(int first, const rmin_real v[RMIN_N], rmin_real scale, rmin_square A)
+/* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
+static void turn(int first, int size, const rmin_real *v, rmin_real scale, rmin_matrix A)
 {
-    rmin_real w[RMIN_N];
+    rmin_real w[RMIN_SYSTEM];
     rmin_real along = RMIN_R(0.0);
-    for (int i = first; i < RMIN_N; ++i) {
+    for (int i = first; i < size; ++i) {
         rmin_real sum = RMIN_R(0.0);
-        for (int j = first; j < RMIN_N; ++j) {
+        for (int j = first; j < size; ++j) {
             sum += A[i][j]*v[j];
         }
         w[i] = scale*sum;
         along += w[i]*v[i];
     }
     along *= RMIN_R(0.5)*scale;
-    for (int i = first; i < RMIN_N; ++i) {
+    for (int i = first; i < size; ++i) {
         w[i] -= along*v[i];
         const rmin_real vi = v[i];
         const rmin_real wi = w[i];
         for (int j = first; j <= i; ++j) {
-            A[i][j] -= vi*w[j] + wi*v[j];
-            A[j][i] = A[i][j];
+            const rmin_real entry = A[i][j] - vi*w[j] - wi*v[j];
+            A[i][j] = entry;
+            A[j][i] = entry;
         }
     }
 }
 
-/* Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. */
-static void reflect(rmin_square A, rmin_real d[RMIN_N], rmin_real e[RMIN_N], rmin_square Q)
+/*
+ * Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. Of each
+ * reflection, v stays in A's own row.
+ */
+static void reflect(int size, rmin_matrix A, rmin_real *d, rmin_real *e, rmin_matrix Q)
 {
-    rmin_square vectors; /* of each reflection */
-    rmin_real scale[RMIN_N]; /* 2/v'v */
-    for (int k = 0; k + 1 < RMIN_N; ++k) {
-        rmin_real *const v = vectors[k];
-        const rmin_real first = A[k][k + 1];
+    rmin_real scale[RMIN_SYSTEM]; /* 2/v'v */
+    for (int k = 0; k + 1 < size; ++k) {
+        rmin_real *const v = A[k];
+        const rmin_real first = v[k + 1];
         rmin_real square = RMIN_R(0.0);
-        for (int i = k + 2; i < RMIN_N; ++i) {
-            v[i] = A[k][i];
+        for (int i = k + 2; i < size; ++i) {
             square += v[i]*v[i];
         }
-        d[k] = A[k][k];
+        d[k] = v[k];
         e[k] = first;
         scale[k] = RMIN_R(0.0);
         if (square > RMIN_R(0.0)) {
@@ -62,103 +65,99 @@ static void reflect(rmin_square A, rmin_real d[RMIN_N], rmin_real e[RMIN_N], rmi
             e[k] = first > RMIN_R(0.0) ? -length : length;
             v[k + 1] = first - e[k];
             scale[k] = RMIN_R(1.0)/(length*(length + RMIN_FABS(first)));
-            turn(k + 1, v, scale[k], A);
+            turn(k + 1, size, v, scale[k], A);
         }
     }
-    d[RMIN_N - 1] = A[RMIN_N - 1][RMIN_N - 1];
-    e[RMIN_N - 1] = RMIN_R(0.0);
-    for (int i = 0; i < RMIN_N; ++i) {
-        for (int j = 0; j < RMIN_N; ++j) {
+    d[size - 1] = A[size - 1][size - 1];
+    for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) {
             Q[i][j] = RMIN_R(0.0);
         }
         Q[i][i] = RMIN_R(1.0);
     }
-    for (int k = RMIN_N - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
-        const rmin_real *const v = vectors[k];
-        for (int i = k + 1; i < RMIN_N && scale[k] > RMIN_R(0.0); ++i) {
+    for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
+        const rmin_real *const v = A[k];
+        for (int i = k + 1; i < size && scale[k] > RMIN_R(0.0); ++i) {
             rmin_real along = RMIN_R(0.0);
-            for (int j = k + 1; j < RMIN_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 along += Q[i][j]*v[j];
             }
             along *= scale[k];
-            for (int j = k + 1; j < RMIN_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 Q[i][j] -= along*v[j];
             }
         }
     }
 }
 
-/* One QL step on rows first to last; turns the rows of Q, too. */
-static void chase(int first, int last, rmin_real d[RMIN_N], rmin_real e[RMIN_N], rmin_square Q)
+/* Turns two rows of Q by an angle. */
+static void turn_rows(int size, rmin_real c, rmin_real s, rmin_real *upper, rmin_real *lower)
 {
-    const rmin_real one = RMIN_R(1.0);
-    const rmin_real half = RMIN_R(0.5)*(d[first + 1] - d[first])/e[first];
-    const rmin_real length = RMIN_FABS(half) + RMIN_SQRT(half*half + one);
-    rmin_real g = d[last] - d[first] + e[first]/(half < RMIN_R(0.0) ? -length : length);
-    rmin_real s = one;
-    rmin_real c = one;
-    rmin_real p = RMIN_R(0.0);
-    for (int i = last - 1; i >= first; --i) {
-        const rmin_real f = s*e[i];
-        const rmin_real b = c*e[i];
-        const rmin_real r = RMIN_SQRT(f*f + g*g);
-        e[i + 1] = r;
-        if (!(r > RMIN_R(0.0))) {
-            d[i + 1] -= p;
-            e[last] = RMIN_R(0.0);
-            return;
-        }
-        s = f/r;
-        c = g/r;
-        g = d[i + 1] - p;
-        const rmin_real t = (d[i] - g)*s + RMIN_R(2.0)*c*b;
-        p = s*t;
-        d[i + 1] = g + p;
-        g = c*t - b;
-        for (int j = 0; j < RMIN_N; ++j) {
-            const rmin_real x = Q[i][j];
-            const rmin_real y = Q[i + 1][j];
-            Q[i + 1][j] = s*x + c*y;
-            Q[i][j] = c*x - s*y;
-        }
+    for (int j = 0; j < size; ++j) {
+        const rmin_real x = upper[j];
+        const rmin_real y = lower[j];
+        upper[j] = c*x + s*y;
+        lower[j] = c*y - s*x;
     }
-    d[first] -= p;
-    e[first] = g;
-    e[last] = RMIN_R(0.0);
 }
 
-/* Whether an entry between two of the diagonal is more than none. */
-static bool counts(rmin_real before, rmin_real after, rmin_real entry)
+/* One QR step on rows first to last; turns the rows of Q, too. */
+static void chase(int first, int last, int size, rmin_real *d, rmin_real *e, rmin_matrix Q)
 {
-    const rmin_real noise = RMIN_EPSILON*(RMIN_FABS(before) + RMIN_FABS(after));
-    return entry*entry > RMIN_FMAX(SMALL*RMIN_FABS(before*after), noise*noise);
-}
-
-/* Last row of the block that begins at a row. */
-static int end_of_block(int first, const rmin_real values[RMIN_N], const rmin_real e[RMIN_N])
-{
-    int last = first;
-    while (last + 1 < RMIN_N && counts(values[last], values[last + 1], e[last])) {
-        ++last;
-    }
-    return last;
-}
-
-bool rmin_spectrum(rmin_square A, rmin_real values[RMIN_N], rmin_square vectors)
-{
-    rmin_real e[RMIN_N];
-    reflect(A, values, e, vectors);
-    int first = 0;
-    for (int step = 0; step <= MOST_STEPS; ++step) {
-        while (first < RMIN_N && end_of_block(first, values, e) == first) {
-            ++first;
+    const rmin_real end = e[last - 1];
+    const rmin_real half = RMIN_R(0.5)*(d[last - 1] - d[last]);
+    const rmin_real length = RMIN_SQRT(half*half + end*end);
+    rmin_real x = d[first] - d[last] + end*end/(half < RMIN_R(0.0) ? half - length : half + length);
+    rmin_real z = e[first];
+    for (int k = first; k < last; ++k) {
+        const rmin_real r = RMIN_SQRT(x*x + z*z);
+        const rmin_real inverse = RMIN_R(1.0)/r;
+        const bool turns = r > RMIN_R(0.0);
+        const rmin_real c = turns ? x*inverse : RMIN_R(1.0);
+        const rmin_real s = turns ? z*inverse : RMIN_R(0.0);
+        if (k > first) {
+            e[k - 1] = r;
         }
-        if (first == RMIN_N) {
+        const rmin_real u = s*(d[k + 1] - d[k]) + RMIN_R(2.0)*c*e[k];
+        d[k] += s*u;
+        d[k + 1] -= s*u;
+        e[k] = c*u - e[k];
+        if (k + 1 < last) {
+            x = e[k];
+            z = s*e[k + 1];
+            e[k + 1] *= c;
+        }
+        turn_rows(size, c, s, Q[k], Q[k + 1]);
+    }
+}
+
+bool rmin_spectrum(int size, rmin_matrix A, rmin_real *values, rmin_matrix vectors)
+{
+    rmin_real e[RMIN_SYSTEM];
+    rmin_real all = RMIN_R(0.0);
+    reflect(size, A, values, e, vectors);
+    for (int i = 0; i < size; ++i) {
+        all += RMIN_FABS(values[i]);
+    }
+    const rmin_real noise = RMIN_EPSILON*RMIN_EPSILON*all*all;
+    int last = size - 1;
+    for (int step = 0; step < MOST_STEPS*size; ++step) {
+        int first = last;
+        while (first > 0) {
+            const rmin_real square = e[first - 1]*e[first - 1];
+            if (square > noise + SMALL*RMIN_FABS(values[first - 1]*values[first])) {
+                --first;
+            } else if (first == last) {
+                --last;
+                first = last;
+            } else {
+                break;
+            }
+        }
+        if (last == 0) {
             return true;
         }
-        if (step < MOST_STEPS) {
-            chase(first, end_of_block(first, values, e), values, e, vectors);
-        }
+        chase(first, last, size, values, e, vectors);
     }
     return false;
 }

@@ -5,31 +5,6 @@
 /* Speed of a contact point that counts as rest: it can hardly be measured. */
 #define AT_REST RMIN_R(1e-6)
 
-/* Velocity of a contact point; returns its size. */
-static rmin_real velocity_of(const rmin_links_t *links, int point, const rmin_real *rates, rmin_real v[3])
-{
-    for (int k = 0; k < 3; ++k) {
-        v[k] = RMIN_R(0.0);
-        for (int i = 0; i < RMIN_N; ++i) {
-            v[k] += links->J[3*point + k][i]*rates[i];
-        }
-    }
-    return RMIN_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
-}
-
-/* Prepares the arrival of a point that moves at v with the joint velocities there are. */
-static void arrive_as_it_moves(int point, const rmin_real *rates, const rmin_real v[3],
-    rmin_real speed, rmin_arrival *arrival)
-{
-    for (int i = 0; i < RMIN_N; ++i) {
-        arrival->row[i] = RMIN_R(0.0);
-        for (int k = 0; k < 3; ++k) {
-            arrival->row[i] += v[k]/speed*arrival->links.J[3*point + k][i];
-        }
-        arrival->rates[i] = rates[i]/speed;
-    }
-}
-
 /* What the search of the least factor knows. */
 typedef struct {
     rmin_impact impact;
@@ -61,12 +36,8 @@ static int watch(const rmin_region *region, const rmin_params *p, int point, rmi
     int which, slowdown *s)
 {
     if (s->point != point) {
-        rmin_real v[3];
         s->point = point;
-        s->speed = velocity_of(&s->impact.arrival.links, point, s->rates, v);
-        if (s->speed > AT_REST) {
-            arrive_as_it_moves(point, s->rates, v, s->speed, &s->impact.arrival);
-        }
+        s->speed = rmin_arrive_as_it_moves(point, s->rates, &s->impact.arrival);
         rmin_impact_forget(&s->impact);
     }
     if (!(s->speed > AT_REST)) {

@@ -5,12 +5,22 @@
 
 #include "rmin_impact.h"
 
+/* What the next step takes of those before it, and of its own length. */
+typedef struct {
+    rmin_real ratio; /* of its length to the last one's */
+    rmin_real share, more, before; /* of the bend, see rmin_press */
+    rmin_real u, u_before; /* in u', 1/s */
+    rmin_real hold, soft, yields; /* depth hold + soft f = what presses; x gives way by yields f */
+} rmin_pace;
+
 typedef struct {
     rmin_impact *impact;
     const rmin_phase *phase;
     rmin_real speed;
     rmin_real scale; /* of forces, N */
     int level;
+    int even; /* steps in a row of this length */
+    rmin_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     rmin_real time;
     rmin_real drifted; /* by the motors, m */
@@ -20,27 +30,40 @@ typedef struct {
     rmin_real h, h_before, x; /* last steps, contact point */
     rmin_real bump; /* what the bend adds to the force on average of the last step */
     rmin_real f, rise; /* force, and by how much it grew in the last step */
-    rmin_real u, u_before, root; /* deformation of the skin; root of its depth */
+    rmin_real u, u_before; /* deformation of the skin and of what stands */
+    rmin_real now, root; /* depth of the skin, and its root where it is Hertz's */
     rmin_real rest; /* deflection of the body out of contact */
     rmin_real depth; /* of the skin at the largest force so far */
+    rmin_real swings; /* most that modes that stand add to the force as they swing, N */
 } rmin_state;
+
+/* What is looked for in the steps of an impact that goes on after its peak. */
+struct rmin_watch {
+    rmin_real matters; /* force that may still come, N */
+    rmin_real depth; /* of the skin under it, m */
+    rmin_real late; /* the largest force from 0.5 s on, N */
+    rmin_real before, last; /* forces of the last steps, N */
+};
+
+/* Notes a step that was taken: the late force; says whether none that matters can come. */
+bool rmin_pass(const rmin_state *s, rmin_watch *watch);
 
 /* A step on trial. */
 typedef struct {
     rmin_real amplitude[RMIN_MODES], rate[RMIN_MODES];
     rmin_real x, v; /* of the contact point without the force at the end */
     rmin_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    rmin_real u, root;
+    rmin_real u, depth, root;
 } rmin_trial;
 
-/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+/* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate);
 
 /* Moves all modes by a step without forces. */
 void rmin_glide(const rmin_state *s, rmin_trial *t);
 
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
-void rmin_press(const rmin_state *s, rmin_trial *t);
+void rmin_press(rmin_state *s, rmin_trial *t);
 
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void rmin_take(const rmin_trial *t, rmin_state *s);
@@ -49,9 +72,9 @@ void rmin_take(const rmin_trial *t, rmin_state *s);
 void rmin_release(rmin_state *s);
 
 /*
- * Whether no later force exceeds the largest so far: proven, but for a share by which the energy may
- * exceed what that takes.
+ * Whether no later force exceeds one, the present one being less, under which the skin is so deep: proven,
+ * but for a share by which the energy may exceed what that takes.
  */
-bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real share);
+bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real depth, rmin_real share);
 
 #endif

@@ -5,7 +5,7 @@
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
 #define CONTACT_STEP RMIN_R(1.0)
 #define MODE_STEP RMIN_R(5.6)
-/* Most damping of a servo in the longest step, as a share of what it acts on. */
+/* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP RMIN_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
@@ -17,8 +17,14 @@
  * through the damper, by more than this share of the force.
  */
 #define FELT RMIN_R(2e-4)
-/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+/* Nor may it swing as motors are released so that spring and damper feel more than this share of it. */
 #define LEFT RMIN_R(5e-5)
+/*
+ * Where the damper's jump at first touch is more than this share of the force, squared, the longest
+ * step is at most so many times as long as the skin takes for it, c over its stiffness.
+ */
+#define JUMPS RMIN_R(0.1)
+#define JUMP_STEP RMIN_R(24.0)
 /* Steps counted; more than any budget has. */
 #define MOST RMIN_R(1e6)
 
@@ -62,9 +68,11 @@ static void let_stand(const rmin_impact *impact, rmin_real contact, bool release
         const bool body = impact->gives_way && i == modes->count - 1;
         const rmin_real weight = modes->row[i]*modes->row[i];
         const rmin_real along = modes->row[i]*modes->start[i];
+        const rmin_real held = region->stiffness
+            + region->damping*RMIN_SQRT(RMIN_FMAX(modes->squared[i], RMIN_R(0.0)));
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
-            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && (!released || weight*held < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
         if (i >= modes->rigid && !body) {
             phase->settles = phase->settles && modes->squared[i] > RMIN_R(0.0);
@@ -116,14 +124,14 @@ static void mode_steps(rmin_phase *phase, int i)
     }
 }
 
-/* Most that a servo's gains damp a mode, 1/s. */
+/* Most that joints and a servo's gains damp a mode, 1/s. */
 static rmin_real damping_rate(const rmin_phase *phase)
 {
     rmin_real rate = RMIN_R(0.0);
-    for (int i = 0; i < RMIN_N && phase->damped; ++i) {
+    for (int i = 0; i < RMIN_DAMPERS && phase->damped; ++i) {
         rmin_real of_motor = RMIN_R(0.0);
         for (int k = 0; k < phase->modes.count; ++k) {
-            const rmin_real shape = phase->modes.shape[k][RMIN_SYSTEM - RMIN_N + i];
+            const rmin_real shape = phase->modes.shape[k][RMIN_SYSTEM - RMIN_DAMPERS + i];
             of_motor += shape*shape;
         }
         rate = RMIN_FMAX(rate, phase->damping[i]*of_motor);
@@ -159,7 +167,10 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
     }
     const rmin_real share = RMIN_FMIN(moving/impact->mobility, RMIN_R(1.0));
     rate2 = RMIN_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
-    const rmin_real slowest = RMIN_R(1.0)/time;
+    const rmin_real jump = region->damping*impact->mobility;
+    const rmin_real rise = jump*region->damping > JUMPS*region->stiffness
+        ? impact->skin_rate/(JUMP_STEP*jump) : RMIN_R(0.0);
+    const rmin_real slowest = RMIN_FMAX(RMIN_R(1.0)/time, rise);
     const rmin_real rate = RMIN_FMAX(slowest, RMIN_FMAX(RMIN_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const rmin_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;

@@ -570,6 +570,12 @@ static void test_configuration(void)
     expect(is_untouched(q, sizeof q), name, "nothing written for bad inputs");
 }
 
+/* What a golden impact hits. */
+static int golden_region(const rmin_golden_impact *in, rmin_region *region)
+{
+    return rmin_body_region(in->part, in->clamped, region);
+}
+
 static void test_impacts(void)
 {
     double worst = 0.0;
@@ -579,7 +585,7 @@ static void test_impacts(void)
         rmin_peak_force_t peak = {0, 0};
         rmin_peak_force_t again = {0, 0};
         rmin_safe_speed_t safe = {0, 0};
-        expect(rmin_body_region(in->part, in->clamped, &region) == RMIN_OK, "rmin_body_region", "status");
+        expect(golden_region(in, &region) == RMIN_OK, "rmin_body_region", "status");
         const int found = rmin_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak);
         if (found == RMIN_BOUNDED) { /* a servo that float has too few digits for */
             expect((double)peak.force >= in->force, "rmin_peak_force", "bound of a golden impact");
@@ -734,7 +740,7 @@ static void check_selection(const rmin_real poses[][6], int count, const rmin_go
     rmin_real force = 0;
     rmin_real next = 0;
     memset(allowed, 1, sizeof allowed);
-    expect(rmin_body_region(in->part, in->clamped, &region) == RMIN_OK, "rmin_body_region", "status");
+    expect(golden_region(in, &region) == RMIN_OK, "rmin_body_region", "status");
     const int best = best_of(poses, count, allowed, in, &region, &force);
     if (best < 0) { /* all are bounded */
         return;
@@ -769,6 +775,7 @@ static void test_selection(void)
     for (size_t k = 0; k < POSES; ++k) {
         const rmin_golden_impact *const in = &rmin_golden_impacts[k];
         check_selection((const rmin_real (*)[6])poses, (int)POSES, in);
+        check_selection(rmin_candidates, RMIN_CANDIDATES, in);
     }
 }
 

@@ -77,7 +77,7 @@ typedef enum {
 } rr_motors;
 
 /* What structs and functions look like, in this number type. */
-#define RR_LAYOUT (0x4bc5fce0u + (unsigned int)sizeof(rr_real))
+#define RR_LAYOUT (0x21fc1d50u + (unsigned int)sizeof(rr_real))
 
 typedef struct {
     unsigned int layout; /* RR_LAYOUT; rr_default_params sets it */
@@ -199,14 +199,32 @@ int rr_joint_impulse(
     const rr_params *p,
     rr_joint_impulse_t *out);
 
-/* What an impact hits: the skin's Hertz contact in series with a spring and damper (MSM 3.1). */
+/*
+ * A point of a law of contact. From it to the next the force follows the parabola whose tangents at both
+ * meet at the knee; the law goes on straight from the last point through its knee. The first point is at 0.
+ */
+typedef struct {
+    rr_real depth; /* m */
+    rr_real force; /* N */
+    rr_real knee_depth; /* m */
+    rr_real knee_force; /* N */
+} rr_law_point;
+
+#define RR_MOST_LAW_POINTS 128
+
+/*
+ * What an impact hits: a law of contact in series with a spring and damper (MSM 3.1). The law is Hertz's,
+ * or what softimpact.codegen.region_parameters makes of skin, pad and cover.
+ */
 typedef struct {
     rr_real stiffness; /* k_h of the body, N/m, > 0 */
     rr_real damping; /* c_h of the body, N s/m, >= 0 */
     rr_real effective_mass; /* that gives way with it, kg, > 0; not read if clamped */
-    rr_real hertz_stiffness; /* k_f of the skin, N/m^1.5, > 0 */
+    rr_real hertz_stiffness; /* k_f of the skin, N/m^1.5, > 0; not read if there is another law */
     rr_real quasi_static_limit; /* of the force while clamped, N; for the caller */
     rr_real force_limit; /* of the first milliseconds, N; for the caller */
+    const rr_law_point *law; /* NULL for Hertz's; else its points, which rise */
+    int law_points; /* how many there are, 1 to 128; not read without a law */
     int clamped; /* 0 if the body can give way */
 } rr_region;
 
@@ -301,6 +319,82 @@ typedef struct {
 int rr_speed_factor_over(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     const int points[], const rr_region regions[], const rr_real limits[], int count,
     const rr_params *p, rr_speed_factor_over_t *out);
+
+/*
+ * Largest force with which a point presses on a clamped body from 0.5 to 0.6 s after first touch, when the
+ * quasi-static limit counts; 0 on one that gives way. p->horizon does not matter.
+ * RR_BOUNDED: the force is a bound that none exceeds.
+ */
+int rr_pressing_force_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    rr_real speed, const rr_region *region, const rr_params *p, rr_real *force);
+
+/* Frames that move: a contact point can be given in any of them. */
+typedef enum {
+    RR_FRAME_MOTOR1 = 0, /* motor1 */
+    RR_FRAME_LINK1 = 1, /* link1 */
+    RR_FRAME_MOTOR2 = 2, /* motor2 */
+    RR_FRAME_LINK2 = 3, /* link2 */
+    RR_FRAME_O3 = 4, /* O3 */
+    RR_FRAME_P = 5 /* P */
+} rr_frame;
+
+/* As rr_peak_force and rr_safe_speed, of a place (m) in a frame, a rr_frame. */
+int rr_peak_force_on(const rr_real q[RR_JOINTS], int frame, const rr_real place[3],
+    const rr_real n[3], rr_real speed, const rr_region *region, const rr_params *p,
+    rr_peak_force_t *out);
+int rr_safe_speed_on(const rr_real q[RR_JOINTS], int frame, const rr_real place[3],
+    const rr_real n[3], rr_real limit, const rr_region *region, const rr_params *p,
+    rr_safe_speed_t *out);
+
+typedef struct {
+    rr_real n[3]; /* of the impact, a unit vector */
+    rr_real force; /* N; along it */
+    rr_real error; /* share of the force by which another direction may be harder */
+} rr_worst_direction_t;
+
+/*
+ * The direction in which a contact point (rr_point) hits hardest at a speed, among those in which the
+ * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of directions.
+ */
+int rr_worst_direction_at(const rr_real q[RR_JOINTS], int point, rr_real speed,
+    const rr_region *region, const rr_params *p, rr_worst_direction_t *out);
+
+/* The same of a place (m) in a frame, a rr_frame. */
+int rr_worst_direction_on(const rr_real q[RR_JOINTS], int frame, const rr_real place[3],
+    rr_real speed, const rr_region *region, const rr_params *p, rr_worst_direction_t *out);
+
+typedef struct {
+    rr_real speed; /* m/s */
+    rr_real force; /* N; largest at this speed up to the horizon, or at a greater one */
+    int pressed; /* 1 if what presses later needs this speed, 0 if the force */
+} rr_allowed_speed_t;
+
+/*
+ * As rr_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
+ * region->quasi_static_limit from 0.5 to 0.6 s. RR_UNRESOLVED if no speed is known to keep both.
+ */
+int rr_allowed_speed_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    const rr_region *region, const rr_params *p, rr_allowed_speed_t *out);
+
+typedef struct {
+    rr_real factor; /* of all joint velocities, 0 to 1 */
+    int point; /* rr_point that needs it, -1 if none moves */
+    rr_real speed; /* m/s; that this point may have */
+    rr_real force; /* N; largest at that speed up to the horizon, or at a greater one */
+    int pressed; /* 1 if what presses later needs it */
+} rr_allowed_factor_t;
+
+/* As rr_speed_factor, for all limits of a region. */
+int rr_allowed_factor(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    const rr_region *region, const rr_params *p, rr_allowed_factor_t *out);
+
+/*
+ * Whether a contact point that moves as joints do might press on a clamped body harder than a limit from
+ * 0.5 to 0.6 s: 0 where it is proven or integrated that none does.
+ */
+int rr_may_press(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    rr_real limit, const rr_region *region, const rr_params *p, int *may);
 
 typedef struct {
     int best;    /* row of the pose with the least peak force; the first of equals */

@@ -285,6 +285,126 @@ inline result<rr_speed_factor_t> speed_factor(
     return found;
 }
 
+/* Largest force with which a point presses on a clamped body from 0.5 to 0.6 s after first touch,
+ * when the
+ * quasi-static limit counts; 0 on one that gives way. p->horizon does not matter.
+ * RR_BOUNDED: the force is a bound that none exceeds. */
+inline result<real> pressing_force_at(
+    const vector<4> &q,
+    int point,
+    const vector<3> &n,
+    real speed,
+    const rr_region &region,
+    const rr_params &p) noexcept
+{
+    result<real> found;
+    found.status = rr_pressing_force_at(q.data(), point, n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+/* As rr_peak_force and rr_safe_speed, of a place (m) in a frame, a rr_frame. */
+inline result<rr_peak_force_t> peak_force_on(
+    const vector<4> &q,
+    int frame,
+    const vector<3> &place,
+    const vector<3> &n,
+    real speed,
+    const rr_region &region,
+    const rr_params &p) noexcept
+{
+    result<rr_peak_force_t> found;
+    found.status = rr_peak_force_on(q.data(), frame, place.data(), n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+inline result<rr_safe_speed_t> safe_speed_on(
+    const vector<4> &q,
+    int frame,
+    const vector<3> &place,
+    const vector<3> &n,
+    real limit,
+    const rr_region &region,
+    const rr_params &p) noexcept
+{
+    result<rr_safe_speed_t> found;
+    found.status = rr_safe_speed_on(q.data(), frame, place.data(), n.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
+/* The direction in which a contact point (rr_point) hits hardest at a speed, among those in which
+ * the
+ * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control
+ * loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of
+ * directions. */
+inline result<rr_worst_direction_t> worst_direction_at(
+    const vector<4> &q,
+    int point,
+    real speed,
+    const rr_region &region,
+    const rr_params &p) noexcept
+{
+    result<rr_worst_direction_t> found;
+    found.status = rr_worst_direction_at(q.data(), point, speed, &region, &p, &found.value);
+    return found;
+}
+
+/* The same of a place (m) in a frame, a rr_frame. */
+inline result<rr_worst_direction_t> worst_direction_on(
+    const vector<4> &q,
+    int frame,
+    const vector<3> &place,
+    real speed,
+    const rr_region &region,
+    const rr_params &p) noexcept
+{
+    result<rr_worst_direction_t> found;
+    found.status = rr_worst_direction_on(q.data(), frame, place.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+/* As rr_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and,
+ * clamped,
+ * region->quasi_static_limit from 0.5 to 0.6 s. RR_UNRESOLVED if no speed is known to keep both. */
+inline result<rr_allowed_speed_t> allowed_speed_at(
+    const vector<4> &q,
+    int point,
+    const vector<3> &n,
+    const rr_region &region,
+    const rr_params &p) noexcept
+{
+    result<rr_allowed_speed_t> found;
+    found.status = rr_allowed_speed_at(q.data(), point, n.data(), &region, &p, &found.value);
+    return found;
+}
+
+/* As rr_speed_factor, for all limits of a region. */
+inline result<rr_allowed_factor_t> allowed_factor(
+    const vector<4> &q,
+    const vector<4> &dq,
+    const rr_region &region,
+    const rr_params &p) noexcept
+{
+    result<rr_allowed_factor_t> found;
+    found.status = rr_allowed_factor(q.data(), dq.data(), &region, &p, &found.value);
+    return found;
+}
+
+/* Whether a contact point that moves as joints do might press on a clamped body harder than a
+ * limit from
+ * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
+inline result<rr_int> may_press(
+    const vector<4> &q,
+    const vector<4> &dq,
+    real limit,
+    const rr_region &region,
+    const rr_params &p) noexcept
+{
+    result<rr_int> found;
+    found.status = rr_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
 } // namespace rr
 
 #endif

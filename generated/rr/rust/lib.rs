@@ -18,11 +18,12 @@ pub type rr_real = f32;
 pub const RR_JOINTS: usize = 4;
 pub const RR_COORDINATES: usize = 4;
 pub const RR_CHAIN_ORDER: usize = 3;
+pub const RR_MOST_LAW_POINTS: usize = 128;
 pub const RR_POINTS: usize = 1;
 pub const RR_VERSION: &str = "0.2.0";
 pub const RR_MODEL_DIGEST: &str = "daba4e0e37a07503c013166f12b00244bb892e0fa7403efb8b19103c492fe0d6";
 /// What structs and functions look like, in this number type.
-pub const RR_LAYOUT: c_uint = 0x4bc5fce0 + core::mem::size_of::<rr_real>() as c_uint;
+pub const RR_LAYOUT: c_uint = 0x21fc1d50 + core::mem::size_of::<rr_real>() as c_uint;
 
 pub const RR_OK: c_int = 0;
 pub const RR_NULL_POINTER: c_int = 1;
@@ -55,6 +56,13 @@ pub const RR_THIGH: c_int = 10;
 pub const RR_LOWER_LEG: c_int = 11;
 
 pub const RR_POINT_TIP: c_int = 0;
+
+pub const RR_FRAME_MOTOR1: c_int = 0;
+pub const RR_FRAME_LINK1: c_int = 1;
+pub const RR_FRAME_MOTOR2: c_int = 2;
+pub const RR_FRAME_LINK2: c_int = 3;
+pub const RR_FRAME_O3: c_int = 4;
+pub const RR_FRAME_P: c_int = 5;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,6 +120,19 @@ pub struct rr_joint_impulse_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rr_law_point {
+    /// m
+    pub depth: rr_real,
+    /// N
+    pub force: rr_real,
+    /// m
+    pub knee_depth: rr_real,
+    /// N
+    pub knee_force: rr_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct rr_region {
     /// k_h of the body, N/m, > 0
     pub stiffness: rr_real,
@@ -119,12 +140,16 @@ pub struct rr_region {
     pub damping: rr_real,
     /// that gives way with it, kg, > 0; not read if clamped
     pub effective_mass: rr_real,
-    /// k_f of the skin, N/m^1.5, > 0
+    /// k_f of the skin, N/m^1.5, > 0; not read if there is another law
     pub hertz_stiffness: rr_real,
     /// of the force while clamped, N; for the caller
     pub quasi_static_limit: rr_real,
     /// of the first milliseconds, N; for the caller
     pub force_limit: rr_real,
+    /// NULL for Hertz's; else its points, which rise
+    pub law: *const rr_law_point,
+    /// how many there are, 1 to 128; not read without a law
+    pub law_points: c_int,
     /// 0 if the body can give way
     pub clamped: c_int,
 }
@@ -175,6 +200,43 @@ pub struct rr_speed_factor_over_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rr_worst_direction_t {
+    /// of the impact, a unit vector
+    pub n: [rr_real; 3],
+    /// N; along it
+    pub force: rr_real,
+    /// share of the force by which another direction may be harder
+    pub error: rr_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rr_allowed_speed_t {
+    /// m/s
+    pub speed: rr_real,
+    /// N; largest at this speed up to the horizon, or at a greater one
+    pub force: rr_real,
+    /// 1 if what presses later needs this speed, 0 if the force
+    pub pressed: c_int,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct rr_allowed_factor_t {
+    /// of all joint velocities, 0 to 1
+    pub factor: rr_real,
+    /// rr_point that needs it, -1 if none moves
+    pub point: c_int,
+    /// m/s; that this point may have
+    pub speed: rr_real,
+    /// N; largest at that speed up to the horizon, or at a greater one
+    pub force: rr_real,
+    /// 1 if what presses later needs it
+    pub pressed: c_int,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct rr_selection_t {
     /// row of the pose with the least peak force; the first of equals
     pub best: c_int,
@@ -209,6 +271,14 @@ extern "C" {
     pub fn rr_safe_speed_at(q: *const rr_real, point: c_int, n: *const rr_real, limit: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_safe_speed_t) -> c_int;
     pub fn rr_speed_factor(q: *const rr_real, dq: *const rr_real, limit: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_speed_factor_t) -> c_int;
     pub fn rr_speed_factor_over(q: *const rr_real, dq: *const rr_real, points: *const c_int, regions: *const rr_region, limits: *const rr_real, count: c_int, p: *const rr_params, out: *mut rr_speed_factor_over_t) -> c_int;
+    pub fn rr_pressing_force_at(q: *const rr_real, point: c_int, n: *const rr_real, speed: rr_real, region: *const rr_region, p: *const rr_params, force: *mut rr_real) -> c_int;
+    pub fn rr_peak_force_on(q: *const rr_real, frame: c_int, place: *const rr_real, n: *const rr_real, speed: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_peak_force_t) -> c_int;
+    pub fn rr_safe_speed_on(q: *const rr_real, frame: c_int, place: *const rr_real, n: *const rr_real, limit: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_safe_speed_t) -> c_int;
+    pub fn rr_worst_direction_at(q: *const rr_real, point: c_int, speed: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_worst_direction_t) -> c_int;
+    pub fn rr_worst_direction_on(q: *const rr_real, frame: c_int, place: *const rr_real, speed: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_worst_direction_t) -> c_int;
+    pub fn rr_allowed_speed_at(q: *const rr_real, point: c_int, n: *const rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_allowed_speed_t) -> c_int;
+    pub fn rr_allowed_factor(q: *const rr_real, dq: *const rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_allowed_factor_t) -> c_int;
+    pub fn rr_may_press(q: *const rr_real, dq: *const rr_real, limit: rr_real, region: *const rr_region, p: *const rr_params, may: *mut c_int) -> c_int;
     pub fn rr_select_configuration(poses: *const [rr_real; 4], count: c_int, allowed: *const c_uchar, n: *const rr_real, speed: rr_real, region: *const rr_region, p: *const rr_params, out: *mut rr_selection_t) -> c_int;
 }
 

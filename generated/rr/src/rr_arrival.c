@@ -4,6 +4,8 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE RR_R(1e-6)
+/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+#define ASTRAY RR_R(1e-3)
 #define MOST_STEPS 1000000
 
 int rr_check_impact(const rr_region *region, const rr_params *p)
@@ -11,13 +13,14 @@ int rr_check_impact(const rr_region *region, const rr_params *p)
     if (p->layout != RR_LAYOUT) {
         return RR_FOREIGN_PARAMS;
     }
-    const rr_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
+    const rr_real numbers[4] = {region->stiffness, region->damping,
+        region->law != NULL ? RR_R(1.0) : region->hertz_stiffness,
         region->clamped != 0 ? RR_R(1.0) : region->effective_mass};
     if (!rr_all_finite(numbers, 4)) {
         return RR_NOT_FINITE;
     }
     const bool body = region->stiffness > RR_R(0.0) && region->damping >= RR_R(0.0)
-        && region->hertz_stiffness > RR_R(0.0) && numbers[3] > RR_R(0.0);
+        && numbers[3] > RR_R(0.0) && rr_law_is_one(region);
     const rr_real horizon = RR_HORIZON(p);
     const rr_real reaction = RR_REACTION_TIME(p);
     int status = rr_check_positive(&horizon, 1);
@@ -77,6 +80,7 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
     rr_forward(RR_REACH, square, share);
     rr_backward(RR_REACH, square, share);
     rr_real fast = RR_R(0.0);
+    rr_real along = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) {
         rr_real rate = RR_R(0.0);
         for (int k = 0; k < RR_REACH; ++k) {
@@ -84,8 +88,29 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
+        along += rate*arrival->row[i];
     }
-    return fast < RR_FASTEST ? RR_OK : RR_SINGULAR;
+    return fast < RR_FASTEST && RR_FABS(along - RR_R(1.0)) < ASTRAY ? RR_OK : RR_SINGULAR;
+}
+
+rr_real rr_arrive_as_it_moves(int point, const rr_real rates[RR_N], rr_arrival *arrival)
+{
+    rr_real v[3];
+    for (int k = 0; k < 3; ++k) {
+        v[k] = RR_R(0.0);
+        for (int i = 0; i < RR_N; ++i) {
+            v[k] += arrival->links.J[3*point + k][i]*rates[i];
+        }
+    }
+    const rr_real speed = RR_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    for (int i = 0; i < RR_N && speed > RR_R(0.0); ++i) {
+        arrival->row[i] = RR_R(0.0);
+        for (int k = 0; k < 3; ++k) {
+            arrival->row[i] += v[k]/speed*arrival->links.J[3*point + k][i];
+        }
+        arrival->rates[i] = rates[i]/speed;
+    }
+    return speed;
 }
 
 void rr_kinds_of_motors(const rr_params *p, int *first, int *last)

@@ -14,6 +14,8 @@
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
  * y^2 v with y^2 <= y sqrt(2 t K) + c, K = k + c^2 mobility. Released after t, the robot has at most
  * (sqrt(E) + sqrt(v^2/2 r'(M + B)r))^2, as the energies of both motions add like squares of lengths.
+ * Joints with damping of their own: motors are taken to go on with what that needed before, so the same holds
+ * whatever motors do, to the horizon.
  */
 #include "rr_impact.h"
 
@@ -88,12 +90,15 @@ rr_real rr_bound(const rr_impact *impact)
     }
     const rr_real hold = impact->hold;
     const rr_real twice = rr_twice_energy(impact);
+    const rr_real horizon = RR_HORIZON(impact->p);
+    const rr_real always = while_driven(horizon, hold, impact->region->damping);
+    if (RR_DAMPED) {
+        return always;
+    }
     if (impact->first == RR_LOOSE) {
         return RR_SQRT(twice*hold);
     }
-    const rr_real horizon = RR_HORIZON(impact->p);
     const rr_real reaction = RR_FMIN(RR_REACTION_TIME(impact->p), horizon);
-    const rr_real always = while_driven(horizon, hold, impact->region->damping);
     const rr_real until = while_driven(reaction, hold, impact->region->damping);
     const rr_real root = RR_SQRT(RR_R(2.0)*until*reaction) + RR_SQRT(twice);
     return RR_FMIN(always, RR_FMAX(until, root*RR_SQRT(hold)));

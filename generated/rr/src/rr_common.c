@@ -99,6 +99,8 @@ int rr_body_region(int part, int clamped, rr_region *region)
     region->hertz_stiffness = RR_R(19000000.0);
     region->quasi_static_limit = numbers[part][2];
     region->force_limit = numbers[part][3];
+    region->law = NULL;
+    region->law_points = 0;
     region->clamped = clamped != 0;
     return RR_OK;
 }

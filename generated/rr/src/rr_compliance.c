@@ -40,15 +40,15 @@ static void scale_by_springs(const rr_arrival *arrival, const rr_params *p, spri
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int spring_modes(rr_square C, const rr_real b[RR_N], rr_modes *modes)
+static int spring_modes(rr_matrix C, const rr_real b[RR_N], rr_modes *modes)
 {
     rr_real squares[RR_N];
-    rr_square vectors;
+    rr_matrix vectors;
     rr_real all = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) {
         all += C[i][i];
     }
-    if (!rr_spectrum(C, squares, vectors)) {
+    if (!rr_spectrum(RR_N, C, squares, vectors)) {
         return RR_SINGULAR;
     }
     const rr_real least = NOISE*all;
@@ -78,7 +78,7 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     rr_real *drift)
 {
     spring_scaled s;
-    rr_square C;
+    rr_matrix C;
     scale_by_springs(arrival, p, &s);
     for (int i = 0; i < RR_N; ++i) {
         for (int j = 0; j <= i; ++j) {
@@ -96,8 +96,8 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
 {
     spring_scaled s;
     rr_matrix G;
-    rr_square Y; /* columns of L_G^-1 L' */
-    rr_square C;
+    rr_matrix Y; /* columns of L_G^-1 L' */
+    rr_matrix C;
     rr_real z[RR_N];
     scale_by_springs(arrival, p, &s);
     if (!rr_cholesky(RR_N, s.S)) {

@@ -2,16 +2,18 @@
 /*
  * One impact of rr_ over time: all contacts up to the horizon.
  *
- * Skin and body in series: f = k_f d^1.5 = k_h s + c_h s' with s = x - u, where x is how far the
- * contact point has come and u = d + (compliance of modes that stand) f. x' is exact at every node and u'
- * a backward difference, so that no damping makes it unstable. The force is quadratic between nodes;
- * steps are halved where it bends too much for that.
+ * Skin and body in series: f(d) = k_h s + c_h s' with s = x - u, where x is how far the contact point
+ * has come, u = d + (compliance of modes that stand) f, and f(d) = k_f d^1.5 or a law of rr_law.c. x' is
+ * exact at every node and u' a backward difference, so that no damping makes it unstable. The force is
+ * quadratic between nodes; steps are halved where it bends too much for that.
  */
 #include "rr_state.h"
 
 /* Halley's iterations, and the relative change after which the next would be nothing. */
-#define ITERATIONS 32
+#define ITERATIONS 8
 #define CLOSE RR_R(0.01)
+/* Steps of one length after which the next is as the last was. */
+#define LIKE 3
 
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate)
 {
@@ -19,19 +21,19 @@ void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate)
     for (int round = 0; round < 2; ++round) {
         const rr_real span = round == 0 ? RR_R(0.5)*time : time;
         const rr_real *const from = round == 0 ? rate : halfway;
-        rr_real torque[RR_N];
-        for (int j = 0; j < RR_N; ++j) {
-            const int motor = RR_SYSTEM - RR_N + j;
+        rr_real torque[RR_DAMPERS];
+        for (int j = 0; j < RR_DAMPERS; ++j) {
+            const int place = RR_SYSTEM - RR_DAMPERS + j;
             rr_real turned = RR_R(0.0);
             for (int i = 0; i < phase->active; ++i) {
-                turned += phase->modes.shape[i][motor]*(from[i] - speed*phase->modes.start[i]);
+                turned += phase->modes.shape[i][place]*(from[i] - speed*phase->modes.start[i]);
             }
             torque[j] = span*phase->damping[j]*turned;
         }
         for (int i = 0; i < phase->active; ++i) {
             rr_real change = RR_R(0.0);
-            for (int j = 0; j < RR_N; ++j) {
-                change += phase->modes.shape[i][RR_SYSTEM - RR_N + j]*torque[j];
+            for (int j = 0; j < RR_DAMPERS; ++j) {
+                change += phase->modes.shape[i][RR_SYSTEM - RR_DAMPERS + j]*torque[j];
             }
             if (round == 0) {
                 halfway[i] = rate[i] - change;
@@ -92,54 +94,78 @@ static rr_real root_of(rr_real depth, rr_real cubic, rr_real guess)
     return u;
 }
 
-void rr_press(const rr_state *s, rr_trial *t)
+/* What steps of one length have in common, as far as those before them were as long. */
+static void set_pace(rr_state *s)
+{
+    const rr_region *const region = s->impact->region;
+    const rr_level *const level = &s->phase->level[s->level];
+    const rr_real one = RR_R(1.0);
+    rr_pace *const pace = &s->pace;
+    rr_real ratio = RR_R(0.0);
+    rr_real more = one; /* of the bend at the last node is that halfway, less that of the one before */
+    pace->before = RR_R(0.0);
+    if (s->past > 0) {
+        ratio = level->h/s->h;
+        if (s->past > 1) {
+            const rr_real lead = (RR_R(0.5)*level->h + s->h)/(level->h + s->h + s->h_before);
+            more += lead;
+            pace->before = lead*ratio*ratio;
+        }
+    }
+    const rr_real rate = one/level->h;
+    const rr_real early = ratio/(one + ratio);
+    pace->ratio = ratio;
+    pace->share = early/RR_R(6.0);
+    pace->more = more;
+    const rr_real lag = (one + early)*rate;
+    pace->u = (one + ratio)*rate;
+    pace->u_before = ratio*early*rate;
+    const rr_real share = pace->share*more;
+    pace->yields = (one - share)*level->push[1] - share*level->push[0];
+    const rr_real slows = (one - share)*level->kick[1] - share*level->kick[0];
+    pace->hold = region->stiffness + region->damping*lag;
+    pace->soft = one + region->stiffness*pace->yields + region->damping*slows + pace->hold*s->phase->compliance;
+}
+
+void rr_press(rr_state *s, rr_trial *t)
 {
     const rr_region *const region = s->impact->region;
     const rr_phase *const phase = s->phase;
     const rr_level *const level = &phase->level[s->level];
-    const rr_real one = RR_R(1.0);
-    const rr_real h = level->h;
-    rr_real lag = one/h; /* backward difference: u' = lag u + memory */
-    rr_real memory = -s->u/h;
-    t->share = RR_R(0.0);
-    t->base = RR_R(0.0);
-    rr_real more = one; /* of the bend at the last node is that halfway, less that of the one before */
-    rr_real before = RR_R(0.0);
-    if (s->past > 0) {
-        const rr_real ratio = h/s->h;
-        t->share = ratio/(one + ratio)/RR_R(6.0);
-        t->base = t->share*(s->f + ratio*s->rise);
-        if (s->past > 1) {
-            const rr_real lead = (RR_R(0.5)*h + s->h)/(h + s->h + s->h_before);
-            more += lead;
-            before = lead*ratio*ratio*s->bump;
-        }
-        lag = (one + ratio + ratio)/((one + ratio)*h);
-        memory = (ratio*ratio/(one + ratio)*s->u_before - (one + ratio)*s->u)/h;
+    const rr_pace *const pace = &s->pace;
+    if (s->even < LIKE) {
+        set_pace(s);
     }
-    const rr_real plain = t->base;
-    const rr_real plain_share = t->share;
-    t->share *= more;
-    t->base = more*plain - before;
+    const rr_real plain = pace->share*(s->f + pace->ratio*s->rise);
+    t->share = pace->more*pace->share;
+    t->base = pace->more*plain - pace->before*s->bump;
     const rr_real first = s->f + t->base;
     const rr_real x = t->x - level->push[0]*first - level->push[1]*t->base;
     const rr_real v = t->v - level->kick[0]*first - level->kick[1]*t->base;
-    const rr_real yields = (one - t->share)*level->push[1] - t->share*level->push[0];
-    const rr_real slows = (one - t->share)*level->kick[1] - t->share*level->kick[0];
-    const rr_real hold = region->stiffness + region->damping*lag;
-    const rr_real pressed = region->stiffness*x + region->damping*(v - memory);
-    const rr_real soft =
-        one + region->stiffness*yields + region->damping*slows + hold*phase->compliance;
+    const rr_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
+    const rr_real pressed = region->stiffness*x + region->damping*slip;
     t->f = RR_R(0.0);
     t->u = RR_R(0.0);
     t->root = RR_R(0.0);
+    t->depth = RR_R(0.0);
     if (pressed > RR_R(0.0)) {
-        t->root = root_of(pressed/hold, region->hertz_stiffness*soft/hold, s->root);
-        t->f = region->hertz_stiffness*t->root*t->root*t->root;
-        t->u = t->root*t->root + phase->compliance*t->f;
+        if (region->law == NULL) {
+            t->root = root_of(pressed/pace->hold, region->hertz_stiffness*pace->soft/pace->hold, s->root);
+            t->depth = t->root*t->root;
+            t->f = region->hertz_stiffness*t->root*t->depth;
+        } else {
+            t->f = rr_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
+        }
+        t->u = t->depth + phase->compliance*t->f;
+        t->x = x - pace->yields*t->f;
+        t->bump = plain - pace->share*t->f;
+    } else { /* they part on the way: a force that falls evenly ends there */
+        const rr_real from = pace->hold*s->now + pace->soft*s->f;
+        t->base = from > RR_R(0.0) ? RR_R(0.5)*s->f*pressed/(from - pressed) : RR_R(0.0);
+        t->share = RR_R(0.0);
+        t->x -= level->push[0]*(s->f + t->base) + level->push[1]*t->base;
+        t->bump = RR_R(0.0);
     }
-    t->x = x - yields*t->f;
-    t->bump = plain - plain_share*t->f;
 }
 
 void rr_take(const rr_trial *t, rr_state *s)

@@ -17,6 +17,7 @@
 #else
 #define RR_SYSTEM RR_N
 #endif
+#define RR_DAMPERS (RR_DAMPED ? RR_SYSTEM : RR_N) /* of the last ones of these */
 #define RR_MODES (RR_SYSTEM + 1) /* one for a body that gives way */
 #define RR_LEVELS 7 /* lengths of steps, each half the one before */
 
@@ -27,8 +28,7 @@ typedef struct {
     rr_real rates[RR_N]; /* joint velocities for an approach of 1 m/s */
 } rr_arrival;
 
-/* Matrices over the links alone, and of up to RR_SYSTEM rows. */
-typedef rr_real rr_square[RR_N][RR_N];
+/* Matrices of up to RR_SYSTEM rows. */
 typedef rr_real rr_matrix[RR_SYSTEM][RR_SYSTEM];
 
 /*
@@ -76,8 +76,8 @@ typedef struct {
     rr_real compliance; /* of those that stand, m/N */
     rr_real reach; /* of all that vibrate, m/N */
     rr_real drift; /* velocity of the contact point that motors keep up, over the speed */
-    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
-    rr_real damping[RR_N];
+    bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
+    rr_real damping[RR_DAMPERS];
     int steps; /* of the longest level until the time is over */
     rr_level level[RR_LEVELS];
 } rr_phase;
@@ -105,11 +105,14 @@ typedef struct {
 #define RR_LED 0
 #define RR_LOOSE 1
 
+typedef struct rr_watch rr_watch;
+
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
     bool rough; /* longer steps do */
     rr_real stop_above; /* force after whose passing the rest does not matter, N */
+    rr_watch *watch; /* who sees each step and ends the impact, or NULL; rr_state.h */
 } rr_budget;
 
 typedef struct {
@@ -125,6 +128,9 @@ int rr_check_impact(const rr_region *region, const rr_params *p);
 
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival);
+
+/* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
+rr_real rr_arrive_as_it_moves(int point, const rr_real rates[RR_N], rr_arrival *arrival);
 
 /* Checks and links of an impact of one of the contact points. */
 int rr_approach(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
@@ -155,6 +161,21 @@ rr_real rr_bound(const rr_impact *impact);
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void rr_kinds_of_motors(const rr_params *p, int *first, int *last);
 
+/*
+ * What is known of a region's law of contact: its depth under a force, twice the work done by then, and the
+ * largest stiffness up to it.
+ */
+rr_real rr_law_depth(const rr_region *region, rr_real force);
+rr_real rr_law_twice_work(const rr_region *region, rr_real force);
+rr_real rr_law_stiffness(const rr_region *region, rr_real force);
+
+/* Force of a law through points whose depth d makes hold d + soft f(d) = pressed > 0; and that depth. */
+rr_real rr_law_press(const rr_region *region, rr_real hold, rr_real soft, rr_real pressed,
+    rr_real *depth);
+
+/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+bool rr_law_is_one(const rr_region *region);
+
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 rr_real rr_two_body_force(const rr_region *region, rr_real mobility, rr_real speed);
 rr_real rr_two_body_speed(const rr_region *region, rr_real mobility, rr_real force);
@@ -165,6 +186,16 @@ rr_real rr_two_body_speed(const rr_region *region, rr_real mobility, rr_real for
  */
 int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
     rr_real cap, rr_impact *impact, rr_safe_speed_t *found);
+
+/* Largest force of an arrival by any of the motors that p stands for: OK, BOUNDED or another status. */
+int rr_find_peak(const rr_region *region, const rr_params *p, rr_real speed,
+    rr_impact *impact, rr_peak_force_t *out);
+
+#if RR_FRAMES > 0
+/* Links, with the motion of a place in a frame in place of that of the package's own point. */
+int rr_links_on(const rr_real q[RR_JOINTS], int frame, const rr_real place[3],
+    const rr_params *p, rr_links_t *links);
+#endif
 
 /* Largest force over all contacts of an impact at a speed. */
 void rr_impact_run(rr_impact *impact, rr_real speed, rr_budget *budget,
@@ -197,7 +228,7 @@ void rr_backward(int size, rr_matrix L, rr_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool rr_diagonalise(int size, rr_matrix A, rr_matrix X, rr_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
-bool rr_spectrum(rr_square A, rr_real values[RR_N], rr_square vectors);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
+bool rr_spectrum(int size, rr_matrix A, rr_real *values, rr_matrix vectors);
 
 #endif

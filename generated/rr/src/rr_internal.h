@@ -127,7 +127,8 @@ static inline int rr_unit_vector(const rr_real n[3], rr_real u[3])
 #define RR_N 4 /* independent joints */
 #define RR_ELASTIC 0 /* a spring behind every motor */
 #define RR_POTENTIAL 1 /* gravity, or springs of the model file */
-#define RR_STRUCTURED (RR_ELASTIC && !RR_POTENTIAL)
+#define RR_DAMPED 0 /* joints have damping of their own */
+#define RR_STRUCTURED (RR_ELASTIC && !RR_POTENTIAL && !RR_DAMPED)
 #define RR_REACH 2 /* directions in which motors move contact points */
 #define RR_FASTEST RR_R(10000.0) /* squared joint velocity for 1 m/s: singular */
 #define RR_LEAST_MOBILITY RR_R(3.85e-05) /* 1/kg; below: singular */
@@ -140,6 +141,20 @@ typedef struct {
 
 /* Links as they arrive at an impact. */
 int rr_links(const rr_real q[4], const rr_params *p, rr_links_t *out);
+
+#define RR_FRAMES 6 /* frames of links in which contact points can be given */
+typedef struct {
+    int joint; /* whose link it is fixed to */
+    rr_real rotation[3][3];
+    rr_real position[3]; /* m; both in the joint's frame */
+} rr_frame_place;
+
+/* Where the joints' frames are. */
+int rr_joint_frames(const rr_real q[4], rr_real poses[4][12]);
+
+extern const rr_frame_place rr_frame_places[RR_FRAMES];
+extern const bool rr_joint_slides[RR_N];
+extern const bool rr_joint_moves[RR_N][RR_N]; /* the link of another */
 
 extern const rr_real rr_directions[RR_REACH][3];
 extern const bool rr_has_motor[RR_N];

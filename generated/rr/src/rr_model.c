@@ -8,3 +8,24 @@ const rr_real rr_directions[RR_REACH][3] = {
     {RR_R(0.0), RR_R(1.0), RR_R(0.0)},
 };
 const bool rr_has_motor[RR_N] = {true, false, true, false};
+const bool rr_joint_slides[RR_N] = {false, false, false, false};
+const bool rr_joint_moves[RR_N][RR_N] = {
+    {true, true, true, true},
+    {false, true, true, true},
+    {false, false, true, true},
+    {false, false, false, true},
+};
+const rr_frame_place rr_frame_places[RR_FRAMES] = {
+    {0, {{RR_R(1.0), RR_R(0.0), RR_R(0.0)}, {RR_R(0.0), RR_R(1.0), RR_R(0.0)}, {RR_R(0.0), RR_R(0.0), RR_R(1.0)}},
+        {RR_R(0.0), RR_R(0.0), RR_R(0.0)} }, /* motor1 */
+    {1, {{RR_R(1.0), RR_R(0.0), RR_R(0.0)}, {RR_R(0.0), RR_R(1.0), RR_R(0.0)}, {RR_R(0.0), RR_R(0.0), RR_R(1.0)}},
+        {RR_R(0.0), RR_R(0.0), RR_R(0.0)} }, /* link1 */
+    {2, {{RR_R(1.0), RR_R(0.0), RR_R(0.0)}, {RR_R(0.0), RR_R(1.0), RR_R(0.0)}, {RR_R(0.0), RR_R(0.0), RR_R(1.0)}},
+        {RR_R(0.0), RR_R(0.0), RR_R(0.0)} }, /* motor2 */
+    {3, {{RR_R(1.0), RR_R(0.0), RR_R(0.0)}, {RR_R(0.0), RR_R(1.0), RR_R(0.0)}, {RR_R(0.0), RR_R(0.0), RR_R(1.0)}},
+        {RR_R(0.0), RR_R(0.0), RR_R(0.0)} }, /* link2 */
+    {1, {{RR_R(1.0), RR_R(0.0), RR_R(0.0)}, {RR_R(0.0), RR_R(1.0), RR_R(0.0)}, {RR_R(0.0), RR_R(0.0), RR_R(1.0)}},
+        {RR_R(0.5), RR_R(0.0), RR_R(0.0)} }, /* O3 */
+    {3, {{RR_R(1.0), RR_R(0.0), RR_R(0.0)}, {RR_R(0.0), RR_R(1.0), RR_R(0.0)}, {RR_R(0.0), RR_R(0.0), RR_R(1.0)}},
+        {RR_R(0.5), RR_R(0.0), RR_R(0.0)} }, /* P */
+};

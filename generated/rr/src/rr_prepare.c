@@ -5,27 +5,6 @@
 /* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
 #define BLURS RR_R(1.6e-2)
 
-/* Largest stiffness of the skin up to a force. */
-static rr_real skin_stiffness(const rr_region *region, rr_real force)
-{
-    const rr_real third = RR_R(1.0)/RR_R(3.0);
-    return RR_R(1.5)*RR_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
-}
-
-rr_real rr_two_body_force(const rr_region *region, rr_real mobility, rr_real speed)
-{
-    const rr_real spring = speed*RR_SQRT(region->stiffness/mobility);
-    const rr_real energy = RR_R(1.25)*speed*speed/mobility;
-    const rr_real skin = RR_POW(energy, RR_R(0.6))*RR_POW(region->hertz_stiffness, RR_R(0.4));
-    return RR_R(1.0)/(RR_R(1.0)/spring + RR_R(1.0)/skin);
-}
-
-rr_real rr_two_body_speed(const rr_region *region, rr_real mobility, rr_real force)
-{
-    const rr_real depth = RR_POW(force/region->hertz_stiffness, RR_R(2.0)/RR_R(3.0));
-    return RR_SQRT(mobility*force*(force/region->stiffness + RR_R(0.8)*depth));
-}
-
 void rr_impact_forget(rr_impact *impact)
 {
     impact->phase[RR_LED].known = false;
@@ -56,8 +35,9 @@ static int led_modes(rr_impact *impact, rr_phase *phase)
         return rr_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < RR_N; ++i) {
-        phase->damping[i] = RR_DAMPING_GAIN(impact->p, i);
-        phase->damped = phase->damped || phase->damping[i] > RR_R(0.0);
+        const rr_real gain = RR_DAMPING_GAIN(impact->p, i);
+        phase->damping[RR_DAMPERS - RR_N + i] += gain;
+        phase->damped = phase->damped || gain > RR_R(0.0);
     }
     return rr_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
@@ -72,11 +52,16 @@ static int modes_of(rr_impact *impact, int which)
     }
     phase->has_body = false;
     phase->drift = RR_R(0.0);
-    phase->damped = false;
+    phase->damped = RR_DAMPED != 0;
     phase->modes.noise = RR_R(0.0);
-    for (int i = 0; i < RR_N; ++i) {
+    for (int i = 0; i < RR_DAMPERS; ++i) {
         phase->damping[i] = RR_R(0.0);
     }
+#if RR_DAMPED
+    for (int i = 0; i < RR_N; ++i) {
+        phase->damping[i] = rr_joint_damping[i];
+    }
+#endif
     const int status = which == RR_LED ? led_modes(impact, phase)
         : rr_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     phase->known = status == RR_OK;
@@ -166,11 +151,11 @@ int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
     }
     const rr_real size =
         force > RR_R(0.0) ? force : rr_two_body_force(region, impact->mobility, -force);
-    impact->scale = RR_R(0.2)*size;
+    impact->scale = RR_R(0.5)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rr_real damped = region->damping*RR_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RR_R(1.0)/(RR_R(1.0) + RR_R(4.0)*damped);
-    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    impact->skin_rate = rr_law_stiffness(region, size)*impact->mobility;
     const rr_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!rr_all_finite(numbers, 3) || rr_check_positive(numbers, 3) != RR_OK) {
         return RR_SINGULAR;

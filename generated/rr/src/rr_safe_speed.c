@@ -6,11 +6,11 @@
  * Share of the limit at which trials aim, the share from which on one is near enough, and the largest
  * that counts as kept: forces are within 2e-3 of the right ones, in the worst of 100,000 within 5e-3.
  */
-#define AIM RR_R(0.9875)
+#define AIM RR_R(0.987)
 #define NEAR RR_R(0.98)
-#define KEPT RR_R(0.995)
+#define KEPT RR_R(0.994)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
-#define TRIALS 24
+#define TRIALS 16
 #define APART RR_R(4e-3)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP RR_R(8.0)
@@ -93,16 +93,14 @@ static bool find(rr_impact *impact, rr_real guess, rr_real cap, search *s,
 /* Whether loose motors bring too little energy for a force: rr_settled.c, w = 0 at first touch. */
 static bool are_weak(const rr_impact *impact, rr_real speed, rr_real force)
 {
-    const rr_real depth =
-        RR_POW(force/impact->region->hertz_stiffness, RR_R(2.0)/RR_R(3.0));
-    const rr_real needed = force*force/impact->hold + RR_R(0.8)*force*depth;
+    const rr_real needed = force*force/impact->hold + rr_law_twice_work(impact->region, force);
     return RR_STRUCTURED && speed*speed*rr_twice_energy(impact) <= needed;
 }
 
 int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
     rr_real cap, rr_impact *impact, rr_safe_speed_t *found)
 {
-    rr_budget budget = {p->steps, false, limit};
+    rr_budget budget = {p->steps, false, limit, NULL};
     bool bounded = false;
     int first;
     int last;

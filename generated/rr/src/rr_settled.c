@@ -6,15 +6,15 @@
  * body's own mass; w the part of what vibrates, of energy E. The contact force only pushes r back, so once
  * r' < 0 it stays so, r does not grow, and with the energy V of skin, body and standing modes, E + V does
  * not either: (E + V)' = f r' - c s'^2 <= 0. At the largest force F of a later contact f = k s + c x' with
- * x' <= w', which takes F^2/(2 K) in w' and s (rr_bound.c), 0.4 F depth in the skin, and depth + s - r = w
- * takes w^2/(2 reach) in the vibration. With less than that there is no such F.
+ * x' <= w', which takes F^2/(2 K) in w' and s (rr_bound.c), its work in the skin (0.4 F depth in
+ * Hertz's), and depth + s - r = w takes w^2/(2 reach) in the vibration. With less than that there is no such F.
  *
  * Driven motors that are let go later: seen from their motion before, E is of links and rotors, these
  * move at most sqrt(2 E rotors) on, and the rest holds if r' < 0 by more than that.
  */
 #include "rr_state.h"
 
-bool rr_is_settled(const rr_state *s, rr_real force, rr_real share)
+bool rr_is_settled(const rr_state *s, rr_real force, rr_real depth, rr_real share)
 {
     const rr_impact *const impact = s->impact;
     const rr_phase *const phase = s->phase;
@@ -34,9 +34,10 @@ bool rr_is_settled(const rr_state *s, rr_real force, rr_real share)
     if (!phase->settles || !(away < RR_R(0.0))) {
         return false;
     }
+    const bool is_hertz = region->law == NULL;
     const rr_real bent = s->touching ? s->x - s->u : s->rest;
     rr_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
-        + RR_R(0.8)*s->f*s->root*s->root;
+        + (is_hertz ? RR_R(0.8) : RR_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
         twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
     }
@@ -46,7 +47,8 @@ bool rr_is_settled(const rr_state *s, rr_real force, rr_real share)
     }
     const rr_real slip = region->damping*RR_SQRT(twice*impact->mobility);
     const rr_real pressed = RR_FMAX(force - slip, RR_R(0.0))/region->stiffness;
-    const rr_real gap = RR_FMAX(s->depth + pressed - r, RR_R(0.0));
-    const rr_real needed = force*force/impact->hold + RR_R(0.8)*force*s->depth;
+    const rr_real gap = RR_FMAX(depth + pressed - r, RR_R(0.0));
+    const rr_real skin = is_hertz ? RR_R(0.8)*force*depth : rr_law_twice_work(region, force);
+    const rr_real needed = force*force/impact->hold + skin;
     return twice*phase->reach <= share*(needed*phase->reach + gap*gap);
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * Eigenvectors of a symmetric matrix of rr_ of N rows: Householder's reflections to three diagonals,
- * then QL steps with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
+ * Eigenvectors of a symmetric matrix of rr_: Householder's reflections to three diagonals, then QR steps
+ * with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
  *
  * Of a compliance the slow modes, which count, come out with all their digits; the fastest keep few
- * when there are frequencies a thousand times lower.
+ * when there are frequencies a thousand times lower. Joints come in the order from the base, so that
+ * compliances fall from the first row on, and small eigenvalues are found first, at the end.
  */
 #include "rr_impact.h"
 
@@ -13,48 +14,50 @@
  * as none: energies change by less than its root.
  */
 #define SMALL RR_R(1e-8)
-/* QL takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
-#define MOST_STEPS (12*RR_N)
+/* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
+#define MOST_STEPS 3
 
-/* One reflection I - scale v v' of rows and columns first to last: A - v w' - w v'. */
-static void turn(int first, const rr_real v[RR_N], rr_real scale, rr_square A)
+/* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
+static void turn(int first, int size, const rr_real *v, rr_real scale, rr_matrix A)
 {
-    rr_real w[RR_N];
+    rr_real w[RR_SYSTEM];
     rr_real along = RR_R(0.0);
-    for (int i = first; i < RR_N; ++i) {
+    for (int i = first; i < size; ++i) {
         rr_real sum = RR_R(0.0);
-        for (int j = first; j < RR_N; ++j) {
+        for (int j = first; j < size; ++j) {
             sum += A[i][j]*v[j];
         }
         w[i] = scale*sum;
         along += w[i]*v[i];
     }
     along *= RR_R(0.5)*scale;
-    for (int i = first; i < RR_N; ++i) {
+    for (int i = first; i < size; ++i) {
         w[i] -= along*v[i];
         const rr_real vi = v[i];
         const rr_real wi = w[i];
         for (int j = first; j <= i; ++j) {
-            A[i][j] -= vi*w[j] + wi*v[j];
-            A[j][i] = A[i][j];
+            const rr_real entry = A[i][j] - vi*w[j] - wi*v[j];
+            A[i][j] = entry;
+            A[j][i] = entry;
         }
     }
 }
 
-/* Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. */
-static void reflect(rr_square A, rr_real d[RR_N], rr_real e[RR_N], rr_square Q)
+/*
+ * Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. Of each
+ * reflection, v stays in A's own row.
+ */
+static void reflect(int size, rr_matrix A, rr_real *d, rr_real *e, rr_matrix Q)
 {
-    rr_square vectors; /* of each reflection */
-    rr_real scale[RR_N]; /* 2/v'v */
-    for (int k = 0; k + 1 < RR_N; ++k) {
-        rr_real *const v = vectors[k];
-        const rr_real first = A[k][k + 1];
+    rr_real scale[RR_SYSTEM]; /* 2/v'v */
+    for (int k = 0; k + 1 < size; ++k) {
+        rr_real *const v = A[k];
+        const rr_real first = v[k + 1];
         rr_real square = RR_R(0.0);
-        for (int i = k + 2; i < RR_N; ++i) {
-            v[i] = A[k][i];
+        for (int i = k + 2; i < size; ++i) {
             square += v[i]*v[i];
         }
-        d[k] = A[k][k];
+        d[k] = v[k];
         e[k] = first;
         scale[k] = RR_R(0.0);
         if (square > RR_R(0.0)) {
@@ -62,103 +65,99 @@ static void reflect(rr_square A, rr_real d[RR_N], rr_real e[RR_N], rr_square Q)
             e[k] = first > RR_R(0.0) ? -length : length;
             v[k + 1] = first - e[k];
             scale[k] = RR_R(1.0)/(length*(length + RR_FABS(first)));
-            turn(k + 1, v, scale[k], A);
+            turn(k + 1, size, v, scale[k], A);
         }
     }
-    d[RR_N - 1] = A[RR_N - 1][RR_N - 1];
-    e[RR_N - 1] = RR_R(0.0);
-    for (int i = 0; i < RR_N; ++i) {
-        for (int j = 0; j < RR_N; ++j) {
+    d[size - 1] = A[size - 1][size - 1];
+    for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) {
             Q[i][j] = RR_R(0.0);
         }
         Q[i][i] = RR_R(1.0);
     }
-    for (int k = RR_N - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
-        const rr_real *const v = vectors[k];
-        for (int i = k + 1; i < RR_N && scale[k] > RR_R(0.0); ++i) {
+    for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
+        const rr_real *const v = A[k];
+        for (int i = k + 1; i < size && scale[k] > RR_R(0.0); ++i) {
             rr_real along = RR_R(0.0);
-            for (int j = k + 1; j < RR_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 along += Q[i][j]*v[j];
             }
             along *= scale[k];
-            for (int j = k + 1; j < RR_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 Q[i][j] -= along*v[j];
             }
         }
     }
 }
 
-/* One QL step on rows first to last; turns the rows of Q, too. */
-static void chase(int first, int last, rr_real d[RR_N], rr_real e[RR_N], rr_square Q)
+/* Turns two rows of Q by an angle. */
+static void turn_rows(int size, rr_real c, rr_real s, rr_real *upper, rr_real *lower)
 {
-    const rr_real one = RR_R(1.0);
-    const rr_real half = RR_R(0.5)*(d[first + 1] - d[first])/e[first];
-    const rr_real length = RR_FABS(half) + RR_SQRT(half*half + one);
-    rr_real g = d[last] - d[first] + e[first]/(half < RR_R(0.0) ? -length : length);
-    rr_real s = one;
-    rr_real c = one;
-    rr_real p = RR_R(0.0);
-    for (int i = last - 1; i >= first; --i) {
-        const rr_real f = s*e[i];
-        const rr_real b = c*e[i];
-        const rr_real r = RR_SQRT(f*f + g*g);
-        e[i + 1] = r;
-        if (!(r > RR_R(0.0))) {
-            d[i + 1] -= p;
-            e[last] = RR_R(0.0);
-            return;
-        }
-        s = f/r;
-        c = g/r;
-        g = d[i + 1] - p;
-        const rr_real t = (d[i] - g)*s + RR_R(2.0)*c*b;
-        p = s*t;
-        d[i + 1] = g + p;
-        g = c*t - b;
-        for (int j = 0; j < RR_N; ++j) {
-            const rr_real x = Q[i][j];
-            const rr_real y = Q[i + 1][j];
-            Q[i + 1][j] = s*x + c*y;
-            Q[i][j] = c*x - s*y;
-        }
+    for (int j = 0; j < size; ++j) {
+        const rr_real x = upper[j];
+        const rr_real y = lower[j];
+        upper[j] = c*x + s*y;
+        lower[j] = c*y - s*x;
     }
-    d[first] -= p;
-    e[first] = g;
-    e[last] = RR_R(0.0);
 }
 
-/* Whether an entry between two of the diagonal is more than none. */
-static bool counts(rr_real before, rr_real after, rr_real entry)
+/* One QR step on rows first to last; turns the rows of Q, too. */
+static void chase(int first, int last, int size, rr_real *d, rr_real *e, rr_matrix Q)
 {
-    const rr_real noise = RR_EPSILON*(RR_FABS(before) + RR_FABS(after));
-    return entry*entry > RR_FMAX(SMALL*RR_FABS(before*after), noise*noise);
-}
-
-/* Last row of the block that begins at a row. */
-static int end_of_block(int first, const rr_real values[RR_N], const rr_real e[RR_N])
-{
-    int last = first;
-    while (last + 1 < RR_N && counts(values[last], values[last + 1], e[last])) {
-        ++last;
-    }
-    return last;
-}
-
-bool rr_spectrum(rr_square A, rr_real values[RR_N], rr_square vectors)
-{
-    rr_real e[RR_N];
-    reflect(A, values, e, vectors);
-    int first = 0;
-    for (int step = 0; step <= MOST_STEPS; ++step) {
-        while (first < RR_N && end_of_block(first, values, e) == first) {
-            ++first;
+    const rr_real end = e[last - 1];
+    const rr_real half = RR_R(0.5)*(d[last - 1] - d[last]);
+    const rr_real length = RR_SQRT(half*half + end*end);
+    rr_real x = d[first] - d[last] + end*end/(half < RR_R(0.0) ? half - length : half + length);
+    rr_real z = e[first];
+    for (int k = first; k < last; ++k) {
+        const rr_real r = RR_SQRT(x*x + z*z);
+        const rr_real inverse = RR_R(1.0)/r;
+        const bool turns = r > RR_R(0.0);
+        const rr_real c = turns ? x*inverse : RR_R(1.0);
+        const rr_real s = turns ? z*inverse : RR_R(0.0);
+        if (k > first) {
+            e[k - 1] = r;
         }
-        if (first == RR_N) {
+        const rr_real u = s*(d[k + 1] - d[k]) + RR_R(2.0)*c*e[k];
+        d[k] += s*u;
+        d[k + 1] -= s*u;
+        e[k] = c*u - e[k];
+        if (k + 1 < last) {
+            x = e[k];
+            z = s*e[k + 1];
+            e[k + 1] *= c;
+        }
+        turn_rows(size, c, s, Q[k], Q[k + 1]);
+    }
+}
+
+bool rr_spectrum(int size, rr_matrix A, rr_real *values, rr_matrix vectors)
+{
+    rr_real e[RR_SYSTEM];
+    rr_real all = RR_R(0.0);
+    reflect(size, A, values, e, vectors);
+    for (int i = 0; i < size; ++i) {
+        all += RR_FABS(values[i]);
+    }
+    const rr_real noise = RR_EPSILON*RR_EPSILON*all*all;
+    int last = size - 1;
+    for (int step = 0; step < MOST_STEPS*size; ++step) {
+        int first = last;
+        while (first > 0) {
+            const rr_real square = e[first - 1]*e[first - 1];
+            if (square > noise + SMALL*RR_FABS(values[first - 1]*values[first])) {
+                --first;
+            } else if (first == last) {
+                --last;
+                first = last;
+            } else {
+                break;
+            }
+        }
+        if (last == 0) {
             return true;
         }
-        if (step < MOST_STEPS) {
-            chase(first, end_of_block(first, values, e), values, e, vectors);
-        }
+        chase(first, last, size, values, e, vectors);
     }
     return false;
 }

@@ -5,31 +5,6 @@
 /* Speed of a contact point that counts as rest: it can hardly be measured. */
 #define AT_REST RR_R(1e-6)
 
-/* Velocity of a contact point; returns its size. */
-static rr_real velocity_of(const rr_links_t *links, int point, const rr_real *rates, rr_real v[3])
-{
-    for (int k = 0; k < 3; ++k) {
-        v[k] = RR_R(0.0);
-        for (int i = 0; i < RR_N; ++i) {
-            v[k] += links->J[3*point + k][i]*rates[i];
-        }
-    }
-    return RR_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
-}
-
-/* Prepares the arrival of a point that moves at v with the joint velocities there are. */
-static void arrive_as_it_moves(int point, const rr_real *rates, const rr_real v[3],
-    rr_real speed, rr_arrival *arrival)
-{
-    for (int i = 0; i < RR_N; ++i) {
-        arrival->row[i] = RR_R(0.0);
-        for (int k = 0; k < 3; ++k) {
-            arrival->row[i] += v[k]/speed*arrival->links.J[3*point + k][i];
-        }
-        arrival->rates[i] = rates[i]/speed;
-    }
-}
-
 /* What the search of the least factor knows. */
 typedef struct {
     rr_impact impact;
@@ -61,12 +36,8 @@ static int watch(const rr_region *region, const rr_params *p, int point, rr_real
     int which, slowdown *s)
 {
     if (s->point != point) {
-        rr_real v[3];
         s->point = point;
-        s->speed = velocity_of(&s->impact.arrival.links, point, s->rates, v);
-        if (s->speed > AT_REST) {
-            arrive_as_it_moves(point, s->rates, v, s->speed, &s->impact.arrival);
-        }
+        s->speed = rr_arrive_as_it_moves(point, s->rates, &s->impact.arrival);
         rr_impact_forget(&s->impact);
     }
     if (!(s->speed > AT_REST)) {

@@ -5,12 +5,22 @@
 
 #include "rr_impact.h"
 
+/* What the next step takes of those before it, and of its own length. */
+typedef struct {
+    rr_real ratio; /* of its length to the last one's */
+    rr_real share, more, before; /* of the bend, see rr_press */
+    rr_real u, u_before; /* in u', 1/s */
+    rr_real hold, soft, yields; /* depth hold + soft f = what presses; x gives way by yields f */
+} rr_pace;
+
 typedef struct {
     rr_impact *impact;
     const rr_phase *phase;
     rr_real speed;
     rr_real scale; /* of forces, N */
     int level;
+    int even; /* steps in a row of this length */
+    rr_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     rr_real time;
     rr_real drifted; /* by the motors, m */
@@ -20,27 +30,40 @@ typedef struct {
     rr_real h, h_before, x; /* last steps, contact point */
     rr_real bump; /* what the bend adds to the force on average of the last step */
     rr_real f, rise; /* force, and by how much it grew in the last step */
-    rr_real u, u_before, root; /* deformation of the skin; root of its depth */
+    rr_real u, u_before; /* deformation of the skin and of what stands */
+    rr_real now, root; /* depth of the skin, and its root where it is Hertz's */
     rr_real rest; /* deflection of the body out of contact */
     rr_real depth; /* of the skin at the largest force so far */
+    rr_real swings; /* most that modes that stand add to the force as they swing, N */
 } rr_state;
+
+/* What is looked for in the steps of an impact that goes on after its peak. */
+struct rr_watch {
+    rr_real matters; /* force that may still come, N */
+    rr_real depth; /* of the skin under it, m */
+    rr_real late; /* the largest force from 0.5 s on, N */
+    rr_real before, last; /* forces of the last steps, N */
+};
+
+/* Notes a step that was taken: the late force; says whether none that matters can come. */
+bool rr_pass(const rr_state *s, rr_watch *watch);
 
 /* A step on trial. */
 typedef struct {
     rr_real amplitude[RR_MODES], rate[RR_MODES];
     rr_real x, v; /* of the contact point without the force at the end */
     rr_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    rr_real u, root;
+    rr_real u, depth, root;
 } rr_trial;
 
-/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+/* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate);
 
 /* Moves all modes by a step without forces. */
 void rr_glide(const rr_state *s, rr_trial *t);
 
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
-void rr_press(const rr_state *s, rr_trial *t);
+void rr_press(rr_state *s, rr_trial *t);
 
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void rr_take(const rr_trial *t, rr_state *s);
@@ -49,9 +72,9 @@ void rr_take(const rr_trial *t, rr_state *s);
 void rr_release(rr_state *s);
 
 /*
- * Whether no later force exceeds the largest so far: proven, but for a share by which the energy may
- * exceed what that takes.
+ * Whether no later force exceeds one, the present one being less, under which the skin is so deep: proven,
+ * but for a share by which the energy may exceed what that takes.
  */
-bool rr_is_settled(const rr_state *s, rr_real force, rr_real share);
+bool rr_is_settled(const rr_state *s, rr_real force, rr_real depth, rr_real share);
 
 #endif

@@ -5,7 +5,7 @@
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
 #define CONTACT_STEP RR_R(1.0)
 #define MODE_STEP RR_R(5.6)
-/* Most damping of a servo in the longest step, as a share of what it acts on. */
+/* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP RR_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
@@ -17,8 +17,14 @@
  * through the damper, by more than this share of the force.
  */
 #define FELT RR_R(2e-4)
-/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+/* Nor may it swing as motors are released so that spring and damper feel more than this share of it. */
 #define LEFT RR_R(5e-5)
+/*
+ * Where the damper's jump at first touch is more than this share of the force, squared, the longest
+ * step is at most so many times as long as the skin takes for it, c over its stiffness.
+ */
+#define JUMPS RR_R(0.1)
+#define JUMP_STEP RR_R(24.0)
 /* Steps counted; more than any budget has. */
 #define MOST RR_R(1e6)
 
@@ -62,9 +68,11 @@ static void let_stand(const rr_impact *impact, rr_real contact, bool released, r
         const bool body = impact->gives_way && i == modes->count - 1;
         const rr_real weight = modes->row[i]*modes->row[i];
         const rr_real along = modes->row[i]*modes->start[i];
+        const rr_real held = region->stiffness
+            + region->damping*RR_SQRT(RR_FMAX(modes->squared[i], RR_R(0.0)));
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
-            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && (!released || weight*held < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
         if (i >= modes->rigid && !body) {
             phase->settles = phase->settles && modes->squared[i] > RR_R(0.0);
@@ -116,14 +124,14 @@ static void mode_steps(rr_phase *phase, int i)
     }
 }
 
-/* Most that a servo's gains damp a mode, 1/s. */
+/* Most that joints and a servo's gains damp a mode, 1/s. */
 static rr_real damping_rate(const rr_phase *phase)
 {
     rr_real rate = RR_R(0.0);
-    for (int i = 0; i < RR_N && phase->damped; ++i) {
+    for (int i = 0; i < RR_DAMPERS && phase->damped; ++i) {
         rr_real of_motor = RR_R(0.0);
         for (int k = 0; k < phase->modes.count; ++k) {
-            const rr_real shape = phase->modes.shape[k][RR_SYSTEM - RR_N + i];
+            const rr_real shape = phase->modes.shape[k][RR_SYSTEM - RR_DAMPERS + i];
             of_motor += shape*shape;
         }
         rate = RR_FMAX(rate, phase->damping[i]*of_motor);
@@ -159,7 +167,10 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
     }
     const rr_real share = RR_FMIN(moving/impact->mobility, RR_R(1.0));
     rate2 = RR_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
-    const rr_real slowest = RR_R(1.0)/time;
+    const rr_real jump = region->damping*impact->mobility;
+    const rr_real rise = jump*region->damping > JUMPS*region->stiffness
+        ? impact->skin_rate/(JUMP_STEP*jump) : RR_R(0.0);
+    const rr_real slowest = RR_FMAX(RR_R(1.0)/time, rise);
     const rr_real rate = RR_FMAX(slowest, RR_FMAX(RR_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const rr_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;

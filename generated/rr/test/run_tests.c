@@ -651,6 +651,12 @@ static void test_joint_impulse(void)
            name, "nothing written for bad inputs");
 }
 
+/* What a golden impact hits. */
+static int golden_region(const rr_golden_impact *in, rr_region *region)
+{
+    return rr_body_region(in->part, in->clamped, region);
+}
+
 static void test_impacts(void)
 {
     double worst = 0.0;
@@ -660,7 +666,7 @@ static void test_impacts(void)
         rr_peak_force_t peak = {0, 0};
         rr_peak_force_t again = {0, 0};
         rr_safe_speed_t safe = {0, 0};
-        expect(rr_body_region(in->part, in->clamped, &region) == RR_OK, "rr_body_region", "status");
+        expect(golden_region(in, &region) == RR_OK, "rr_body_region", "status");
         const int found = rr_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak);
         if (found == RR_BOUNDED) { /* a servo that float has too few digits for */
             expect((double)peak.force >= in->force, "rr_peak_force", "bound of a golden impact");
@@ -815,7 +821,7 @@ static void check_selection(const rr_real poses[][4], int count, const rr_golden
     rr_real force = 0;
     rr_real next = 0;
     memset(allowed, 1, sizeof allowed);
-    expect(rr_body_region(in->part, in->clamped, &region) == RR_OK, "rr_body_region", "status");
+    expect(golden_region(in, &region) == RR_OK, "rr_body_region", "status");
     const int best = best_of(poses, count, allowed, in, &region, &force);
     if (best < 0) { /* all are bounded */
         return;

@@ -79,7 +79,7 @@ typedef enum {
 } ur5e_motors;
 
 /* What structs and functions look like, in this number type. */
-#define UR5E_LAYOUT (0x9c243d50u + (unsigned int)sizeof(ur5e_real))
+#define UR5E_LAYOUT (0x3fca0c70u + (unsigned int)sizeof(ur5e_real))
 
 typedef struct {
     unsigned int layout; /* UR5E_LAYOUT; ur5e_default_params sets it */
@@ -306,14 +306,32 @@ int ur5e_joint_impulse(
     const ur5e_params *p,
     ur5e_joint_impulse_t *out);
 
-/* What an impact hits: the skin's Hertz contact in series with a spring and damper (MSM 3.1). */
+/*
+ * A point of a law of contact. From it to the next the force follows the parabola whose tangents at both
+ * meet at the knee; the law goes on straight from the last point through its knee. The first point is at 0.
+ */
+typedef struct {
+    ur5e_real depth; /* m */
+    ur5e_real force; /* N */
+    ur5e_real knee_depth; /* m */
+    ur5e_real knee_force; /* N */
+} ur5e_law_point;
+
+#define UR5E_MOST_LAW_POINTS 128
+
+/*
+ * What an impact hits: a law of contact in series with a spring and damper (MSM 3.1). The law is Hertz's,
+ * or what softimpact.codegen.region_parameters makes of skin, pad and cover.
+ */
 typedef struct {
     ur5e_real stiffness; /* k_h of the body, N/m, > 0 */
     ur5e_real damping; /* c_h of the body, N s/m, >= 0 */
     ur5e_real effective_mass; /* that gives way with it, kg, > 0; not read if clamped */
-    ur5e_real hertz_stiffness; /* k_f of the skin, N/m^1.5, > 0 */
+    ur5e_real hertz_stiffness; /* k_f of the skin, N/m^1.5, > 0; not read if there is another law */
     ur5e_real quasi_static_limit; /* of the force while clamped, N; for the caller */
     ur5e_real force_limit; /* of the first milliseconds, N; for the caller */
+    const ur5e_law_point *law; /* NULL for Hertz's; else its points, which rise */
+    int law_points; /* how many there are, 1 to 128; not read without a law */
     int clamped; /* 0 if the body can give way */
 } ur5e_region;
 
@@ -408,6 +426,83 @@ typedef struct {
 int ur5e_speed_factor_over(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
     const int points[], const ur5e_region regions[], const ur5e_real limits[], int count,
     const ur5e_params *p, ur5e_speed_factor_over_t *out);
+
+/*
+ * Largest force with which a point presses on a clamped body from 0.5 to 0.6 s after first touch, when the
+ * quasi-static limit counts; 0 on one that gives way. p->horizon does not matter.
+ * UR5E_BOUNDED: the force is a bound that none exceeds.
+ */
+int ur5e_pressing_force_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    ur5e_real speed, const ur5e_region *region, const ur5e_params *p, ur5e_real *force);
+
+/* Frames that move: a contact point can be given in any of them. */
+typedef enum {
+    UR5E_FRAME_SHOULDER_LINK = 0, /* shoulder_link */
+    UR5E_FRAME_UPPER_ARM_LINK = 1, /* upper_arm_link */
+    UR5E_FRAME_FOREARM_LINK = 2, /* forearm_link */
+    UR5E_FRAME_WRIST_1_LINK = 3, /* wrist_1_link */
+    UR5E_FRAME_WRIST_2_LINK = 4, /* wrist_2_link */
+    UR5E_FRAME_WRIST_3_LINK = 5, /* wrist_3_link */
+    UR5E_FRAME_FLANGE = 6 /* flange */
+} ur5e_frame;
+
+/* As ur5e_peak_force and ur5e_safe_speed, of a place (m) in a frame, a ur5e_frame. */
+int ur5e_peak_force_on(const ur5e_real q[UR5E_JOINTS], int frame, const ur5e_real place[3],
+    const ur5e_real n[3], ur5e_real speed, const ur5e_region *region, const ur5e_params *p,
+    ur5e_peak_force_t *out);
+int ur5e_safe_speed_on(const ur5e_real q[UR5E_JOINTS], int frame, const ur5e_real place[3],
+    const ur5e_real n[3], ur5e_real limit, const ur5e_region *region, const ur5e_params *p,
+    ur5e_safe_speed_t *out);
+
+typedef struct {
+    ur5e_real n[3]; /* of the impact, a unit vector */
+    ur5e_real force; /* N; along it */
+    ur5e_real error; /* share of the force by which another direction may be harder */
+} ur5e_worst_direction_t;
+
+/*
+ * The direction in which a contact point (ur5e_point) hits hardest at a speed, among those in which the
+ * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of directions.
+ */
+int ur5e_worst_direction_at(const ur5e_real q[UR5E_JOINTS], int point, ur5e_real speed,
+    const ur5e_region *region, const ur5e_params *p, ur5e_worst_direction_t *out);
+
+/* The same of a place (m) in a frame, a ur5e_frame. */
+int ur5e_worst_direction_on(const ur5e_real q[UR5E_JOINTS], int frame, const ur5e_real place[3],
+    ur5e_real speed, const ur5e_region *region, const ur5e_params *p, ur5e_worst_direction_t *out);
+
+typedef struct {
+    ur5e_real speed; /* m/s */
+    ur5e_real force; /* N; largest at this speed up to the horizon, or at a greater one */
+    int pressed; /* 1 if what presses later needs this speed, 0 if the force */
+} ur5e_allowed_speed_t;
+
+/*
+ * As ur5e_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
+ * region->quasi_static_limit from 0.5 to 0.6 s. UR5E_UNRESOLVED if no speed is known to keep both.
+ */
+int ur5e_allowed_speed_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    const ur5e_region *region, const ur5e_params *p, ur5e_allowed_speed_t *out);
+
+typedef struct {
+    ur5e_real factor; /* of all joint velocities, 0 to 1 */
+    int point; /* ur5e_point that needs it, -1 if none moves */
+    ur5e_real speed; /* m/s; that this point may have */
+    ur5e_real force; /* N; largest at that speed up to the horizon, or at a greater one */
+    int pressed; /* 1 if what presses later needs it */
+} ur5e_allowed_factor_t;
+
+/* As ur5e_speed_factor, for all limits of a region. */
+int ur5e_allowed_factor(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    const ur5e_region *region, const ur5e_params *p, ur5e_allowed_factor_t *out);
+
+/*
+ * Whether a contact point that moves as joints do might press on a clamped body harder than a limit from
+ * 0.5 to 0.6 s: 0 where it is proven or integrated that none does.
+ */
+int ur5e_may_press(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    ur5e_real limit, const ur5e_region *region, const ur5e_params *p, int *may);
 
 typedef struct {
     int best;    /* row of the pose with the least peak force; the first of equals */

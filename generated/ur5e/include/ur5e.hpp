@@ -391,6 +391,126 @@ inline result<ur5e_speed_factor_t> speed_factor(
     return found;
 }
 
+/* Largest force with which a point presses on a clamped body from 0.5 to 0.6 s after first touch,
+ * when the
+ * quasi-static limit counts; 0 on one that gives way. p->horizon does not matter.
+ * UR5E_BOUNDED: the force is a bound that none exceeds. */
+inline result<real> pressing_force_at(
+    const vector<6> &q,
+    int point,
+    const vector<3> &n,
+    real speed,
+    const ur5e_region &region,
+    const ur5e_params &p) noexcept
+{
+    result<real> found;
+    found.status = ur5e_pressing_force_at(q.data(), point, n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+/* As ur5e_peak_force and ur5e_safe_speed, of a place (m) in a frame, a ur5e_frame. */
+inline result<ur5e_peak_force_t> peak_force_on(
+    const vector<6> &q,
+    int frame,
+    const vector<3> &place,
+    const vector<3> &n,
+    real speed,
+    const ur5e_region &region,
+    const ur5e_params &p) noexcept
+{
+    result<ur5e_peak_force_t> found;
+    found.status = ur5e_peak_force_on(q.data(), frame, place.data(), n.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+inline result<ur5e_safe_speed_t> safe_speed_on(
+    const vector<6> &q,
+    int frame,
+    const vector<3> &place,
+    const vector<3> &n,
+    real limit,
+    const ur5e_region &region,
+    const ur5e_params &p) noexcept
+{
+    result<ur5e_safe_speed_t> found;
+    found.status = ur5e_safe_speed_on(q.data(), frame, place.data(), n.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
+/* The direction in which a contact point (ur5e_point) hits hardest at a speed, among those in
+ * which the
+ * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control
+ * loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of
+ * directions. */
+inline result<ur5e_worst_direction_t> worst_direction_at(
+    const vector<6> &q,
+    int point,
+    real speed,
+    const ur5e_region &region,
+    const ur5e_params &p) noexcept
+{
+    result<ur5e_worst_direction_t> found;
+    found.status = ur5e_worst_direction_at(q.data(), point, speed, &region, &p, &found.value);
+    return found;
+}
+
+/* The same of a place (m) in a frame, a ur5e_frame. */
+inline result<ur5e_worst_direction_t> worst_direction_on(
+    const vector<6> &q,
+    int frame,
+    const vector<3> &place,
+    real speed,
+    const ur5e_region &region,
+    const ur5e_params &p) noexcept
+{
+    result<ur5e_worst_direction_t> found;
+    found.status = ur5e_worst_direction_on(q.data(), frame, place.data(), speed, &region, &p, &found.value);
+    return found;
+}
+
+/* As ur5e_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and,
+ * clamped,
+ * region->quasi_static_limit from 0.5 to 0.6 s. UR5E_UNRESOLVED if no speed is known to keep both. */
+inline result<ur5e_allowed_speed_t> allowed_speed_at(
+    const vector<6> &q,
+    int point,
+    const vector<3> &n,
+    const ur5e_region &region,
+    const ur5e_params &p) noexcept
+{
+    result<ur5e_allowed_speed_t> found;
+    found.status = ur5e_allowed_speed_at(q.data(), point, n.data(), &region, &p, &found.value);
+    return found;
+}
+
+/* As ur5e_speed_factor, for all limits of a region. */
+inline result<ur5e_allowed_factor_t> allowed_factor(
+    const vector<6> &q,
+    const vector<6> &dq,
+    const ur5e_region &region,
+    const ur5e_params &p) noexcept
+{
+    result<ur5e_allowed_factor_t> found;
+    found.status = ur5e_allowed_factor(q.data(), dq.data(), &region, &p, &found.value);
+    return found;
+}
+
+/* Whether a contact point that moves as joints do might press on a clamped body harder than a
+ * limit from
+ * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
+inline result<ur5e_int> may_press(
+    const vector<6> &q,
+    const vector<6> &dq,
+    real limit,
+    const ur5e_region &region,
+    const ur5e_params &p) noexcept
+{
+    result<ur5e_int> found;
+    found.status = ur5e_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
+    return found;
+}
+
 } // namespace ur5e
 
 #endif

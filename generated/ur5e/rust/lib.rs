@@ -18,11 +18,12 @@ pub type ur5e_real = f32;
 pub const UR5E_JOINTS: usize = 6;
 pub const UR5E_COORDINATES: usize = 12;
 pub const UR5E_CHAIN_ORDER: usize = 3;
+pub const UR5E_MOST_LAW_POINTS: usize = 128;
 pub const UR5E_POINTS: usize = 1;
 pub const UR5E_VERSION: &str = "0.2.0";
 pub const UR5E_MODEL_DIGEST: &str = "40f477935b27b5347d857cf794de085d62bc0c098f5702fa8094214d1cb3bf35";
 /// What structs and functions look like, in this number type.
-pub const UR5E_LAYOUT: c_uint = 0x9c243d50 + core::mem::size_of::<ur5e_real>() as c_uint;
+pub const UR5E_LAYOUT: c_uint = 0x3fca0c70 + core::mem::size_of::<ur5e_real>() as c_uint;
 
 pub const UR5E_OK: c_int = 0;
 pub const UR5E_NULL_POINTER: c_int = 1;
@@ -55,6 +56,14 @@ pub const UR5E_THIGH: c_int = 10;
 pub const UR5E_LOWER_LEG: c_int = 11;
 
 pub const UR5E_POINT_TIP: c_int = 0;
+
+pub const UR5E_FRAME_SHOULDER_LINK: c_int = 0;
+pub const UR5E_FRAME_UPPER_ARM_LINK: c_int = 1;
+pub const UR5E_FRAME_FOREARM_LINK: c_int = 2;
+pub const UR5E_FRAME_WRIST_1_LINK: c_int = 3;
+pub const UR5E_FRAME_WRIST_2_LINK: c_int = 4;
+pub const UR5E_FRAME_WRIST_3_LINK: c_int = 5;
+pub const UR5E_FRAME_FLANGE: c_int = 6;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -172,6 +181,19 @@ pub struct ur5e_joint_impulse_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ur5e_law_point {
+    /// m
+    pub depth: ur5e_real,
+    /// N
+    pub force: ur5e_real,
+    /// m
+    pub knee_depth: ur5e_real,
+    /// N
+    pub knee_force: ur5e_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ur5e_region {
     /// k_h of the body, N/m, > 0
     pub stiffness: ur5e_real,
@@ -179,12 +201,16 @@ pub struct ur5e_region {
     pub damping: ur5e_real,
     /// that gives way with it, kg, > 0; not read if clamped
     pub effective_mass: ur5e_real,
-    /// k_f of the skin, N/m^1.5, > 0
+    /// k_f of the skin, N/m^1.5, > 0; not read if there is another law
     pub hertz_stiffness: ur5e_real,
     /// of the force while clamped, N; for the caller
     pub quasi_static_limit: ur5e_real,
     /// of the first milliseconds, N; for the caller
     pub force_limit: ur5e_real,
+    /// NULL for Hertz's; else its points, which rise
+    pub law: *const ur5e_law_point,
+    /// how many there are, 1 to 128; not read without a law
+    pub law_points: c_int,
     /// 0 if the body can give way
     pub clamped: c_int,
 }
@@ -235,6 +261,43 @@ pub struct ur5e_speed_factor_over_t {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ur5e_worst_direction_t {
+    /// of the impact, a unit vector
+    pub n: [ur5e_real; 3],
+    /// N; along it
+    pub force: ur5e_real,
+    /// share of the force by which another direction may be harder
+    pub error: ur5e_real,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ur5e_allowed_speed_t {
+    /// m/s
+    pub speed: ur5e_real,
+    /// N; largest at this speed up to the horizon, or at a greater one
+    pub force: ur5e_real,
+    /// 1 if what presses later needs this speed, 0 if the force
+    pub pressed: c_int,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ur5e_allowed_factor_t {
+    /// of all joint velocities, 0 to 1
+    pub factor: ur5e_real,
+    /// ur5e_point that needs it, -1 if none moves
+    pub point: c_int,
+    /// m/s; that this point may have
+    pub speed: ur5e_real,
+    /// N; largest at that speed up to the horizon, or at a greater one
+    pub force: ur5e_real,
+    /// 1 if what presses later needs it
+    pub pressed: c_int,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ur5e_selection_t {
     /// row of the pose with the least peak force; the first of equals
     pub best: c_int,
@@ -278,6 +341,14 @@ extern "C" {
     pub fn ur5e_safe_speed_at(q: *const ur5e_real, point: c_int, n: *const ur5e_real, limit: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_safe_speed_t) -> c_int;
     pub fn ur5e_speed_factor(q: *const ur5e_real, dq: *const ur5e_real, limit: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_speed_factor_t) -> c_int;
     pub fn ur5e_speed_factor_over(q: *const ur5e_real, dq: *const ur5e_real, points: *const c_int, regions: *const ur5e_region, limits: *const ur5e_real, count: c_int, p: *const ur5e_params, out: *mut ur5e_speed_factor_over_t) -> c_int;
+    pub fn ur5e_pressing_force_at(q: *const ur5e_real, point: c_int, n: *const ur5e_real, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, force: *mut ur5e_real) -> c_int;
+    pub fn ur5e_peak_force_on(q: *const ur5e_real, frame: c_int, place: *const ur5e_real, n: *const ur5e_real, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_peak_force_t) -> c_int;
+    pub fn ur5e_safe_speed_on(q: *const ur5e_real, frame: c_int, place: *const ur5e_real, n: *const ur5e_real, limit: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_safe_speed_t) -> c_int;
+    pub fn ur5e_worst_direction_at(q: *const ur5e_real, point: c_int, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_worst_direction_t) -> c_int;
+    pub fn ur5e_worst_direction_on(q: *const ur5e_real, frame: c_int, place: *const ur5e_real, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_worst_direction_t) -> c_int;
+    pub fn ur5e_allowed_speed_at(q: *const ur5e_real, point: c_int, n: *const ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_allowed_speed_t) -> c_int;
+    pub fn ur5e_allowed_factor(q: *const ur5e_real, dq: *const ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_allowed_factor_t) -> c_int;
+    pub fn ur5e_may_press(q: *const ur5e_real, dq: *const ur5e_real, limit: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, may: *mut c_int) -> c_int;
     pub fn ur5e_select_configuration(poses: *const [ur5e_real; 6], count: c_int, allowed: *const c_uchar, n: *const ur5e_real, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_selection_t) -> c_int;
 }
 

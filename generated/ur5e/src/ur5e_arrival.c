@@ -4,6 +4,8 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE UR5E_R(1e-6)
+/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+#define ASTRAY UR5E_R(1e-3)
 #define MOST_STEPS 1000000
 
 int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p)
@@ -11,13 +13,14 @@ int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p)
     if (p->layout != UR5E_LAYOUT) {
         return UR5E_FOREIGN_PARAMS;
     }
-    const ur5e_real numbers[4] = {region->stiffness, region->damping, region->hertz_stiffness,
+    const ur5e_real numbers[4] = {region->stiffness, region->damping,
+        region->law != NULL ? UR5E_R(1.0) : region->hertz_stiffness,
         region->clamped != 0 ? UR5E_R(1.0) : region->effective_mass};
     if (!ur5e_all_finite(numbers, 4)) {
         return UR5E_NOT_FINITE;
     }
     const bool body = region->stiffness > UR5E_R(0.0) && region->damping >= UR5E_R(0.0)
-        && region->hertz_stiffness > UR5E_R(0.0) && numbers[3] > UR5E_R(0.0);
+        && numbers[3] > UR5E_R(0.0) && ur5e_law_is_one(region);
     const ur5e_real horizon = UR5E_HORIZON(p);
     const ur5e_real reaction = UR5E_REACTION_TIME(p);
     int status = ur5e_check_positive(&horizon, 1);
@@ -77,6 +80,7 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
     ur5e_forward(UR5E_REACH, square, share);
     ur5e_backward(UR5E_REACH, square, share);
     ur5e_real fast = UR5E_R(0.0);
+    ur5e_real along = UR5E_R(0.0);
     for (int i = 0; i < UR5E_N; ++i) {
         ur5e_real rate = UR5E_R(0.0);
         for (int k = 0; k < UR5E_REACH; ++k) {
@@ -84,8 +88,29 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
+        along += rate*arrival->row[i];
     }
-    return fast < UR5E_FASTEST ? UR5E_OK : UR5E_SINGULAR;
+    return fast < UR5E_FASTEST && UR5E_FABS(along - UR5E_R(1.0)) < ASTRAY ? UR5E_OK : UR5E_SINGULAR;
+}
+
+ur5e_real ur5e_arrive_as_it_moves(int point, const ur5e_real rates[UR5E_N], ur5e_arrival *arrival)
+{
+    ur5e_real v[3];
+    for (int k = 0; k < 3; ++k) {
+        v[k] = UR5E_R(0.0);
+        for (int i = 0; i < UR5E_N; ++i) {
+            v[k] += arrival->links.J[3*point + k][i]*rates[i];
+        }
+    }
+    const ur5e_real speed = UR5E_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    for (int i = 0; i < UR5E_N && speed > UR5E_R(0.0); ++i) {
+        arrival->row[i] = UR5E_R(0.0);
+        for (int k = 0; k < 3; ++k) {
+            arrival->row[i] += v[k]/speed*arrival->links.J[3*point + k][i];
+        }
+        arrival->rates[i] = rates[i]/speed;
+    }
+    return speed;
 }
 
 void ur5e_kinds_of_motors(const ur5e_params *p, int *first, int *last)

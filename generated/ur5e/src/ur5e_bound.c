@@ -14,6 +14,8 @@
  * the body, whose end comes at speed v: E <= v F t after a time t, and f <= k s + c u + c v. So F =
  * y^2 v with y^2 <= y sqrt(2 t K) + c, K = k + c^2 mobility. Released after t, the robot has at most
  * (sqrt(E) + sqrt(v^2/2 r'(M + B)r))^2, as the energies of both motions add like squares of lengths.
+ * Joints with damping of their own: motors are taken to go on with what that needed before, so the same holds
+ * whatever motors do, to the horizon.
  */
 #include "ur5e_impact.h"
 
@@ -88,12 +90,15 @@ ur5e_real ur5e_bound(const ur5e_impact *impact)
     }
     const ur5e_real hold = impact->hold;
     const ur5e_real twice = ur5e_twice_energy(impact);
+    const ur5e_real horizon = UR5E_HORIZON(impact->p);
+    const ur5e_real always = while_driven(horizon, hold, impact->region->damping);
+    if (UR5E_DAMPED) {
+        return always;
+    }
     if (impact->first == UR5E_LOOSE) {
         return UR5E_SQRT(twice*hold);
     }
-    const ur5e_real horizon = UR5E_HORIZON(impact->p);
     const ur5e_real reaction = UR5E_FMIN(UR5E_REACTION_TIME(impact->p), horizon);
-    const ur5e_real always = while_driven(horizon, hold, impact->region->damping);
     const ur5e_real until = while_driven(reaction, hold, impact->region->damping);
     const ur5e_real root = UR5E_SQRT(UR5E_R(2.0)*until*reaction) + UR5E_SQRT(twice);
     return UR5E_FMIN(always, UR5E_FMAX(until, root*UR5E_SQRT(hold)));

@@ -111,6 +111,8 @@ int ur5e_body_region(int part, int clamped, ur5e_region *region)
     region->hertz_stiffness = UR5E_R(19000000.0);
     region->quasi_static_limit = numbers[part][2];
     region->force_limit = numbers[part][3];
+    region->law = NULL;
+    region->law_points = 0;
     region->clamped = clamped != 0;
     return UR5E_OK;
 }

@@ -40,15 +40,15 @@ static void scale_by_springs(const ur5e_arrival *arrival, const ur5e_params *p, 
 }
 
 /* Appends the modes of a compliance, which is lost, to those there are. */
-static int spring_modes(ur5e_square C, const ur5e_real b[UR5E_N], ur5e_modes *modes)
+static int spring_modes(ur5e_matrix C, const ur5e_real b[UR5E_N], ur5e_modes *modes)
 {
     ur5e_real squares[UR5E_N];
-    ur5e_square vectors;
+    ur5e_matrix vectors;
     ur5e_real all = UR5E_R(0.0);
     for (int i = 0; i < UR5E_N; ++i) {
         all += C[i][i];
     }
-    if (!ur5e_spectrum(C, squares, vectors)) {
+    if (!ur5e_spectrum(UR5E_N, C, squares, vectors)) {
         return UR5E_SINGULAR;
     }
     const ur5e_real least = NOISE*all;
@@ -78,7 +78,7 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     ur5e_real *drift)
 {
     spring_scaled s;
-    ur5e_square C;
+    ur5e_matrix C;
     scale_by_springs(arrival, p, &s);
     for (int i = 0; i < UR5E_N; ++i) {
         for (int j = 0; j <= i; ++j) {
@@ -96,8 +96,8 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
 {
     spring_scaled s;
     ur5e_matrix G;
-    ur5e_square Y; /* columns of L_G^-1 L' */
-    ur5e_square C;
+    ur5e_matrix Y; /* columns of L_G^-1 L' */
+    ur5e_matrix C;
     ur5e_real z[UR5E_N];
     scale_by_springs(arrival, p, &s);
     if (!ur5e_cholesky(UR5E_N, s.S)) {

@@ -17,6 +17,7 @@
 #else
 #define UR5E_SYSTEM UR5E_N
 #endif
+#define UR5E_DAMPERS (UR5E_DAMPED ? UR5E_SYSTEM : UR5E_N) /* of the last ones of these */
 #define UR5E_MODES (UR5E_SYSTEM + 1) /* one for a body that gives way */
 #define UR5E_LEVELS 7 /* lengths of steps, each half the one before */
 
@@ -27,8 +28,7 @@ typedef struct {
     ur5e_real rates[UR5E_N]; /* joint velocities for an approach of 1 m/s */
 } ur5e_arrival;
 
-/* Matrices over the links alone, and of up to UR5E_SYSTEM rows. */
-typedef ur5e_real ur5e_square[UR5E_N][UR5E_N];
+/* Matrices of up to UR5E_SYSTEM rows. */
 typedef ur5e_real ur5e_matrix[UR5E_SYSTEM][UR5E_SYSTEM];
 
 /*
@@ -76,8 +76,8 @@ typedef struct {
     ur5e_real compliance; /* of those that stand, m/N */
     ur5e_real reach; /* of all that vibrate, m/N */
     ur5e_real drift; /* velocity of the contact point that motors keep up, over the speed */
-    bool damped; /* by a servo, of these gains on the motors' rates, N m s/rad */
-    ur5e_real damping[UR5E_N];
+    bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
+    ur5e_real damping[UR5E_DAMPERS];
     int steps; /* of the longest level until the time is over */
     ur5e_level level[UR5E_LEVELS];
 } ur5e_phase;
@@ -105,11 +105,14 @@ typedef struct {
 #define UR5E_LED 0
 #define UR5E_LOOSE 1
 
+typedef struct ur5e_watch ur5e_watch;
+
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */
     bool rough; /* longer steps do */
     ur5e_real stop_above; /* force after whose passing the rest does not matter, N */
+    ur5e_watch *watch; /* who sees each step and ends the impact, or NULL; ur5e_state.h */
 } ur5e_budget;
 
 typedef struct {
@@ -125,6 +128,9 @@ int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p);
 
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival);
+
+/* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
+ur5e_real ur5e_arrive_as_it_moves(int point, const ur5e_real rates[UR5E_N], ur5e_arrival *arrival);
 
 /* Checks and links of an impact of one of the contact points. */
 int ur5e_approach(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
@@ -155,6 +161,21 @@ ur5e_real ur5e_bound(const ur5e_impact *impact);
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void ur5e_kinds_of_motors(const ur5e_params *p, int *first, int *last);
 
+/*
+ * What is known of a region's law of contact: its depth under a force, twice the work done by then, and the
+ * largest stiffness up to it.
+ */
+ur5e_real ur5e_law_depth(const ur5e_region *region, ur5e_real force);
+ur5e_real ur5e_law_twice_work(const ur5e_region *region, ur5e_real force);
+ur5e_real ur5e_law_stiffness(const ur5e_region *region, ur5e_real force);
+
+/* Force of a law through points whose depth d makes hold d + soft f(d) = pressed > 0; and that depth. */
+ur5e_real ur5e_law_press(const ur5e_region *region, ur5e_real hold, ur5e_real soft, ur5e_real pressed,
+    ur5e_real *depth);
+
+/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+bool ur5e_law_is_one(const ur5e_region *region);
+
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 ur5e_real ur5e_two_body_force(const ur5e_region *region, ur5e_real mobility, ur5e_real speed);
 ur5e_real ur5e_two_body_speed(const ur5e_region *region, ur5e_real mobility, ur5e_real force);
@@ -165,6 +186,16 @@ ur5e_real ur5e_two_body_speed(const ur5e_region *region, ur5e_real mobility, ur5
  */
 int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real limit,
     ur5e_real cap, ur5e_impact *impact, ur5e_safe_speed_t *found);
+
+/* Largest force of an arrival by any of the motors that p stands for: OK, BOUNDED or another status. */
+int ur5e_find_peak(const ur5e_region *region, const ur5e_params *p, ur5e_real speed,
+    ur5e_impact *impact, ur5e_peak_force_t *out);
+
+#if UR5E_FRAMES > 0
+/* Links, with the motion of a place in a frame in place of that of the package's own point. */
+int ur5e_links_on(const ur5e_real q[UR5E_JOINTS], int frame, const ur5e_real place[3],
+    const ur5e_params *p, ur5e_links_t *links);
+#endif
 
 /* Largest force over all contacts of an impact at a speed. */
 void ur5e_impact_run(ur5e_impact *impact, ur5e_real speed, ur5e_budget *budget,
@@ -197,7 +228,7 @@ void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X, ur5e_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows. */
-bool ur5e_spectrum(ur5e_square A, ur5e_real values[UR5E_N], ur5e_square vectors);
+/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
+bool ur5e_spectrum(int size, ur5e_matrix A, ur5e_real *values, ur5e_matrix vectors);
 
 #endif

@@ -127,7 +127,8 @@ static inline int ur5e_unit_vector(const ur5e_real n[3], ur5e_real u[3])
 #define UR5E_N 6 /* independent joints */
 #define UR5E_ELASTIC 1 /* a spring behind every motor */
 #define UR5E_POTENTIAL 0 /* gravity, or springs of the model file */
-#define UR5E_STRUCTURED (UR5E_ELASTIC && !UR5E_POTENTIAL)
+#define UR5E_DAMPED 0 /* joints have damping of their own */
+#define UR5E_STRUCTURED (UR5E_ELASTIC && !UR5E_POTENTIAL && !UR5E_DAMPED)
 #define UR5E_REACH 3 /* directions in which motors move contact points */
 #define UR5E_FASTEST UR5E_R(16000.0) /* squared joint velocity for 1 m/s: singular */
 #define UR5E_LEAST_MOBILITY UR5E_R(5.56e-05) /* 1/kg; below: singular */
@@ -139,6 +140,20 @@ typedef struct {
 
 /* Links as they arrive at an impact. */
 int ur5e_links(const ur5e_real q[6], ur5e_links_t *out);
+
+#define UR5E_FRAMES 7 /* frames of links in which contact points can be given */
+typedef struct {
+    int joint; /* whose link it is fixed to */
+    ur5e_real rotation[3][3];
+    ur5e_real position[3]; /* m; both in the joint's frame */
+} ur5e_frame_place;
+
+/* Where the joints' frames are. */
+int ur5e_joint_frames(const ur5e_real q[6], ur5e_real poses[6][12]);
+
+extern const ur5e_frame_place ur5e_frame_places[UR5E_FRAMES];
+extern const bool ur5e_joint_slides[UR5E_N];
+extern const bool ur5e_joint_moves[UR5E_N][UR5E_N]; /* the link of another */
 
 extern const ur5e_real ur5e_directions[UR5E_REACH][3];
 extern const bool ur5e_has_motor[UR5E_N];

@@ -9,3 +9,28 @@ const ur5e_real ur5e_directions[UR5E_REACH][3] = {
     {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(1.0)},
 };
 const bool ur5e_has_motor[UR5E_N] = {true, true, true, true, true, true};
+const bool ur5e_joint_slides[UR5E_N] = {false, false, false, false, false, false};
+const bool ur5e_joint_moves[UR5E_N][UR5E_N] = {
+    {true, true, true, true, true, true},
+    {false, true, true, true, true, true},
+    {false, false, true, true, true, true},
+    {false, false, false, true, true, true},
+    {false, false, false, false, true, true},
+    {false, false, false, false, false, true},
+};
+const ur5e_frame_place ur5e_frame_places[UR5E_FRAMES] = {
+    {0, {{UR5E_R(1.0), UR5E_R(0.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(1.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(1.0)}},
+        {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)} }, /* shoulder_link */
+    {1, {{UR5E_R(1.0), UR5E_R(0.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(1.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(1.0)}},
+        {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)} }, /* upper_arm_link */
+    {2, {{UR5E_R(1.0), UR5E_R(0.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(1.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(1.0)}},
+        {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)} }, /* forearm_link */
+    {3, {{UR5E_R(1.0), UR5E_R(0.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(1.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(1.0)}},
+        {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)} }, /* wrist_1_link */
+    {4, {{UR5E_R(1.0), UR5E_R(0.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(1.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(1.0)}},
+        {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)} }, /* wrist_2_link */
+    {5, {{UR5E_R(1.0), UR5E_R(0.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(1.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(1.0)}},
+        {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)} }, /* wrist_3_link */
+    {5, {{UR5E_R(1.0), UR5E_R(0.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(1.0), UR5E_R(0.0)}, {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(1.0)}},
+        {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)} }, /* flange */
+};

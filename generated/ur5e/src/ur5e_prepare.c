@@ -5,27 +5,6 @@
 /* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
 #define BLURS UR5E_R(1.6e-2)
 
-/* Largest stiffness of the skin up to a force. */
-static ur5e_real skin_stiffness(const ur5e_region *region, ur5e_real force)
-{
-    const ur5e_real third = UR5E_R(1.0)/UR5E_R(3.0);
-    return UR5E_R(1.5)*UR5E_POW(region->hertz_stiffness*region->hertz_stiffness*force, third);
-}
-
-ur5e_real ur5e_two_body_force(const ur5e_region *region, ur5e_real mobility, ur5e_real speed)
-{
-    const ur5e_real spring = speed*UR5E_SQRT(region->stiffness/mobility);
-    const ur5e_real energy = UR5E_R(1.25)*speed*speed/mobility;
-    const ur5e_real skin = UR5E_POW(energy, UR5E_R(0.6))*UR5E_POW(region->hertz_stiffness, UR5E_R(0.4));
-    return UR5E_R(1.0)/(UR5E_R(1.0)/spring + UR5E_R(1.0)/skin);
-}
-
-ur5e_real ur5e_two_body_speed(const ur5e_region *region, ur5e_real mobility, ur5e_real force)
-{
-    const ur5e_real depth = UR5E_POW(force/region->hertz_stiffness, UR5E_R(2.0)/UR5E_R(3.0));
-    return UR5E_SQRT(mobility*force*(force/region->stiffness + UR5E_R(0.8)*depth));
-}
-
 void ur5e_impact_forget(ur5e_impact *impact)
 {
     impact->phase[UR5E_LED].known = false;
@@ -56,8 +35,9 @@ static int led_modes(ur5e_impact *impact, ur5e_phase *phase)
         return ur5e_driven_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
     }
     for (int i = 0; i < UR5E_N; ++i) {
-        phase->damping[i] = UR5E_DAMPING_GAIN(impact->p, i);
-        phase->damped = phase->damped || phase->damping[i] > UR5E_R(0.0);
+        const ur5e_real gain = UR5E_DAMPING_GAIN(impact->p, i);
+        phase->damping[UR5E_DAMPERS - UR5E_N + i] += gain;
+        phase->damped = phase->damped || gain > UR5E_R(0.0);
     }
     return ur5e_servo_modes(&impact->arrival, impact->p, &phase->modes, &phase->drift);
 }
@@ -72,11 +52,16 @@ static int modes_of(ur5e_impact *impact, int which)
     }
     phase->has_body = false;
     phase->drift = UR5E_R(0.0);
-    phase->damped = false;
+    phase->damped = UR5E_DAMPED != 0;
     phase->modes.noise = UR5E_R(0.0);
-    for (int i = 0; i < UR5E_N; ++i) {
+    for (int i = 0; i < UR5E_DAMPERS; ++i) {
         phase->damping[i] = UR5E_R(0.0);
     }
+#if UR5E_DAMPED
+    for (int i = 0; i < UR5E_N; ++i) {
+        phase->damping[i] = ur5e_joint_damping[i];
+    }
+#endif
     const int status = which == UR5E_LED ? led_modes(impact, phase)
         : ur5e_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
     phase->known = status == UR5E_OK;
@@ -166,11 +151,11 @@ int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int mot
     }
     const ur5e_real size =
         force > UR5E_R(0.0) ? force : ur5e_two_body_force(region, impact->mobility, -force);
-    impact->scale = UR5E_R(0.2)*size;
+    impact->scale = UR5E_R(0.5)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const ur5e_real damped = region->damping*UR5E_SQRT(impact->mobility/region->stiffness);
     impact->smooth = UR5E_R(1.0)/(UR5E_R(1.0) + UR5E_R(4.0)*damped);
-    impact->skin_rate = skin_stiffness(region, size)*impact->mobility;
+    impact->skin_rate = ur5e_law_stiffness(region, size)*impact->mobility;
     const ur5e_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!ur5e_all_finite(numbers, 3) || ur5e_check_positive(numbers, 3) != UR5E_OK) {
         return UR5E_SINGULAR;

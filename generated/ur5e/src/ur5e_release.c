@@ -2,8 +2,8 @@
 /* What is left of an impact of ur5e_ when its motors are let go, in modes of loose motors. */
 #include "ur5e_state.h"
 
-/* Levels by which the first step is shorter than the last: the bend of the force jumps. */
-#define AFTER 2
+/* Levels by which the first step is shorter than the last: the force may turn within it. */
+#define AFTER 4
 
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const ur5e_state *s, int size, ur5e_real *place, ur5e_real *rate)
@@ -24,6 +24,25 @@ static void coordinates_of(const ur5e_state *s, int size, ur5e_real *place, ur5e
             rate[j] += shape[j]*b;
         }
     }
+}
+
+/*
+ * Most that modes that stand, bent by the force, add to it as they swing about that: springs that
+ * motors wound up may hold more energy than the body does.
+ */
+static ur5e_real swings_of(const ur5e_state *s, const ur5e_phase *next, const ur5e_real *a,
+    const ur5e_real *b)
+{
+    const ur5e_region *const region = s->impact->region;
+    const ur5e_modes *const modes = &next->modes;
+    ur5e_real sum = UR5E_R(0.0);
+    for (int i = next->active; i < modes->count; ++i) {
+        const ur5e_real rate = UR5E_SQRT(modes->squared[i]);
+        const ur5e_real away = a[i] + modes->row[i]/modes->squared[i]*s->f;
+        const ur5e_real swing = UR5E_SQRT(away*away + b[i]*b[i]/modes->squared[i]);
+        sum += (region->stiffness + region->damping*rate)*UR5E_FABS(modes->row[i])*swing;
+    }
+    return sum;
 }
 
 void ur5e_release(ur5e_state *s)
@@ -56,7 +75,7 @@ void ur5e_release(ur5e_state *s)
     }
     a[0] = x/modes->row[0];
     b[0] = v/modes->row[0];
-    for (int i = 1; i < next->active; ++i) {
+    for (int i = 1; i < modes->count; ++i) {
         a[i] = UR5E_R(0.0);
         b[i] = UR5E_R(0.0);
         for (int j = 0; j < UR5E_N; ++j) {
@@ -92,7 +111,7 @@ void ur5e_release(ur5e_state *s)
         }
 #endif
     }
-    for (int i = 0; i < next->active; ++i) {
+    for (int i = 0; i < modes->count; ++i) {
         a[i] = UR5E_R(0.0);
         b[i] = UR5E_R(0.0);
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
@@ -101,6 +120,7 @@ void ur5e_release(ur5e_state *s)
         }
     }
 #endif
+    s->swings = swings_of(s, next, a, b);
     /* The body is the last of the modes that move: at least one does. */
     if (impact->gives_way && next->active > 0 && s->phase->active > 0) {
         a[next->active - 1] = s->amplitude[s->phase->active - 1];
@@ -111,6 +131,10 @@ void ur5e_release(ur5e_state *s)
         s->rate[i] = b[i];
     }
     const ur5e_real h = s->phase->level[s->level].h;
+    const ur5e_real more = next->compliance - s->phase->compliance; /* of modes that stand from now on */
+    s->x += more*s->f;
+    s->u += more*s->f;
+    s->u_before += more*(s->f - s->rise);
     s->phase = next;
     s->drifted = UR5E_R(0.0);
     s->level = 0;
@@ -119,6 +143,7 @@ void ur5e_release(ur5e_state *s)
     }
     s->level = s->level + AFTER < UR5E_LEVELS ? s->level + AFTER : UR5E_LEVELS - 1;
     s->past = s->past > 1 ? 1 : s->past;
+    s->even = 0;
     s->ticks = next->steps*(1 << (UR5E_LEVELS - 1));
 }
 

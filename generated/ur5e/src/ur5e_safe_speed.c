@@ -6,11 +6,11 @@
  * Share of the limit at which trials aim, the share from which on one is near enough, and the largest
  * that counts as kept: forces are within 2e-3 of the right ones, in the worst of 100,000 within 5e-3.
  */
-#define AIM UR5E_R(0.9875)
+#define AIM UR5E_R(0.987)
 #define NEAR UR5E_R(0.98)
-#define KEPT UR5E_R(0.995)
+#define KEPT UR5E_R(0.994)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
-#define TRIALS 24
+#define TRIALS 16
 #define APART UR5E_R(4e-3)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP UR5E_R(8.0)
@@ -93,16 +93,14 @@ static bool find(ur5e_impact *impact, ur5e_real guess, ur5e_real cap, search *s,
 /* Whether loose motors bring too little energy for a force: ur5e_settled.c, w = 0 at first touch. */
 static bool are_weak(const ur5e_impact *impact, ur5e_real speed, ur5e_real force)
 {
-    const ur5e_real depth =
-        UR5E_POW(force/impact->region->hertz_stiffness, UR5E_R(2.0)/UR5E_R(3.0));
-    const ur5e_real needed = force*force/impact->hold + UR5E_R(0.8)*force*depth;
+    const ur5e_real needed = force*force/impact->hold + ur5e_law_twice_work(impact->region, force);
     return UR5E_STRUCTURED && speed*speed*ur5e_twice_energy(impact) <= needed;
 }
 
 int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real limit,
     ur5e_real cap, ur5e_impact *impact, ur5e_safe_speed_t *found)
 {
-    ur5e_budget budget = {p->steps, false, limit};
+    ur5e_budget budget = {p->steps, false, limit, NULL};
     bool bounded = false;
     int first;
     int last;

@@ -6,15 +6,15 @@
  * body's own mass; w the part of what vibrates, of energy E. The contact force only pushes r back, so once
  * r' < 0 it stays so, r does not grow, and with the energy V of skin, body and standing modes, E + V does
  * not either: (E + V)' = f r' - c s'^2 <= 0. At the largest force F of a later contact f = k s + c x' with
- * x' <= w', which takes F^2/(2 K) in w' and s (ur5e_bound.c), 0.4 F depth in the skin, and depth + s - r = w
- * takes w^2/(2 reach) in the vibration. With less than that there is no such F.
+ * x' <= w', which takes F^2/(2 K) in w' and s (ur5e_bound.c), its work in the skin (0.4 F depth in
+ * Hertz's), and depth + s - r = w takes w^2/(2 reach) in the vibration. With less than that there is no such F.
  *
  * Driven motors that are let go later: seen from their motion before, E is of links and rotors, these
  * move at most sqrt(2 E rotors) on, and the rest holds if r' < 0 by more than that.
  */
 #include "ur5e_state.h"
 
-bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real share)
+bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real depth, ur5e_real share)
 {
     const ur5e_impact *const impact = s->impact;
     const ur5e_phase *const phase = s->phase;
@@ -34,9 +34,10 @@ bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real share)
     if (!phase->settles || !(away < UR5E_R(0.0))) {
         return false;
     }
+    const bool is_hertz = region->law == NULL;
     const ur5e_real bent = s->touching ? s->x - s->u : s->rest;
     ur5e_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
-        + UR5E_R(0.8)*s->f*s->root*s->root;
+        + (is_hertz ? UR5E_R(0.8) : UR5E_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
         twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
     }
@@ -46,7 +47,8 @@ bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real share)
     }
     const ur5e_real slip = region->damping*UR5E_SQRT(twice*impact->mobility);
     const ur5e_real pressed = UR5E_FMAX(force - slip, UR5E_R(0.0))/region->stiffness;
-    const ur5e_real gap = UR5E_FMAX(s->depth + pressed - r, UR5E_R(0.0));
-    const ur5e_real needed = force*force/impact->hold + UR5E_R(0.8)*force*s->depth;
+    const ur5e_real gap = UR5E_FMAX(depth + pressed - r, UR5E_R(0.0));
+    const ur5e_real skin = is_hertz ? UR5E_R(0.8)*force*depth : ur5e_law_twice_work(region, force);
+    const ur5e_real needed = force*force/impact->hold + skin;
     return twice*phase->reach <= share*(needed*phase->reach + gap*gap);
 }

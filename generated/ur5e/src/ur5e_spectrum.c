@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * Eigenvectors of a symmetric matrix of ur5e_ of N rows: Householder's reflections to three diagonals,
- * then QL steps with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
+ * Eigenvectors of a symmetric matrix of ur5e_: Householder's reflections to three diagonals, then QR steps
+ * with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
  *
  * Of a compliance the slow modes, which count, come out with all their digits; the fastest keep few
- * when there are frequencies a thousand times lower.
+ * when there are frequencies a thousand times lower. Joints come in the order from the base, so that
+ * compliances fall from the first row on, and small eigenvalues are found first, at the end.
  */
 #include "ur5e_impact.h"
 
@@ -13,48 +14,50 @@
  * as none: energies change by less than its root.
  */
 #define SMALL UR5E_R(1e-8)
-/* QL takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
-#define MOST_STEPS (12*UR5E_N)
+/* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
+#define MOST_STEPS 3
 
-/* One reflection I - scale v v' of rows and columns first to last: A - v w' - w v'. */
-static void turn(int first, const ur5e_real v[UR5E_N], ur5e_real scale, ur5e_square A)
+/* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
+static void turn(int first, int size, const ur5e_real *v, ur5e_real scale, ur5e_matrix A)
 {
-    ur5e_real w[UR5E_N];
+    ur5e_real w[UR5E_SYSTEM];
     ur5e_real along = UR5E_R(0.0);
-    for (int i = first; i < UR5E_N; ++i) {
+    for (int i = first; i < size; ++i) {
         ur5e_real sum = UR5E_R(0.0);
-        for (int j = first; j < UR5E_N; ++j) {
+        for (int j = first; j < size; ++j) {
             sum += A[i][j]*v[j];
         }
         w[i] = scale*sum;
         along += w[i]*v[i];
     }
     along *= UR5E_R(0.5)*scale;
-    for (int i = first; i < UR5E_N; ++i) {
+    for (int i = first; i < size; ++i) {
         w[i] -= along*v[i];
         const ur5e_real vi = v[i];
         const ur5e_real wi = w[i];
         for (int j = first; j <= i; ++j) {
-            A[i][j] -= vi*w[j] + wi*v[j];
-            A[j][i] = A[i][j];
+            const ur5e_real entry = A[i][j] - vi*w[j] - wi*v[j];
+            A[i][j] = entry;
+            A[j][i] = entry;
         }
     }
 }
 
-/* Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. */
-static void reflect(ur5e_square A, ur5e_real d[UR5E_N], ur5e_real e[UR5E_N], ur5e_square Q)
+/*
+ * Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. Of each
+ * reflection, v stays in A's own row.
+ */
+static void reflect(int size, ur5e_matrix A, ur5e_real *d, ur5e_real *e, ur5e_matrix Q)
 {
-    ur5e_square vectors; /* of each reflection */
-    ur5e_real scale[UR5E_N]; /* 2/v'v */
-    for (int k = 0; k + 1 < UR5E_N; ++k) {
-        ur5e_real *const v = vectors[k];
-        const ur5e_real first = A[k][k + 1];
+    ur5e_real scale[UR5E_SYSTEM]; /* 2/v'v */
+    for (int k = 0; k + 1 < size; ++k) {
+        ur5e_real *const v = A[k];
+        const ur5e_real first = v[k + 1];
         ur5e_real square = UR5E_R(0.0);
-        for (int i = k + 2; i < UR5E_N; ++i) {
-            v[i] = A[k][i];
+        for (int i = k + 2; i < size; ++i) {
             square += v[i]*v[i];
         }
-        d[k] = A[k][k];
+        d[k] = v[k];
         e[k] = first;
         scale[k] = UR5E_R(0.0);
         if (square > UR5E_R(0.0)) {
@@ -62,103 +65,99 @@ static void reflect(ur5e_square A, ur5e_real d[UR5E_N], ur5e_real e[UR5E_N], ur5
             e[k] = first > UR5E_R(0.0) ? -length : length;
             v[k + 1] = first - e[k];
             scale[k] = UR5E_R(1.0)/(length*(length + UR5E_FABS(first)));
-            turn(k + 1, v, scale[k], A);
+            turn(k + 1, size, v, scale[k], A);
         }
     }
-    d[UR5E_N - 1] = A[UR5E_N - 1][UR5E_N - 1];
-    e[UR5E_N - 1] = UR5E_R(0.0);
-    for (int i = 0; i < UR5E_N; ++i) {
-        for (int j = 0; j < UR5E_N; ++j) {
+    d[size - 1] = A[size - 1][size - 1];
+    for (int i = 0; i < size; ++i) {
+        for (int j = 0; j < size; ++j) {
             Q[i][j] = UR5E_R(0.0);
         }
         Q[i][i] = UR5E_R(1.0);
     }
-    for (int k = UR5E_N - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
-        const ur5e_real *const v = vectors[k];
-        for (int i = k + 1; i < UR5E_N && scale[k] > UR5E_R(0.0); ++i) {
+    for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
+        const ur5e_real *const v = A[k];
+        for (int i = k + 1; i < size && scale[k] > UR5E_R(0.0); ++i) {
             ur5e_real along = UR5E_R(0.0);
-            for (int j = k + 1; j < UR5E_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 along += Q[i][j]*v[j];
             }
             along *= scale[k];
-            for (int j = k + 1; j < UR5E_N; ++j) {
+            for (int j = k + 1; j < size; ++j) {
                 Q[i][j] -= along*v[j];
             }
         }
     }
 }
 
-/* One QL step on rows first to last; turns the rows of Q, too. */
-static void chase(int first, int last, ur5e_real d[UR5E_N], ur5e_real e[UR5E_N], ur5e_square Q)
+/* Turns two rows of Q by an angle. */
+static void turn_rows(int size, ur5e_real c, ur5e_real s, ur5e_real *upper, ur5e_real *lower)
 {
-    const ur5e_real one = UR5E_R(1.0);
-    const ur5e_real half = UR5E_R(0.5)*(d[first + 1] - d[first])/e[first];
-    const ur5e_real length = UR5E_FABS(half) + UR5E_SQRT(half*half + one);
-    ur5e_real g = d[last] - d[first] + e[first]/(half < UR5E_R(0.0) ? -length : length);
-    ur5e_real s = one;
-    ur5e_real c = one;
-    ur5e_real p = UR5E_R(0.0);
-    for (int i = last - 1; i >= first; --i) {
-        const ur5e_real f = s*e[i];
-        const ur5e_real b = c*e[i];
-        const ur5e_real r = UR5E_SQRT(f*f + g*g);
-        e[i + 1] = r;
-        if (!(r > UR5E_R(0.0))) {
-            d[i + 1] -= p;
-            e[last] = UR5E_R(0.0);
-            return;
-        }
-        s = f/r;
-        c = g/r;
-        g = d[i + 1] - p;
-        const ur5e_real t = (d[i] - g)*s + UR5E_R(2.0)*c*b;
-        p = s*t;
-        d[i + 1] = g + p;
-        g = c*t - b;
-        for (int j = 0; j < UR5E_N; ++j) {
-            const ur5e_real x = Q[i][j];
-            const ur5e_real y = Q[i + 1][j];
-            Q[i + 1][j] = s*x + c*y;
-            Q[i][j] = c*x - s*y;
-        }
+    for (int j = 0; j < size; ++j) {
+        const ur5e_real x = upper[j];
+        const ur5e_real y = lower[j];
+        upper[j] = c*x + s*y;
+        lower[j] = c*y - s*x;
     }
-    d[first] -= p;
-    e[first] = g;
-    e[last] = UR5E_R(0.0);
 }
 
-/* Whether an entry between two of the diagonal is more than none. */
-static bool counts(ur5e_real before, ur5e_real after, ur5e_real entry)
+/* One QR step on rows first to last; turns the rows of Q, too. */
+static void chase(int first, int last, int size, ur5e_real *d, ur5e_real *e, ur5e_matrix Q)
 {
-    const ur5e_real noise = UR5E_EPSILON*(UR5E_FABS(before) + UR5E_FABS(after));
-    return entry*entry > UR5E_FMAX(SMALL*UR5E_FABS(before*after), noise*noise);
-}
-
-/* Last row of the block that begins at a row. */
-static int end_of_block(int first, const ur5e_real values[UR5E_N], const ur5e_real e[UR5E_N])
-{
-    int last = first;
-    while (last + 1 < UR5E_N && counts(values[last], values[last + 1], e[last])) {
-        ++last;
-    }
-    return last;
-}
-
-bool ur5e_spectrum(ur5e_square A, ur5e_real values[UR5E_N], ur5e_square vectors)
-{
-    ur5e_real e[UR5E_N];
-    reflect(A, values, e, vectors);
-    int first = 0;
-    for (int step = 0; step <= MOST_STEPS; ++step) {
-        while (first < UR5E_N && end_of_block(first, values, e) == first) {
-            ++first;
+    const ur5e_real end = e[last - 1];
+    const ur5e_real half = UR5E_R(0.5)*(d[last - 1] - d[last]);
+    const ur5e_real length = UR5E_SQRT(half*half + end*end);
+    ur5e_real x = d[first] - d[last] + end*end/(half < UR5E_R(0.0) ? half - length : half + length);
+    ur5e_real z = e[first];
+    for (int k = first; k < last; ++k) {
+        const ur5e_real r = UR5E_SQRT(x*x + z*z);
+        const ur5e_real inverse = UR5E_R(1.0)/r;
+        const bool turns = r > UR5E_R(0.0);
+        const ur5e_real c = turns ? x*inverse : UR5E_R(1.0);
+        const ur5e_real s = turns ? z*inverse : UR5E_R(0.0);
+        if (k > first) {
+            e[k - 1] = r;
         }
-        if (first == UR5E_N) {
+        const ur5e_real u = s*(d[k + 1] - d[k]) + UR5E_R(2.0)*c*e[k];
+        d[k] += s*u;
+        d[k + 1] -= s*u;
+        e[k] = c*u - e[k];
+        if (k + 1 < last) {
+            x = e[k];
+            z = s*e[k + 1];
+            e[k + 1] *= c;
+        }
+        turn_rows(size, c, s, Q[k], Q[k + 1]);
+    }
+}
+
+bool ur5e_spectrum(int size, ur5e_matrix A, ur5e_real *values, ur5e_matrix vectors)
+{
+    ur5e_real e[UR5E_SYSTEM];
+    ur5e_real all = UR5E_R(0.0);
+    reflect(size, A, values, e, vectors);
+    for (int i = 0; i < size; ++i) {
+        all += UR5E_FABS(values[i]);
+    }
+    const ur5e_real noise = UR5E_EPSILON*UR5E_EPSILON*all*all;
+    int last = size - 1;
+    for (int step = 0; step < MOST_STEPS*size; ++step) {
+        int first = last;
+        while (first > 0) {
+            const ur5e_real square = e[first - 1]*e[first - 1];
+            if (square > noise + SMALL*UR5E_FABS(values[first - 1]*values[first])) {
+                --first;
+            } else if (first == last) {
+                --last;
+                first = last;
+            } else {
+                break;
+            }
+        }
+        if (last == 0) {
             return true;
         }
-        if (step < MOST_STEPS) {
-            chase(first, end_of_block(first, values, e), values, e, vectors);
-        }
+        chase(first, last, size, values, e, vectors);
     }
     return false;
 }

@@ -5,31 +5,6 @@
 /* Speed of a contact point that counts as rest: it can hardly be measured. */
 #define AT_REST UR5E_R(1e-6)
 
-/* Velocity of a contact point; returns its size. */
-static ur5e_real velocity_of(const ur5e_links_t *links, int point, const ur5e_real *rates, ur5e_real v[3])
-{
-    for (int k = 0; k < 3; ++k) {
-        v[k] = UR5E_R(0.0);
-        for (int i = 0; i < UR5E_N; ++i) {
-            v[k] += links->J[3*point + k][i]*rates[i];
-        }
-    }
-    return UR5E_SQRT(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
-}
-
-/* Prepares the arrival of a point that moves at v with the joint velocities there are. */
-static void arrive_as_it_moves(int point, const ur5e_real *rates, const ur5e_real v[3],
-    ur5e_real speed, ur5e_arrival *arrival)
-{
-    for (int i = 0; i < UR5E_N; ++i) {
-        arrival->row[i] = UR5E_R(0.0);
-        for (int k = 0; k < 3; ++k) {
-            arrival->row[i] += v[k]/speed*arrival->links.J[3*point + k][i];
-        }
-        arrival->rates[i] = rates[i]/speed;
-    }
-}
-
 /* What the search of the least factor knows. */
 typedef struct {
     ur5e_impact impact;
@@ -61,12 +36,8 @@ static int watch(const ur5e_region *region, const ur5e_params *p, int point, ur5
     int which, slowdown *s)
 {
     if (s->point != point) {
-        ur5e_real v[3];
         s->point = point;
-        s->speed = velocity_of(&s->impact.arrival.links, point, s->rates, v);
-        if (s->speed > AT_REST) {
-            arrive_as_it_moves(point, s->rates, v, s->speed, &s->impact.arrival);
-        }
+        s->speed = ur5e_arrive_as_it_moves(point, s->rates, &s->impact.arrival);
         ur5e_impact_forget(&s->impact);
     }
     if (!(s->speed > AT_REST)) {

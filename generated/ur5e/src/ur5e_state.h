@@ -5,12 +5,22 @@
 
 #include "ur5e_impact.h"
 
+/* What the next step takes of those before it, and of its own length. */
+typedef struct {
+    ur5e_real ratio; /* of its length to the last one's */
+    ur5e_real share, more, before; /* of the bend, see ur5e_press */
+    ur5e_real u, u_before; /* in u', 1/s */
+    ur5e_real hold, soft, yields; /* depth hold + soft f = what presses; x gives way by yields f */
+} ur5e_pace;
+
 typedef struct {
     ur5e_impact *impact;
     const ur5e_phase *phase;
     ur5e_real speed;
     ur5e_real scale; /* of forces, N */
     int level;
+    int even; /* steps in a row of this length */
+    ur5e_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     ur5e_real time;
     ur5e_real drifted; /* by the motors, m */
@@ -20,27 +30,40 @@ typedef struct {
     ur5e_real h, h_before, x; /* last steps, contact point */
     ur5e_real bump; /* what the bend adds to the force on average of the last step */
     ur5e_real f, rise; /* force, and by how much it grew in the last step */
-    ur5e_real u, u_before, root; /* deformation of the skin; root of its depth */
+    ur5e_real u, u_before; /* deformation of the skin and of what stands */
+    ur5e_real now, root; /* depth of the skin, and its root where it is Hertz's */
     ur5e_real rest; /* deflection of the body out of contact */
     ur5e_real depth; /* of the skin at the largest force so far */
+    ur5e_real swings; /* most that modes that stand add to the force as they swing, N */
 } ur5e_state;
+
+/* What is looked for in the steps of an impact that goes on after its peak. */
+struct ur5e_watch {
+    ur5e_real matters; /* force that may still come, N */
+    ur5e_real depth; /* of the skin under it, m */
+    ur5e_real late; /* the largest force from 0.5 s on, N */
+    ur5e_real before, last; /* forces of the last steps, N */
+};
+
+/* Notes a step that was taken: the late force; says whether none that matters can come. */
+bool ur5e_pass(const ur5e_state *s, ur5e_watch *watch);
 
 /* A step on trial. */
 typedef struct {
     ur5e_real amplitude[UR5E_MODES], rate[UR5E_MODES];
     ur5e_real x, v; /* of the contact point without the force at the end */
     ur5e_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    ur5e_real u, root;
+    ur5e_real u, depth, root;
 } ur5e_trial;
 
-/* A servo's damping over a time, to second order: rate -= time S'DS (rate - what it is led by). */
+/* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void ur5e_damp(const ur5e_phase *phase, ur5e_real speed, ur5e_real time, ur5e_real *rate);
 
 /* Moves all modes by a step without forces. */
 void ur5e_glide(const ur5e_state *s, ur5e_trial *t);
 
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
-void ur5e_press(const ur5e_state *s, ur5e_trial *t);
+void ur5e_press(ur5e_state *s, ur5e_trial *t);
 
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void ur5e_take(const ur5e_trial *t, ur5e_state *s);
@@ -49,9 +72,9 @@ void ur5e_take(const ur5e_trial *t, ur5e_state *s);
 void ur5e_release(ur5e_state *s);
 
 /*
- * Whether no later force exceeds the largest so far: proven, but for a share by which the energy may
- * exceed what that takes.
+ * Whether no later force exceeds one, the present one being less, under which the skin is so deep: proven,
+ * but for a share by which the energy may exceed what that takes.
  */
-bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real share);
+bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real depth, ur5e_real share);
 
 #endif

@@ -5,7 +5,7 @@
 /* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
 #define CONTACT_STEP UR5E_R(1.0)
 #define MODE_STEP UR5E_R(5.6)
-/* Most damping of a servo in the longest step, as a share of what it acts on. */
+/* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP UR5E_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
@@ -17,8 +17,14 @@
  * through the damper, by more than this share of the force.
  */
 #define FELT UR5E_R(2e-4)
-/* Nor may it swing as motors are released by more than this share of the body's deflection. */
+/* Nor may it swing as motors are released so that spring and damper feel more than this share of it. */
 #define LEFT UR5E_R(5e-5)
+/*
+ * Where the damper's jump at first touch is more than this share of the force, squared, the longest
+ * step is at most so many times as long as the skin takes for it, c over its stiffness.
+ */
+#define JUMPS UR5E_R(0.1)
+#define JUMP_STEP UR5E_R(24.0)
 /* Steps counted; more than any budget has. */
 #define MOST UR5E_R(1e6)
 
@@ -62,9 +68,11 @@ static void let_stand(const ur5e_impact *impact, ur5e_real contact, bool release
         const bool body = impact->gives_way && i == modes->count - 1;
         const ur5e_real weight = modes->row[i]*modes->row[i];
         const ur5e_real along = modes->row[i]*modes->start[i];
+        const ur5e_real held = region->stiffness
+            + region->damping*UR5E_SQRT(UR5E_FMAX(modes->squared[i], UR5E_R(0.0)));
         const bool stands = !phase->damped && weight*heavy < modes->squared[i]*modes->squared[i]
             && weight*weight*jump < modes->squared[i]
-            && (!released || weight*region->stiffness < LEFT*modes->squared[i])
+            && (!released || weight*held < LEFT*modes->squared[i])
             && along*along <= swing*modes->squared[i];
         if (i >= modes->rigid && !body) {
             phase->settles = phase->settles && modes->squared[i] > UR5E_R(0.0);
@@ -116,14 +124,14 @@ static void mode_steps(ur5e_phase *phase, int i)
     }
 }
 
-/* Most that a servo's gains damp a mode, 1/s. */
+/* Most that joints and a servo's gains damp a mode, 1/s. */
 static ur5e_real damping_rate(const ur5e_phase *phase)
 {
     ur5e_real rate = UR5E_R(0.0);
-    for (int i = 0; i < UR5E_N && phase->damped; ++i) {
+    for (int i = 0; i < UR5E_DAMPERS && phase->damped; ++i) {
         ur5e_real of_motor = UR5E_R(0.0);
         for (int k = 0; k < phase->modes.count; ++k) {
-            const ur5e_real shape = phase->modes.shape[k][UR5E_SYSTEM - UR5E_N + i];
+            const ur5e_real shape = phase->modes.shape[k][UR5E_SYSTEM - UR5E_DAMPERS + i];
             of_motor += shape*shape;
         }
         rate = UR5E_FMAX(rate, phase->damping[i]*of_motor);
@@ -159,7 +167,10 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
     }
     const ur5e_real share = UR5E_FMIN(moving/impact->mobility, UR5E_R(1.0));
     rate2 = UR5E_FMAX(rate2, share*contact/(CONTACT_STEP*CONTACT_STEP));
-    const ur5e_real slowest = UR5E_R(1.0)/time;
+    const ur5e_real jump = region->damping*impact->mobility;
+    const ur5e_real rise = jump*region->damping > JUMPS*region->stiffness
+        ? impact->skin_rate/(JUMP_STEP*jump) : UR5E_R(0.0);
+    const ur5e_real slowest = UR5E_FMAX(UR5E_R(1.0)/time, rise);
     const ur5e_real rate = UR5E_FMAX(slowest, UR5E_FMAX(UR5E_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
     const ur5e_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;

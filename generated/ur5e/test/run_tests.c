@@ -1253,6 +1253,12 @@ static void test_joint_impulse(void)
            name, "nothing written for bad inputs");
 }
 
+/* What a golden impact hits. */
+static int golden_region(const ur5e_golden_impact *in, ur5e_region *region)
+{
+    return ur5e_body_region(in->part, in->clamped, region);
+}
+
 static void test_impacts(void)
 {
     double worst = 0.0;
@@ -1262,7 +1268,7 @@ static void test_impacts(void)
         ur5e_peak_force_t peak = {0, 0};
         ur5e_peak_force_t again = {0, 0};
         ur5e_safe_speed_t safe = {0, 0};
-        expect(ur5e_body_region(in->part, in->clamped, &region) == UR5E_OK, "ur5e_body_region", "status");
+        expect(golden_region(in, &region) == UR5E_OK, "ur5e_body_region", "status");
         const int found = ur5e_peak_force(in->q, in->n, in->speed, &region, &in->p, &peak);
         if (found == UR5E_BOUNDED) { /* a servo that float has too few digits for */
             expect((double)peak.force >= in->force, "ur5e_peak_force", "bound of a golden impact");
@@ -1417,7 +1423,7 @@ static void check_selection(const ur5e_real poses[][6], int count, const ur5e_go
     ur5e_real force = 0;
     ur5e_real next = 0;
     memset(allowed, 1, sizeof allowed);
-    expect(ur5e_body_region(in->part, in->clamped, &region) == UR5E_OK, "ur5e_body_region", "status");
+    expect(golden_region(in, &region) == UR5E_OK, "ur5e_body_region", "status");
     const int best = best_of(poses, count, allowed, in, &region, &force);
     if (best < 0) { /* all are bounded */
         return;

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import softimpact
-from softimpact.toolchain import c_compiler, usable_cache
+from softimpact.toolchain import c_compiler, passing_folder, usable_cache, zig_environment
 from softimpact.symbolic.dynamics.equations_of_motion import FixedGravity
 from softimpact.symbolic import Drives, Robot, SoftImpactError
 
@@ -115,11 +115,13 @@ class Sources:
         reason = ""
         for flags in ((*FLAGS, NATIVE), FLAGS):
             command = [*self.compiler, *flags, use, *folders, *files, "-o", str(out), "-lm"]
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            done = subprocess.run(
+                command, capture_output=True, text=True, check=False, env=zig_environment()
+            )
             if done.returncode == 0:
                 return
             reason = next((x for x in done.stderr.splitlines() if "error" in x), done.stderr)
-        raise CompilerFailed(self.compiler[0], reason.strip())
+        raise CompilerFailed(" ".join(self.compiler), reason.strip())
 
 
 def prepared(
@@ -157,14 +159,7 @@ def _compiler() -> tuple[str, ...] | None:
 
 def _cache() -> Path:
     """Return the user's cache, or where it cannot be written a folder for this process."""
-    return usable_cache() or _passing_folder()
-
-
-@cache
-def _passing_folder() -> Path:
-    folder = Path(tempfile.mkdtemp(prefix="softimpact-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return folder
+    return usable_cache() or passing_folder()
 
 
 @cache

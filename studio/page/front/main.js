@@ -10,7 +10,6 @@ import { asHash, cautious, firstState, fromHash, unknownRotors, withinLimits } f
 import { mapStrip } from "./map.js";
 import { solverOf } from "./solver.js";
 import { designStrip, programStrip, trendStrip } from "./strip.js";
-import { worstDirection } from "./worst.js";
 import { add, times, unit } from "./vectors.js";
 
 const QUIET = 140; // ms without a change before what takes longer is done
@@ -34,7 +33,10 @@ async function packageOf(base64) {
 
 function start(pkg, content) {
   const solver = solverOf(pkg, content);
-  solver.worst = (state) => worstDirection(solver, state);
+  solver.worst = (state) => {
+    const n = solver.worstDirection(state);
+    return n === null ? null : { n };
+  };
   let state = fromHash(location.hash, content);
   let looks = looksOf();
   let found = null, picture = null, plotted = null, band = null, reading = null, kept = null, pending = false, quiet = null;

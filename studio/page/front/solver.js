@@ -131,6 +131,15 @@ export function solverOf(pkg, content) {
     return WRITTEN.includes(found.status) ? found.speed : null;
   }
 
+  /** Direction in which a state's contact point hits hardest; null where none has an answer. */
+  function worstDirection(state) {
+    const at = scene(state);
+    if (at.status !== 0) return null;
+    const p = parameters(state, at.contact, choiceOf(state));
+    const found = pkg.worst_direction_at({ q: state.q, point: TIP, speed: state.speed, region: region(state), p });
+    return WRITTEN.includes(found.status) ? found.n : null;
+  }
+
   /** How the contact point moves at joint velocities: { n, speed }, or null where it rests. */
   function aim(state, dq) {
     const at = scene(state);
@@ -145,5 +154,5 @@ export function solverOf(pkg, content) {
     return pkg.slide({ q, by, lower, upper });
   }
 
-  return { joints, unknown, kindsOf, scene, impact, varied, safeSpeed, aim, slide };
+  return { joints, unknown, kindsOf, scene, impact, varied, safeSpeed, worstDirection, aim, slide };
 }

@@ -12,7 +12,7 @@
 int robot_scene(const robot_real q[ROBOT_JOINTS], int body, const robot_real place[3], robot_scene_t *out)
 {
     robot_end_t end;
-    int status = robot_frames(q, out->poses);
+    int status = robot_joint_frames(q, out->poses);
     if (status == ROBOT_OK) {
         status = robot_end(q, &end);
     }

@@ -33,3 +33,9 @@ def test_skin_can_be_another() -> None:
         1e3
     )
     assert Contact(body_region("chest")).clamped
+
+
+def test_a_device_is_named_by_its_spring_and_its_pad() -> None:
+    device = body_region("device_75_sh70")
+    assert (device.stiffness, device.damping) == (75e3, 0.0)
+    assert device.title == "Device, K2 75 N/mm, K1 sh70"

@@ -110,6 +110,12 @@ def test_beyond_its_points_a_curve_is_as_good_as_solid() -> None:
     assert covered == pytest.approx(hard, rel=0.02)
 
 
+def test_beyond_its_points_a_curve_is_no_softer_than_at_its_end() -> None:
+    rock = Curve((0, 1e-5, 2e-5), (0, 10, 1e4))  # 1e9 N/m at its end
+    assert force(rock, 2.1e-5) - 1e4 >= 1e-6 * (1e4 - 10) / 1e-5
+    assert force(FOAM, 8.1e-3) - force(FOAM, 8e-3) == pytest.approx(1e4)  # 1e8 N/m, as if solid
+
+
 def test_power_laws_of_one_exponent_make_another() -> None:
     law = series(PowerLaw(1.9e7), PowerLaw(2e6), PowerLaw(5e6))
     assert isinstance(law, PowerLaw)

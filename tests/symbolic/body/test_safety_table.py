@@ -13,6 +13,7 @@ import re
 import pytest
 
 from softimpact.symbolic import AREAS, REGIONS, BodyRegion, UnknownName, body_region
+from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 
 # region: quasi-static force in N, spring in N/mm, mass in kg; then each area's pressure in N/cm²
 PERMITTED = """
@@ -138,3 +139,8 @@ def test_unknown_names_that_are_near_nothing_show_the_regions() -> None:
     with pytest.raises(UnknownName, match=r"unknown body region 'nose'; known: head, face") as e:
         body_region("nose")
     assert e.value.known == tuple(REGIONS)
+
+
+def test_the_transient_limit_counts_for_half_a_second() -> None:
+    """ISO/TS 15066: contact is transient for less than 0.5 s; pressing is quasi-static after it."""
+    assert QUASI_STATIC_FROM == 0.5

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: 0BSD */
+/* The direction in which robot_ hits hardest: looked for among many, then around the best of them. */
+#include "robot_impact.h"
+
+/* Directions over half a ball, or half a circle where the point moves in a plane: forces are even. */
+#define OVER_A_BALL 96
+#define OVER_A_CIRCLE 32
+#define TURN ROBOT_R(2.399963229728653) /* of one from the one before: pi (3 - sqrt(5)) */
+#define HALF_A_TURN ROBOT_R(3.141592653589793)
+/* How far around the best is looked, as a share of a unit vector, first and last. */
+#define WIDE ROBOT_R(0.2)
+#define NARROW ROBOT_R(0.01)
+#define AROUND 6
+#define MOST_ROUNDS 16
+/* Least error that is stated. */
+#define LEAST_ERROR ROBOT_R(2e-3)
+
+typedef struct {
+    robot_impact impact;
+    int point; /* whose rows of J count */
+    robot_real speed;
+    robot_real n[3]; /* the worst so far */
+    robot_real force;
+    bool bounded, unknown;
+} hardest;
+
+/* Tries a direction over those in which the robot moves; says whether it is worse than all before. */
+static bool try_direction(const robot_region *region, const robot_params *p, const robot_real along[3], hardest *w)
+{
+    robot_real n[3];
+    robot_peak_force_t found = {ROBOT_R(0.0), ROBOT_R(0.0)};
+    for (int k = 0; k < 3; ++k) {
+        n[k] = ROBOT_R(0.0);
+        for (int l = 0; l < ROBOT_REACH; ++l) {
+            n[k] += along[l]*robot_directions[l][k];
+        }
+    }
+    int status = robot_arrive(n, w->point, &w->impact.arrival);
+    robot_impact_forget(&w->impact);
+    if (status == ROBOT_OK) {
+        status = robot_find_peak(region, p, w->speed, &w->impact, &found);
+    }
+    w->unknown = w->unknown || (status != ROBOT_OK && status != ROBOT_BOUNDED && status != ROBOT_SINGULAR);
+    const bool worse = (status == ROBOT_OK || status == ROBOT_BOUNDED) && found.force > w->force;
+    if (worse) {
+        w->force = found.force;
+        w->bounded = status == ROBOT_BOUNDED;
+        for (int k = 0; k < 3; ++k) {
+            w->n[k] = along[k];
+        }
+    }
+    return worse;
+}
+
+/* Direction number k of those over half a ball or circle. */
+static void direction_of(int k, robot_real along[3])
+{
+    const robot_real turn = ROBOT_REACH > 2 ? TURN*(robot_real)k : HALF_A_TURN*(robot_real)k/(robot_real)OVER_A_CIRCLE;
+    const robot_real up = ROBOT_REACH > 2 ? ((robot_real)k + ROBOT_R(0.5))/(robot_real)OVER_A_BALL : ROBOT_R(0.0);
+    const robot_real flat = ROBOT_SQRT(ROBOT_R(1.0) - up*up);
+    along[0] = ROBOT_REACH > 1 ? flat*ROBOT_COS(turn) : ROBOT_R(1.0);
+    along[1] = flat*ROBOT_SIN(turn);
+    along[2] = up;
+}
+
+/* Looks around the worst, wider where that helps. */
+static void look_around(const robot_region *region, const robot_params *p, hardest *w)
+{
+    robot_real wide = WIDE;
+    for (int round = 0; round < MOST_ROUNDS && wide > NARROW && ROBOT_REACH > 1; ++round) {
+        const robot_real *const n = w->n;
+        const robot_real side = ROBOT_FABS(n[2]) < ROBOT_R(0.9) ? ROBOT_SQRT(n[0]*n[0] + n[1]*n[1])
+            : ROBOT_SQRT(n[1]*n[1] + n[2]*n[2]);
+        const robot_real a[3] = {ROBOT_FABS(n[2]) < ROBOT_R(0.9) ? n[1]/side : ROBOT_R(0.0),
+            ROBOT_FABS(n[2]) < ROBOT_R(0.9) ? -n[0]/side : n[2]/side,
+            ROBOT_FABS(n[2]) < ROBOT_R(0.9) ? ROBOT_R(0.0) : -n[1]/side};
+        const robot_real b[3] = {n[1]*a[2] - n[2]*a[1], n[2]*a[0] - n[0]*a[2], n[0]*a[1] - n[1]*a[0]};
+        const robot_real centre[3] = {n[0], n[1], n[2]};
+        bool better = false;
+        for (int k = 0; k < AROUND; ++k) {
+            const robot_real turn = ROBOT_R(2.0)*HALF_A_TURN*(robot_real)k/(robot_real)AROUND;
+            const robot_real s = wide*ROBOT_SIN(turn);
+            const robot_real c = wide*ROBOT_COS(turn);
+            const robot_real aside[3] = {centre[0] + c*a[0] + s*b[0], centre[1] + c*a[1] + s*b[1],
+                ROBOT_REACH > 2 ? centre[2] + c*a[2] + s*b[2] : ROBOT_R(0.0)};
+            const robot_real size = ROBOT_SQRT(aside[0]*aside[0] + aside[1]*aside[1] + aside[2]*aside[2]);
+            const robot_real along[3] = {aside[0]/size, aside[1]/size, aside[2]/size};
+            better = try_direction(region, p, along, w) || better;
+        }
+        wide = better ? wide : ROBOT_R(0.5)*wide;
+    }
+}
+
+/* Looks everywhere. */
+static int find_hardest(const robot_region *region, const robot_params *p, hardest *w, robot_worst_direction_t *out)
+{
+    const int count = ROBOT_REACH > 2 ? OVER_A_BALL : ROBOT_REACH > 1 ? OVER_A_CIRCLE : 1;
+    w->force = ROBOT_R(0.0);
+    w->bounded = false;
+    w->unknown = false;
+    for (int k = 0; k < count; ++k) {
+        robot_real along[3];
+        direction_of(k, along);
+        (void)try_direction(region, p, along, w);
+    }
+    if (w->unknown) {
+        return ROBOT_UNRESOLVED;
+    }
+    if (!(w->force > ROBOT_R(0.0))) {
+        return ROBOT_SINGULAR;
+    }
+    const robot_real seen = w->force;
+    look_around(region, p, w);
+    for (int k = 0; k < 3; ++k) {
+        out->n[k] = ROBOT_R(0.0);
+        for (int l = 0; l < ROBOT_REACH; ++l) {
+            out->n[k] += w->n[l]*robot_directions[l][k];
+        }
+    }
+    out->force = w->force;
+    out->error = ROBOT_FMAX(w->force/seen - ROBOT_R(1.0), LEAST_ERROR);
+    return w->bounded ? ROBOT_BOUNDED : ROBOT_OK;
+}
+
+int robot_worst_direction_at(const robot_real q[ROBOT_JOINTS], int point, robot_real speed,
+    const robot_region *region, const robot_params *p, robot_worst_direction_t *out)
+{
+    if (q == NULL || region == NULL || p == NULL || out == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    hardest w;
+    int status = robot_check_positive(&speed, 1);
+    if (status == ROBOT_OK) {
+        status = robot_check_impact(region, p);
+    }
+    if (status == ROBOT_OK && !(point >= 0 && point < ROBOT_POINTS)) {
+        status = ROBOT_OUT_OF_RANGE;
+    }
+    if (status == ROBOT_OK) {
+        status = robot_links(ROBOT_LINKS_OF(q, p), &w.impact.arrival.links);
+    }
+    w.speed = speed;
+    w.point = point;
+    return status == ROBOT_OK ? find_hardest(region, p, &w, out) : status;
+}
+
+#if ROBOT_FRAMES > 0
+int robot_worst_direction_on(const robot_real q[ROBOT_JOINTS], int frame, const robot_real place[3],
+    robot_real speed, const robot_region *region, const robot_params *p, robot_worst_direction_t *out)
+{
+    if (q == NULL || place == NULL || region == NULL || p == NULL || out == NULL) {
+        return ROBOT_NULL_POINTER;
+    }
+    hardest w;
+    int status = robot_check_positive(&speed, 1);
+    if (status == ROBOT_OK) {
+        status = robot_check_impact(region, p);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_links_on(q, frame, place, p, &w.impact.arrival.links);
+    }
+    w.speed = speed;
+    w.point = 0;
+    return status == ROBOT_OK ? find_hardest(region, p, &w, out) : status;
+}
+#endif

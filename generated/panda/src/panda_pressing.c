@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
+#include "panda_state.h"
+
+/* Until when it is looked, s. */
+#define PRESSED_UNTIL PANDA_R(0.6)
+/* Share of a limit up to which it counts as kept, as for peaks. */
+#define PRESSED_KEPT PANDA_R(0.995)
+/* Halvings of a speed that presses too hard. */
+#define SLOWER 14
+#define LEAST_SPEED PANDA_R(1e-6) /* of a contact point that does not rest, m/s */
+
+/* An impact that is followed until 0.6 s. */
+typedef struct {
+    panda_params p;
+    panda_impact impact;
+    panda_budget budget;
+    panda_watch watch;
+    bool bounded; /* some force is a bound */
+} panda_pressing;
+
+/*
+ * Largest force from 0.5 s on; less than `matters`, or nothing, if it is proven that none exceeds that. The
+ * largest of numbers where that is not known.
+ */
+static panda_real pressed_by(panda_pressing *k, panda_real speed, panda_real matters)
+{
+    panda_peak peak;
+    k->watch.matters = matters;
+    k->watch.depth = panda_law_depth(k->impact.region, matters);
+    k->watch.late = PANDA_R(0.0);
+    k->watch.before = PANDA_R(0.0);
+    k->watch.last = PANDA_R(0.0);
+    k->budget.watch = &k->watch;
+    panda_impact_run(&k->impact, speed, &k->budget, &peak);
+    if (peak.ended) {
+        return k->watch.late;
+    }
+    const panda_real bound = k->impact.status == PANDA_OK ? panda_bound(&k->impact) : PANDA_R(0.0);
+    k->bounded = true;
+    return bound > PANDA_R(0.0) ? bound*speed : PANDA_REAL_MAX;
+}
+
+/* Whether what presses keeps a limit at a speed, by any motors; false where that is not known. */
+static bool keeps(panda_pressing *k, const panda_region *region, panda_real speed, panda_real limit)
+{
+    int first;
+    int last;
+    panda_kinds_of_motors(&k->p, &first, &last);
+    bool kept = true;
+    for (int motors = first; motors <= last && kept; ++motors) {
+        kept = panda_impact_prepare(region, &k->p, motors, limit, &k->impact) == PANDA_OK
+            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+    }
+    return kept;
+}
+
+static void prepare_pressing(const panda_params *p, panda_pressing *k)
+{
+    k->p = *p;
+    k->p.horizon = PANDA_FMAX(PANDA_HORIZON(p), PRESSED_UNTIL);
+    k->budget.steps = p->steps;
+    k->budget.rough = false;
+    k->budget.stop_above = PANDA_REAL_MAX;
+    k->budget.watch = NULL;
+    k->bounded = false;
+}
+
+/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+static panda_real slow_down(panda_pressing *k, const panda_region *region, panda_real speed, panda_real limit)
+{
+    if (keeps(k, region, speed, limit)) {
+        return speed;
+    }
+    panda_real low = PANDA_R(0.0);
+    panda_real high = speed;
+    for (int i = 0; i < SLOWER; ++i) {
+        const panda_real middle = PANDA_R(0.5)*(low + high);
+        k->budget.steps = k->p.steps;
+        if (keeps(k, region, middle, limit)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+int panda_pressing_force_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
+    panda_real speed, const panda_region *region, const panda_params *p, panda_real *force)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || force == NULL) {
+        return PANDA_NULL_POINTER;
+    }
+    panda_pressing k;
+    int status = panda_check_positive(&speed, 1);
+    if (status == PANDA_OK) {
+        status = panda_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status != PANDA_OK) {
+        return status;
+    }
+    prepare_pressing(p, &k);
+    panda_real found = PANDA_R(0.0);
+    int first;
+    int last;
+    panda_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last && region->clamped != 0; ++motors) {
+        status = panda_impact_prepare(region, &k.p, motors, -speed, &k.impact);
+        if (status != PANDA_OK) {
+            return status;
+        }
+        found = PANDA_FMAX(found, pressed_by(&k, speed, PANDA_R(0.0)));
+        if (k.impact.status != PANDA_OK) {
+            return k.impact.status;
+        }
+    }
+    if (!(found < PANDA_REAL_MAX)) {
+        return PANDA_UNRESOLVED;
+    }
+    *force = found;
+    return k.bounded ? PANDA_BOUNDED : PANDA_OK;
+}
+
+/* Checks for limits of both kinds. */
+static int check_limits(const panda_region *region)
+{
+    const panda_real limits[2] = {region->force_limit, region->quasi_static_limit};
+    return panda_check_positive(limits, region->clamped != 0 ? 2 : 1);
+}
+
+/* Largest speed up to a cap, where that is positive, that keeps all limits of a region. */
+static int find_allowed(const panda_region *region, const panda_params *p, panda_real cap, panda_pressing *k,
+    panda_allowed_speed_t *found)
+{
+    panda_safe_speed_t safe;
+    const int status = panda_find_speed(region, p, region->force_limit, cap, &k->impact, &safe);
+    if (status == PANDA_OK || status == PANDA_BOUNDED) {
+        found->speed = safe.speed;
+        found->force = safe.force;
+        if (region->clamped != 0) {
+            prepare_pressing(p, k);
+            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+        }
+        found->pressed = found->speed < safe.speed ? 1 : 0;
+    }
+    return status;
+}
+
+int panda_allowed_speed_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
+    const panda_region *region, const panda_params *p, panda_allowed_speed_t *out)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
+        return PANDA_NULL_POINTER;
+    }
+    panda_pressing k;
+    panda_allowed_speed_t found;
+    int status = check_limits(region);
+    if (status == PANDA_OK) {
+        status = panda_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status == PANDA_OK) {
+        status = find_allowed(region, p, PANDA_R(0.0), &k, &found);
+    }
+    if (status != PANDA_OK && status != PANDA_BOUNDED) {
+        return status;
+    }
+    if (!(found.speed > PANDA_R(0.0))) {
+        return PANDA_UNRESOLVED;
+    }
+    *out = found;
+    return status;
+}
+
+/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
+static int set_off(const panda_real *q, const panda_real *dq, const panda_region *region,
+    const panda_params *p, panda_real rates[PANDA_N], panda_pressing *k)
+{
+    int status = panda_check_finite(dq, PANDA_JOINTS);
+    if (status == PANDA_OK) {
+        status = panda_check_impact(region, p);
+    }
+    for (int i = 0; i < PANDA_N; ++i) {
+        rates[i] = dq[PANDA_INDEPENDENT(i)];
+    }
+    (void)q;
+    return status == PANDA_OK ? panda_links(PANDA_LINKS_OF(q, p), &k->impact.arrival.links) : status;
+}
+
+int panda_allowed_factor(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    const panda_region *region, const panda_params *p, panda_allowed_factor_t *out)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
+        return PANDA_NULL_POINTER;
+    }
+    panda_pressing k;
+    panda_real rates[PANDA_N];
+    panda_allowed_factor_t found = {PANDA_R(1.0), -1, PANDA_R(0.0), PANDA_R(0.0), 0};
+    bool bounded = false;
+    int status = check_limits(region);
+    if (status == PANDA_OK) {
+        status = set_off(q, dq, region, p, rates, &k);
+    }
+    for (int point = 0; point < PANDA_POINTS && status == PANDA_OK; ++point) {
+        const panda_real speed = panda_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        panda_allowed_speed_t allowed = {speed, PANDA_R(0.0), 0};
+        panda_impact_forget(&k.impact);
+        if (speed > LEAST_SPEED) {
+            status = find_allowed(region, p, found.factor*speed, &k, &allowed);
+            bounded = bounded || status == PANDA_BOUNDED;
+            status = status == PANDA_BOUNDED ? PANDA_OK : status;
+        }
+        if (speed > LEAST_SPEED && status == PANDA_OK
+            && (allowed.speed < found.factor*speed || found.point < 0)) {
+            found.factor = PANDA_FMIN(found.factor, allowed.speed/speed);
+            found.point = point;
+            found.speed = allowed.speed;
+            found.force = allowed.force;
+            found.pressed = allowed.pressed;
+            status = allowed.speed > PANDA_R(0.0) ? PANDA_OK : PANDA_UNRESOLVED;
+        }
+    }
+    const panda_real numbers[3] = {found.factor, found.speed, found.force};
+    if (status == PANDA_OK && !panda_all_finite(numbers, 3)) {
+        status = PANDA_SINGULAR;
+    }
+    if (status != PANDA_OK) {
+        return status;
+    }
+    *out = found;
+    return bounded ? PANDA_BOUNDED : PANDA_OK;
+}
+
+int panda_may_press(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    panda_real limit, const panda_region *region, const panda_params *p, int *may)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || may == NULL) {
+        return PANDA_NULL_POINTER;
+    }
+    panda_pressing k;
+    panda_real rates[PANDA_N];
+    int status = panda_check_positive(&limit, 1);
+    if (status == PANDA_OK) {
+        status = set_off(q, dq, region, p, rates, &k);
+    }
+    if (status != PANDA_OK) {
+        return status;
+    }
+    bool kept = true;
+    for (int point = 0; point < PANDA_POINTS && region->clamped != 0 && kept; ++point) {
+        const panda_real speed = panda_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        panda_impact_forget(&k.impact);
+        prepare_pressing(p, &k);
+        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+    }
+    *may = kept ? 0 : 1;
+    return PANDA_OK;
+}

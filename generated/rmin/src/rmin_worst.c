@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: 0BSD */
+/* The direction in which rmin_ hits hardest: looked for among many, then around the best of them. */
+#include "rmin_impact.h"
+
+/* Directions over half a ball, or half a circle where the point moves in a plane: forces are even. */
+#define OVER_A_BALL 96
+#define OVER_A_CIRCLE 32
+#define TURN RMIN_R(2.399963229728653) /* of one from the one before: pi (3 - sqrt(5)) */
+#define HALF_A_TURN RMIN_R(3.141592653589793)
+/* How far around the best is looked, as a share of a unit vector, first and last. */
+#define WIDE RMIN_R(0.2)
+#define NARROW RMIN_R(0.01)
+#define AROUND 6
+#define MOST_ROUNDS 16
+/* Least error that is stated. */
+#define LEAST_ERROR RMIN_R(2e-3)
+
+typedef struct {
+    rmin_impact impact;
+    int point; /* whose rows of J count */
+    rmin_real speed;
+    rmin_real n[3]; /* the worst so far */
+    rmin_real force;
+    bool bounded, unknown;
+} hardest;
+
+/* Tries a direction over those in which the robot moves; says whether it is worse than all before. */
+static bool try_direction(const rmin_region *region, const rmin_params *p, const rmin_real along[3], hardest *w)
+{
+    rmin_real n[3];
+    rmin_peak_force_t found = {RMIN_R(0.0), RMIN_R(0.0)};
+    for (int k = 0; k < 3; ++k) {
+        n[k] = RMIN_R(0.0);
+        for (int l = 0; l < RMIN_REACH; ++l) {
+            n[k] += along[l]*rmin_directions[l][k];
+        }
+    }
+    int status = rmin_arrive(n, w->point, &w->impact.arrival);
+    rmin_impact_forget(&w->impact);
+    if (status == RMIN_OK) {
+        status = rmin_find_peak(region, p, w->speed, &w->impact, &found);
+    }
+    w->unknown = w->unknown || (status != RMIN_OK && status != RMIN_BOUNDED && status != RMIN_SINGULAR);
+    const bool worse = (status == RMIN_OK || status == RMIN_BOUNDED) && found.force > w->force;
+    if (worse) {
+        w->force = found.force;
+        w->bounded = status == RMIN_BOUNDED;
+        for (int k = 0; k < 3; ++k) {
+            w->n[k] = along[k];
+        }
+    }
+    return worse;
+}
+
+/* Direction number k of those over half a ball or circle. */
+static void direction_of(int k, rmin_real along[3])
+{
+    const rmin_real turn = RMIN_REACH > 2 ? TURN*(rmin_real)k : HALF_A_TURN*(rmin_real)k/(rmin_real)OVER_A_CIRCLE;
+    const rmin_real up = RMIN_REACH > 2 ? ((rmin_real)k + RMIN_R(0.5))/(rmin_real)OVER_A_BALL : RMIN_R(0.0);
+    const rmin_real flat = RMIN_SQRT(RMIN_R(1.0) - up*up);
+    along[0] = RMIN_REACH > 1 ? flat*RMIN_COS(turn) : RMIN_R(1.0);
+    along[1] = flat*RMIN_SIN(turn);
+    along[2] = up;
+}
+
+/* Looks around the worst, wider where that helps. */
+static void look_around(const rmin_region *region, const rmin_params *p, hardest *w)
+{
+    rmin_real wide = WIDE;
+    for (int round = 0; round < MOST_ROUNDS && wide > NARROW && RMIN_REACH > 1; ++round) {
+        const rmin_real *const n = w->n;
+        const rmin_real side = RMIN_FABS(n[2]) < RMIN_R(0.9) ? RMIN_SQRT(n[0]*n[0] + n[1]*n[1])
+            : RMIN_SQRT(n[1]*n[1] + n[2]*n[2]);
+        const rmin_real a[3] = {RMIN_FABS(n[2]) < RMIN_R(0.9) ? n[1]/side : RMIN_R(0.0),
+            RMIN_FABS(n[2]) < RMIN_R(0.9) ? -n[0]/side : n[2]/side,
+            RMIN_FABS(n[2]) < RMIN_R(0.9) ? RMIN_R(0.0) : -n[1]/side};
+        const rmin_real b[3] = {n[1]*a[2] - n[2]*a[1], n[2]*a[0] - n[0]*a[2], n[0]*a[1] - n[1]*a[0]};
+        const rmin_real centre[3] = {n[0], n[1], n[2]};
+        bool better = false;
+        for (int k = 0; k < AROUND; ++k) {
+            const rmin_real turn = RMIN_R(2.0)*HALF_A_TURN*(rmin_real)k/(rmin_real)AROUND;
+            const rmin_real s = wide*RMIN_SIN(turn);
+            const rmin_real c = wide*RMIN_COS(turn);
+            const rmin_real aside[3] = {centre[0] + c*a[0] + s*b[0], centre[1] + c*a[1] + s*b[1],
+                RMIN_REACH > 2 ? centre[2] + c*a[2] + s*b[2] : RMIN_R(0.0)};
+            const rmin_real size = RMIN_SQRT(aside[0]*aside[0] + aside[1]*aside[1] + aside[2]*aside[2]);
+            const rmin_real along[3] = {aside[0]/size, aside[1]/size, aside[2]/size};
+            better = try_direction(region, p, along, w) || better;
+        }
+        wide = better ? wide : RMIN_R(0.5)*wide;
+    }
+}
+
+/* Looks everywhere. */
+static int find_hardest(const rmin_region *region, const rmin_params *p, hardest *w, rmin_worst_direction_t *out)
+{
+    const int count = RMIN_REACH > 2 ? OVER_A_BALL : RMIN_REACH > 1 ? OVER_A_CIRCLE : 1;
+    w->force = RMIN_R(0.0);
+    w->bounded = false;
+    w->unknown = false;
+    for (int k = 0; k < count; ++k) {
+        rmin_real along[3];
+        direction_of(k, along);
+        (void)try_direction(region, p, along, w);
+    }
+    if (w->unknown) {
+        return RMIN_UNRESOLVED;
+    }
+    if (!(w->force > RMIN_R(0.0))) {
+        return RMIN_SINGULAR;
+    }
+    const rmin_real seen = w->force;
+    look_around(region, p, w);
+    for (int k = 0; k < 3; ++k) {
+        out->n[k] = RMIN_R(0.0);
+        for (int l = 0; l < RMIN_REACH; ++l) {
+            out->n[k] += w->n[l]*rmin_directions[l][k];
+        }
+    }
+    out->force = w->force;
+    out->error = RMIN_FMAX(w->force/seen - RMIN_R(1.0), LEAST_ERROR);
+    return w->bounded ? RMIN_BOUNDED : RMIN_OK;
+}
+
+int rmin_worst_direction_at(const rmin_real q[RMIN_JOINTS], int point, rmin_real speed,
+    const rmin_region *region, const rmin_params *p, rmin_worst_direction_t *out)
+{
+    if (q == NULL || region == NULL || p == NULL || out == NULL) {
+        return RMIN_NULL_POINTER;
+    }
+    hardest w;
+    int status = rmin_check_positive(&speed, 1);
+    if (status == RMIN_OK) {
+        status = rmin_check_impact(region, p);
+    }
+    if (status == RMIN_OK && !(point >= 0 && point < RMIN_POINTS)) {
+        status = RMIN_OUT_OF_RANGE;
+    }
+    if (status == RMIN_OK) {
+        status = rmin_links(RMIN_LINKS_OF(q, p), &w.impact.arrival.links);
+    }
+    w.speed = speed;
+    w.point = point;
+    return status == RMIN_OK ? find_hardest(region, p, &w, out) : status;
+}
+
+#if RMIN_FRAMES > 0
+int rmin_worst_direction_on(const rmin_real q[RMIN_JOINTS], int frame, const rmin_real place[3],
+    rmin_real speed, const rmin_region *region, const rmin_params *p, rmin_worst_direction_t *out)
+{
+    if (q == NULL || place == NULL || region == NULL || p == NULL || out == NULL) {
+        return RMIN_NULL_POINTER;
+    }
+    hardest w;
+    int status = rmin_check_positive(&speed, 1);
+    if (status == RMIN_OK) {
+        status = rmin_check_impact(region, p);
+    }
+    if (status == RMIN_OK) {
+        status = rmin_links_on(q, frame, place, p, &w.impact.arrival.links);
+    }
+    w.speed = speed;
+    w.point = 0;
+    return status == RMIN_OK ? find_hardest(region, p, &w, out) : status;
+}
+#endif

@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
+#include "rr_state.h"
+
+/* Until when it is looked, s. */
+#define PRESSED_UNTIL RR_R(0.6)
+/* Share of a limit up to which it counts as kept, as for peaks. */
+#define PRESSED_KEPT RR_R(0.995)
+/* Halvings of a speed that presses too hard. */
+#define SLOWER 14
+#define LEAST_SPEED RR_R(1e-6) /* of a contact point that does not rest, m/s */
+
+/* An impact that is followed until 0.6 s. */
+typedef struct {
+    rr_params p;
+    rr_impact impact;
+    rr_budget budget;
+    rr_watch watch;
+    bool bounded; /* some force is a bound */
+} rr_pressing;
+
+/*
+ * Largest force from 0.5 s on; less than `matters`, or nothing, if it is proven that none exceeds that. The
+ * largest of numbers where that is not known.
+ */
+static rr_real pressed_by(rr_pressing *k, rr_real speed, rr_real matters)
+{
+    rr_peak peak;
+    k->watch.matters = matters;
+    k->watch.depth = rr_law_depth(k->impact.region, matters);
+    k->watch.late = RR_R(0.0);
+    k->watch.before = RR_R(0.0);
+    k->watch.last = RR_R(0.0);
+    k->budget.watch = &k->watch;
+    rr_impact_run(&k->impact, speed, &k->budget, &peak);
+    if (peak.ended) {
+        return k->watch.late;
+    }
+    const rr_real bound = k->impact.status == RR_OK ? rr_bound(&k->impact) : RR_R(0.0);
+    k->bounded = true;
+    return bound > RR_R(0.0) ? bound*speed : RR_REAL_MAX;
+}
+
+/* Whether what presses keeps a limit at a speed, by any motors; false where that is not known. */
+static bool keeps(rr_pressing *k, const rr_region *region, rr_real speed, rr_real limit)
+{
+    int first;
+    int last;
+    rr_kinds_of_motors(&k->p, &first, &last);
+    bool kept = true;
+    for (int motors = first; motors <= last && kept; ++motors) {
+        kept = rr_impact_prepare(region, &k->p, motors, limit, &k->impact) == RR_OK
+            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+    }
+    return kept;
+}
+
+static void prepare_pressing(const rr_params *p, rr_pressing *k)
+{
+    k->p = *p;
+    k->p.horizon = RR_FMAX(RR_HORIZON(p), PRESSED_UNTIL);
+    k->budget.steps = p->steps;
+    k->budget.rough = false;
+    k->budget.stop_above = RR_REAL_MAX;
+    k->budget.watch = NULL;
+    k->bounded = false;
+}
+
+/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+static rr_real slow_down(rr_pressing *k, const rr_region *region, rr_real speed, rr_real limit)
+{
+    if (keeps(k, region, speed, limit)) {
+        return speed;
+    }
+    rr_real low = RR_R(0.0);
+    rr_real high = speed;
+    for (int i = 0; i < SLOWER; ++i) {
+        const rr_real middle = RR_R(0.5)*(low + high);
+        k->budget.steps = k->p.steps;
+        if (keeps(k, region, middle, limit)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+int rr_pressing_force_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    rr_real speed, const rr_region *region, const rr_params *p, rr_real *force)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || force == NULL) {
+        return RR_NULL_POINTER;
+    }
+    rr_pressing k;
+    int status = rr_check_positive(&speed, 1);
+    if (status == RR_OK) {
+        status = rr_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status != RR_OK) {
+        return status;
+    }
+    prepare_pressing(p, &k);
+    rr_real found = RR_R(0.0);
+    int first;
+    int last;
+    rr_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last && region->clamped != 0; ++motors) {
+        status = rr_impact_prepare(region, &k.p, motors, -speed, &k.impact);
+        if (status != RR_OK) {
+            return status;
+        }
+        found = RR_FMAX(found, pressed_by(&k, speed, RR_R(0.0)));
+        if (k.impact.status != RR_OK) {
+            return k.impact.status;
+        }
+    }
+    if (!(found < RR_REAL_MAX)) {
+        return RR_UNRESOLVED;
+    }
+    *force = found;
+    return k.bounded ? RR_BOUNDED : RR_OK;
+}
+
+/* Checks for limits of both kinds. */
+static int check_limits(const rr_region *region)
+{
+    const rr_real limits[2] = {region->force_limit, region->quasi_static_limit};
+    return rr_check_positive(limits, region->clamped != 0 ? 2 : 1);
+}
+
+/* Largest speed up to a cap, where that is positive, that keeps all limits of a region. */
+static int find_allowed(const rr_region *region, const rr_params *p, rr_real cap, rr_pressing *k,
+    rr_allowed_speed_t *found)
+{
+    rr_safe_speed_t safe;
+    const int status = rr_find_speed(region, p, region->force_limit, cap, &k->impact, &safe);
+    if (status == RR_OK || status == RR_BOUNDED) {
+        found->speed = safe.speed;
+        found->force = safe.force;
+        if (region->clamped != 0) {
+            prepare_pressing(p, k);
+            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+        }
+        found->pressed = found->speed < safe.speed ? 1 : 0;
+    }
+    return status;
+}
+
+int rr_allowed_speed_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
+    const rr_region *region, const rr_params *p, rr_allowed_speed_t *out)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
+        return RR_NULL_POINTER;
+    }
+    rr_pressing k;
+    rr_allowed_speed_t found;
+    int status = check_limits(region);
+    if (status == RR_OK) {
+        status = rr_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status == RR_OK) {
+        status = find_allowed(region, p, RR_R(0.0), &k, &found);
+    }
+    if (status != RR_OK && status != RR_BOUNDED) {
+        return status;
+    }
+    if (!(found.speed > RR_R(0.0))) {
+        return RR_UNRESOLVED;
+    }
+    *out = found;
+    return status;
+}
+
+/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
+static int set_off(const rr_real *q, const rr_real *dq, const rr_region *region,
+    const rr_params *p, rr_real rates[RR_N], rr_pressing *k)
+{
+    int status = rr_check_finite(dq, RR_JOINTS);
+    if (status == RR_OK) {
+        status = rr_check_impact(region, p);
+    }
+    for (int i = 0; i < RR_N; ++i) {
+        rates[i] = dq[RR_INDEPENDENT(i)];
+    }
+    (void)q;
+    return status == RR_OK ? rr_links(RR_LINKS_OF(q, p), &k->impact.arrival.links) : status;
+}
+
+int rr_allowed_factor(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    const rr_region *region, const rr_params *p, rr_allowed_factor_t *out)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
+        return RR_NULL_POINTER;
+    }
+    rr_pressing k;
+    rr_real rates[RR_N];
+    rr_allowed_factor_t found = {RR_R(1.0), -1, RR_R(0.0), RR_R(0.0), 0};
+    bool bounded = false;
+    int status = check_limits(region);
+    if (status == RR_OK) {
+        status = set_off(q, dq, region, p, rates, &k);
+    }
+    for (int point = 0; point < RR_POINTS && status == RR_OK; ++point) {
+        const rr_real speed = rr_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        rr_allowed_speed_t allowed = {speed, RR_R(0.0), 0};
+        rr_impact_forget(&k.impact);
+        if (speed > LEAST_SPEED) {
+            status = find_allowed(region, p, found.factor*speed, &k, &allowed);
+            bounded = bounded || status == RR_BOUNDED;
+            status = status == RR_BOUNDED ? RR_OK : status;
+        }
+        if (speed > LEAST_SPEED && status == RR_OK
+            && (allowed.speed < found.factor*speed || found.point < 0)) {
+            found.factor = RR_FMIN(found.factor, allowed.speed/speed);
+            found.point = point;
+            found.speed = allowed.speed;
+            found.force = allowed.force;
+            found.pressed = allowed.pressed;
+            status = allowed.speed > RR_R(0.0) ? RR_OK : RR_UNRESOLVED;
+        }
+    }
+    const rr_real numbers[3] = {found.factor, found.speed, found.force};
+    if (status == RR_OK && !rr_all_finite(numbers, 3)) {
+        status = RR_SINGULAR;
+    }
+    if (status != RR_OK) {
+        return status;
+    }
+    *out = found;
+    return bounded ? RR_BOUNDED : RR_OK;
+}
+
+int rr_may_press(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    rr_real limit, const rr_region *region, const rr_params *p, int *may)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || may == NULL) {
+        return RR_NULL_POINTER;
+    }
+    rr_pressing k;
+    rr_real rates[RR_N];
+    int status = rr_check_positive(&limit, 1);
+    if (status == RR_OK) {
+        status = set_off(q, dq, region, p, rates, &k);
+    }
+    if (status != RR_OK) {
+        return status;
+    }
+    bool kept = true;
+    for (int point = 0; point < RR_POINTS && region->clamped != 0 && kept; ++point) {
+        const rr_real speed = rr_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        rr_impact_forget(&k.impact);
+        prepare_pressing(p, &k);
+        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+    }
+    *may = kept ? 0 : 1;
+    return RR_OK;
+}

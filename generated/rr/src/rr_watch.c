@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What still presses when the quasi-static limit of rr_'s impacts takes over from the transient one. */
+#include "rr_state.h"
+
+/* When it does, s. */
+#define LATE RR_R(0.5)
+/* Steps after which it is looked whether the rest matters. */
+#define LOOKS_LATE 2
+
+bool rr_pass(const rr_state *s, rr_watch *watch)
+{
+    if (s->time >= LATE) {
+        const rr_real share = RR_FMIN((s->time - LATE)/s->h, RR_R(1.0));
+        const rr_real then = share*watch->last + (RR_R(1.0) - share)*s->f;
+        const rr_real up = watch->last - watch->before;
+        const rr_real down = watch->last - s->f;
+        watch->late = RR_FMAX(watch->late, RR_FMAX(then, s->f) + s->swings);
+        if (s->past > 1 && up >= RR_R(0.0) && down > RR_R(0.0)) { /* a top between nodes */
+            const rr_real bend = (up/s->h_before + down/s->h)/(s->h + s->h_before);
+            const rr_real slope = up/s->h_before - bend*s->h_before;
+            const rr_real top = watch->last + RR_R(0.25)*slope*slope/bend;
+            watch->late = RR_FMAX(watch->late, top + s->swings);
+        }
+    }
+    watch->before = watch->last;
+    watch->last = s->f;
+    const rr_real matters = watch->matters - s->swings;
+    return s->f < matters && s->past % LOOKS_LATE == 0
+        && rr_is_settled(s, matters, watch->depth, RR_R(1.0));
+}

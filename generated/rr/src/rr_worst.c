@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: 0BSD */
+/* The direction in which rr_ hits hardest: looked for among many, then around the best of them. */
+#include "rr_impact.h"
+
+/* Directions over half a ball, or half a circle where the point moves in a plane: forces are even. */
+#define OVER_A_BALL 96
+#define OVER_A_CIRCLE 32
+#define TURN RR_R(2.399963229728653) /* of one from the one before: pi (3 - sqrt(5)) */
+#define HALF_A_TURN RR_R(3.141592653589793)
+/* How far around the best is looked, as a share of a unit vector, first and last. */
+#define WIDE RR_R(0.2)
+#define NARROW RR_R(0.01)
+#define AROUND 6
+#define MOST_ROUNDS 16
+/* Least error that is stated. */
+#define LEAST_ERROR RR_R(2e-3)
+
+typedef struct {
+    rr_impact impact;
+    int point; /* whose rows of J count */
+    rr_real speed;
+    rr_real n[3]; /* the worst so far */
+    rr_real force;
+    bool bounded, unknown;
+} hardest;
+
+/* Tries a direction over those in which the robot moves; says whether it is worse than all before. */
+static bool try_direction(const rr_region *region, const rr_params *p, const rr_real along[3], hardest *w)
+{
+    rr_real n[3];
+    rr_peak_force_t found = {RR_R(0.0), RR_R(0.0)};
+    for (int k = 0; k < 3; ++k) {
+        n[k] = RR_R(0.0);
+        for (int l = 0; l < RR_REACH; ++l) {
+            n[k] += along[l]*rr_directions[l][k];
+        }
+    }
+    int status = rr_arrive(n, w->point, &w->impact.arrival);
+    rr_impact_forget(&w->impact);
+    if (status == RR_OK) {
+        status = rr_find_peak(region, p, w->speed, &w->impact, &found);
+    }
+    w->unknown = w->unknown || (status != RR_OK && status != RR_BOUNDED && status != RR_SINGULAR);
+    const bool worse = (status == RR_OK || status == RR_BOUNDED) && found.force > w->force;
+    if (worse) {
+        w->force = found.force;
+        w->bounded = status == RR_BOUNDED;
+        for (int k = 0; k < 3; ++k) {
+            w->n[k] = along[k];
+        }
+    }
+    return worse;
+}
+
+/* Direction number k of those over half a ball or circle. */
+static void direction_of(int k, rr_real along[3])
+{
+    const rr_real turn = RR_REACH > 2 ? TURN*(rr_real)k : HALF_A_TURN*(rr_real)k/(rr_real)OVER_A_CIRCLE;
+    const rr_real up = RR_REACH > 2 ? ((rr_real)k + RR_R(0.5))/(rr_real)OVER_A_BALL : RR_R(0.0);
+    const rr_real flat = RR_SQRT(RR_R(1.0) - up*up);
+    along[0] = RR_REACH > 1 ? flat*RR_COS(turn) : RR_R(1.0);
+    along[1] = flat*RR_SIN(turn);
+    along[2] = up;
+}
+
+/* Looks around the worst, wider where that helps. */
+static void look_around(const rr_region *region, const rr_params *p, hardest *w)
+{
+    rr_real wide = WIDE;
+    for (int round = 0; round < MOST_ROUNDS && wide > NARROW && RR_REACH > 1; ++round) {
+        const rr_real *const n = w->n;
+        const rr_real side = RR_FABS(n[2]) < RR_R(0.9) ? RR_SQRT(n[0]*n[0] + n[1]*n[1])
+            : RR_SQRT(n[1]*n[1] + n[2]*n[2]);
+        const rr_real a[3] = {RR_FABS(n[2]) < RR_R(0.9) ? n[1]/side : RR_R(0.0),
+            RR_FABS(n[2]) < RR_R(0.9) ? -n[0]/side : n[2]/side,
+            RR_FABS(n[2]) < RR_R(0.9) ? RR_R(0.0) : -n[1]/side};
+        const rr_real b[3] = {n[1]*a[2] - n[2]*a[1], n[2]*a[0] - n[0]*a[2], n[0]*a[1] - n[1]*a[0]};
+        const rr_real centre[3] = {n[0], n[1], n[2]};
+        bool better = false;
+        for (int k = 0; k < AROUND; ++k) {
+            const rr_real turn = RR_R(2.0)*HALF_A_TURN*(rr_real)k/(rr_real)AROUND;
+            const rr_real s = wide*RR_SIN(turn);
+            const rr_real c = wide*RR_COS(turn);
+            const rr_real aside[3] = {centre[0] + c*a[0] + s*b[0], centre[1] + c*a[1] + s*b[1],
+                RR_REACH > 2 ? centre[2] + c*a[2] + s*b[2] : RR_R(0.0)};
+            const rr_real size = RR_SQRT(aside[0]*aside[0] + aside[1]*aside[1] + aside[2]*aside[2]);
+            const rr_real along[3] = {aside[0]/size, aside[1]/size, aside[2]/size};
+            better = try_direction(region, p, along, w) || better;
+        }
+        wide = better ? wide : RR_R(0.5)*wide;
+    }
+}
+
+/* Looks everywhere. */
+static int find_hardest(const rr_region *region, const rr_params *p, hardest *w, rr_worst_direction_t *out)
+{
+    const int count = RR_REACH > 2 ? OVER_A_BALL : RR_REACH > 1 ? OVER_A_CIRCLE : 1;
+    w->force = RR_R(0.0);
+    w->bounded = false;
+    w->unknown = false;
+    for (int k = 0; k < count; ++k) {
+        rr_real along[3];
+        direction_of(k, along);
+        (void)try_direction(region, p, along, w);
+    }
+    if (w->unknown) {
+        return RR_UNRESOLVED;
+    }
+    if (!(w->force > RR_R(0.0))) {
+        return RR_SINGULAR;
+    }
+    const rr_real seen = w->force;
+    look_around(region, p, w);
+    for (int k = 0; k < 3; ++k) {
+        out->n[k] = RR_R(0.0);
+        for (int l = 0; l < RR_REACH; ++l) {
+            out->n[k] += w->n[l]*rr_directions[l][k];
+        }
+    }
+    out->force = w->force;
+    out->error = RR_FMAX(w->force/seen - RR_R(1.0), LEAST_ERROR);
+    return w->bounded ? RR_BOUNDED : RR_OK;
+}
+
+int rr_worst_direction_at(const rr_real q[RR_JOINTS], int point, rr_real speed,
+    const rr_region *region, const rr_params *p, rr_worst_direction_t *out)
+{
+    if (q == NULL || region == NULL || p == NULL || out == NULL) {
+        return RR_NULL_POINTER;
+    }
+    hardest w;
+    int status = rr_check_positive(&speed, 1);
+    if (status == RR_OK) {
+        status = rr_check_impact(region, p);
+    }
+    if (status == RR_OK && !(point >= 0 && point < RR_POINTS)) {
+        status = RR_OUT_OF_RANGE;
+    }
+    if (status == RR_OK) {
+        status = rr_links(RR_LINKS_OF(q, p), &w.impact.arrival.links);
+    }
+    w.speed = speed;
+    w.point = point;
+    return status == RR_OK ? find_hardest(region, p, &w, out) : status;
+}
+
+#if RR_FRAMES > 0
+int rr_worst_direction_on(const rr_real q[RR_JOINTS], int frame, const rr_real place[3],
+    rr_real speed, const rr_region *region, const rr_params *p, rr_worst_direction_t *out)
+{
+    if (q == NULL || place == NULL || region == NULL || p == NULL || out == NULL) {
+        return RR_NULL_POINTER;
+    }
+    hardest w;
+    int status = rr_check_positive(&speed, 1);
+    if (status == RR_OK) {
+        status = rr_check_impact(region, p);
+    }
+    if (status == RR_OK) {
+        status = rr_links_on(q, frame, place, p, &w.impact.arrival.links);
+    }
+    w.speed = speed;
+    w.point = 0;
+    return status == RR_OK ? find_hardest(region, p, &w, out) : status;
+}
+#endif

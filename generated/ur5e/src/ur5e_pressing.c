@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: 0BSD */
+/* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
+#include "ur5e_state.h"
+
+/* Until when it is looked, s. */
+#define PRESSED_UNTIL UR5E_R(0.6)
+/* Share of a limit up to which it counts as kept, as for peaks. */
+#define PRESSED_KEPT UR5E_R(0.995)
+/* Halvings of a speed that presses too hard. */
+#define SLOWER 14
+#define LEAST_SPEED UR5E_R(1e-6) /* of a contact point that does not rest, m/s */
+
+/* An impact that is followed until 0.6 s. */
+typedef struct {
+    ur5e_params p;
+    ur5e_impact impact;
+    ur5e_budget budget;
+    ur5e_watch watch;
+    bool bounded; /* some force is a bound */
+} ur5e_pressing;
+
+/*
+ * Largest force from 0.5 s on; less than `matters`, or nothing, if it is proven that none exceeds that. The
+ * largest of numbers where that is not known.
+ */
+static ur5e_real pressed_by(ur5e_pressing *k, ur5e_real speed, ur5e_real matters)
+{
+    ur5e_peak peak;
+    k->watch.matters = matters;
+    k->watch.depth = ur5e_law_depth(k->impact.region, matters);
+    k->watch.late = UR5E_R(0.0);
+    k->watch.before = UR5E_R(0.0);
+    k->watch.last = UR5E_R(0.0);
+    k->budget.watch = &k->watch;
+    ur5e_impact_run(&k->impact, speed, &k->budget, &peak);
+    if (peak.ended) {
+        return k->watch.late;
+    }
+    const ur5e_real bound = k->impact.status == UR5E_OK ? ur5e_bound(&k->impact) : UR5E_R(0.0);
+    k->bounded = true;
+    return bound > UR5E_R(0.0) ? bound*speed : UR5E_REAL_MAX;
+}
+
+/* Whether what presses keeps a limit at a speed, by any motors; false where that is not known. */
+static bool keeps(ur5e_pressing *k, const ur5e_region *region, ur5e_real speed, ur5e_real limit)
+{
+    int first;
+    int last;
+    ur5e_kinds_of_motors(&k->p, &first, &last);
+    bool kept = true;
+    for (int motors = first; motors <= last && kept; ++motors) {
+        kept = ur5e_impact_prepare(region, &k->p, motors, limit, &k->impact) == UR5E_OK
+            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+    }
+    return kept;
+}
+
+static void prepare_pressing(const ur5e_params *p, ur5e_pressing *k)
+{
+    k->p = *p;
+    k->p.horizon = UR5E_FMAX(UR5E_HORIZON(p), PRESSED_UNTIL);
+    k->budget.steps = p->steps;
+    k->budget.rough = false;
+    k->budget.stop_above = UR5E_REAL_MAX;
+    k->budget.watch = NULL;
+    k->bounded = false;
+}
+
+/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+static ur5e_real slow_down(ur5e_pressing *k, const ur5e_region *region, ur5e_real speed, ur5e_real limit)
+{
+    if (keeps(k, region, speed, limit)) {
+        return speed;
+    }
+    ur5e_real low = UR5E_R(0.0);
+    ur5e_real high = speed;
+    for (int i = 0; i < SLOWER; ++i) {
+        const ur5e_real middle = UR5E_R(0.5)*(low + high);
+        k->budget.steps = k->p.steps;
+        if (keeps(k, region, middle, limit)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+int ur5e_pressing_force_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    ur5e_real speed, const ur5e_region *region, const ur5e_params *p, ur5e_real *force)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || force == NULL) {
+        return UR5E_NULL_POINTER;
+    }
+    ur5e_pressing k;
+    int status = ur5e_check_positive(&speed, 1);
+    if (status == UR5E_OK) {
+        status = ur5e_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status != UR5E_OK) {
+        return status;
+    }
+    prepare_pressing(p, &k);
+    ur5e_real found = UR5E_R(0.0);
+    int first;
+    int last;
+    ur5e_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last && region->clamped != 0; ++motors) {
+        status = ur5e_impact_prepare(region, &k.p, motors, -speed, &k.impact);
+        if (status != UR5E_OK) {
+            return status;
+        }
+        found = UR5E_FMAX(found, pressed_by(&k, speed, UR5E_R(0.0)));
+        if (k.impact.status != UR5E_OK) {
+            return k.impact.status;
+        }
+    }
+    if (!(found < UR5E_REAL_MAX)) {
+        return UR5E_UNRESOLVED;
+    }
+    *force = found;
+    return k.bounded ? UR5E_BOUNDED : UR5E_OK;
+}
+
+/* Checks for limits of both kinds. */
+static int check_limits(const ur5e_region *region)
+{
+    const ur5e_real limits[2] = {region->force_limit, region->quasi_static_limit};
+    return ur5e_check_positive(limits, region->clamped != 0 ? 2 : 1);
+}
+
+/* Largest speed up to a cap, where that is positive, that keeps all limits of a region. */
+static int find_allowed(const ur5e_region *region, const ur5e_params *p, ur5e_real cap, ur5e_pressing *k,
+    ur5e_allowed_speed_t *found)
+{
+    ur5e_safe_speed_t safe;
+    const int status = ur5e_find_speed(region, p, region->force_limit, cap, &k->impact, &safe);
+    if (status == UR5E_OK || status == UR5E_BOUNDED) {
+        found->speed = safe.speed;
+        found->force = safe.force;
+        if (region->clamped != 0) {
+            prepare_pressing(p, k);
+            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+        }
+        found->pressed = found->speed < safe.speed ? 1 : 0;
+    }
+    return status;
+}
+
+int ur5e_allowed_speed_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
+    const ur5e_region *region, const ur5e_params *p, ur5e_allowed_speed_t *out)
+{
+    if (q == NULL || n == NULL || region == NULL || p == NULL || out == NULL) {
+        return UR5E_NULL_POINTER;
+    }
+    ur5e_pressing k;
+    ur5e_allowed_speed_t found;
+    int status = check_limits(region);
+    if (status == UR5E_OK) {
+        status = ur5e_approach(q, point, n, region, p, &k.impact);
+    }
+    if (status == UR5E_OK) {
+        status = find_allowed(region, p, UR5E_R(0.0), &k, &found);
+    }
+    if (status != UR5E_OK && status != UR5E_BOUNDED) {
+        return status;
+    }
+    if (!(found.speed > UR5E_R(0.0))) {
+        return UR5E_UNRESOLVED;
+    }
+    *out = found;
+    return status;
+}
+
+/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
+static int set_off(const ur5e_real *q, const ur5e_real *dq, const ur5e_region *region,
+    const ur5e_params *p, ur5e_real rates[UR5E_N], ur5e_pressing *k)
+{
+    int status = ur5e_check_finite(dq, UR5E_JOINTS);
+    if (status == UR5E_OK) {
+        status = ur5e_check_impact(region, p);
+    }
+    for (int i = 0; i < UR5E_N; ++i) {
+        rates[i] = dq[UR5E_INDEPENDENT(i)];
+    }
+    (void)q;
+    return status == UR5E_OK ? ur5e_links(UR5E_LINKS_OF(q, p), &k->impact.arrival.links) : status;
+}
+
+int ur5e_allowed_factor(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    const ur5e_region *region, const ur5e_params *p, ur5e_allowed_factor_t *out)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || out == NULL) {
+        return UR5E_NULL_POINTER;
+    }
+    ur5e_pressing k;
+    ur5e_real rates[UR5E_N];
+    ur5e_allowed_factor_t found = {UR5E_R(1.0), -1, UR5E_R(0.0), UR5E_R(0.0), 0};
+    bool bounded = false;
+    int status = check_limits(region);
+    if (status == UR5E_OK) {
+        status = set_off(q, dq, region, p, rates, &k);
+    }
+    for (int point = 0; point < UR5E_POINTS && status == UR5E_OK; ++point) {
+        const ur5e_real speed = ur5e_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        ur5e_allowed_speed_t allowed = {speed, UR5E_R(0.0), 0};
+        ur5e_impact_forget(&k.impact);
+        if (speed > LEAST_SPEED) {
+            status = find_allowed(region, p, found.factor*speed, &k, &allowed);
+            bounded = bounded || status == UR5E_BOUNDED;
+            status = status == UR5E_BOUNDED ? UR5E_OK : status;
+        }
+        if (speed > LEAST_SPEED && status == UR5E_OK
+            && (allowed.speed < found.factor*speed || found.point < 0)) {
+            found.factor = UR5E_FMIN(found.factor, allowed.speed/speed);
+            found.point = point;
+            found.speed = allowed.speed;
+            found.force = allowed.force;
+            found.pressed = allowed.pressed;
+            status = allowed.speed > UR5E_R(0.0) ? UR5E_OK : UR5E_UNRESOLVED;
+        }
+    }
+    const ur5e_real numbers[3] = {found.factor, found.speed, found.force};
+    if (status == UR5E_OK && !ur5e_all_finite(numbers, 3)) {
+        status = UR5E_SINGULAR;
+    }
+    if (status != UR5E_OK) {
+        return status;
+    }
+    *out = found;
+    return bounded ? UR5E_BOUNDED : UR5E_OK;
+}
+
+int ur5e_may_press(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    ur5e_real limit, const ur5e_region *region, const ur5e_params *p, int *may)
+{
+    if (q == NULL || dq == NULL || region == NULL || p == NULL || may == NULL) {
+        return UR5E_NULL_POINTER;
+    }
+    ur5e_pressing k;
+    ur5e_real rates[UR5E_N];
+    int status = ur5e_check_positive(&limit, 1);
+    if (status == UR5E_OK) {
+        status = set_off(q, dq, region, p, rates, &k);
+    }
+    if (status != UR5E_OK) {
+        return status;
+    }
+    bool kept = true;
+    for (int point = 0; point < UR5E_POINTS && region->clamped != 0 && kept; ++point) {
+        const ur5e_real speed = ur5e_arrive_as_it_moves(point, rates, &k.impact.arrival);
+        ur5e_impact_forget(&k.impact);
+        prepare_pressing(p, &k);
+        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+    }
+    *may = kept ? 0 : 1;
+    return UR5E_OK;
+}

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The exchange of scenarios: searches over the few that matter, until no other is worse."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from softimpact.symbolic.robot.rigid import Array
+
+from .certificate import KEEPS, Hardening, Setting, Worst
+from .failure import SolverFailure
+from .ipopt import FEASIBLE, IN_TURN, Found, Instance, VariableBounds, minimise
+from .minimax import least_worst
+from .nlp import NlpShape, Program, task_numbers
+from .objectives import WorstForce
+from .samples import elsewhere, promising
+from .screening import Screened
+from .solve import Outcome
+from .study import Study
+from .tip_pose import tip_pose
+from .workers import as_completed
+
+ROUNDS = 40
+"""Most exchanges."""
+
+ADDED_IN_AN_EXCHANGE = 4
+"""Scenarios added in an exchange: the worst, each of another pose, point or direction."""
+
+SAMPLED = 3
+"""Searches that begin with hardware at random."""
+
+ALIKE = 1e-3
+"""Share of the cost within which optima over the first scenarios count as one."""
+
+MOST_EXCESS = 1e-5
+"""Share by which a scenario may exceed what the NLP says: Ipopt's tolerance."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExchangeState:
+    """Where an exchange stands."""
+
+    best: Found
+    instance: Instance
+    at: Hardening
+    worst: Worst
+    active: tuple[int, ...]
+    rounds: int
+    unit: float
+
+    @property
+    def bound(self) -> float:
+        """Share of the limit that the NLP says is the least."""
+        return self.best.worst * self.unit
+
+
+@dataclass(frozen=True, eq=False)
+class _Start:
+    """Where a search begins: springs, other values, and postures of all poses."""
+
+    springs: Array
+    others: Array | None
+    postures: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Optimum:
+    """What a search found, over which scenarios, and the postures of all poses."""
+
+    found: Found
+    instance: Instance
+    postures: Array
+
+
+def exchange(
+    setting: Setting,
+    first: Sequence[int],
+    starts: Sequence[tuple[Array, Array | None]],
+    postures: Array,
+    unit: float,
+    *,
+    free: bool,
+    thorough: bool = False,
+) -> ExchangeState:
+    """Add the worst scenarios to an NLP until it holds all that decide.
+
+    Searches from several starts end in several optima. More scenarios only raise their costs, so
+    the one of least cost goes on, and is the answer when no scenario is worse than it says.
+
+    Args:
+        setting: the problem.
+        first: scenarios to begin with.
+        starts: springs and other values from which the first NLP is solved.
+        postures: of each pose, P×n [rad].
+        unit: share of a limit that counts as one.
+        free: whether the postures are sought as well.
+        thorough: whether searches begin with hardware at random, too, where they are quick.
+    """
+    study, given, limits = setting.study, setting.given, setting.limits
+    if study.objective.scales_speed:
+        unit = 1.0  # the limits themselves
+    everything, thorough = study.objective.all_scenarios, thorough and serves(study, free)
+    active = list(range(len(setting.scenarios))) if everything else list(first)
+    bends = setting.shares_of_bounds(Hardening(limits.vector(study.nominal), given))
+    poses = _poses(setting, [int(np.argmax(bends))], active)
+    instance = _instance(setting, active, poses, unit)
+    if thorough:
+        shared = setting.program, instance, limits, given[poses]
+        starts = [*starts, *promising(*shared, SAMPLED)]
+    begun = [_Start(*each, postures) for each in starts]
+    found = _apart(_searched(setting, instance, poses, begun, free))
+    hopped = not thorough
+    for rounds in range(1, ROUNDS + 1):
+        while (best := min(found, key=lambda each: each.found.cost)).instance is not instance:
+            start = _Start(best.found.springs, best.found.others, best.postures)
+            again = _searched(setting, instance, poses, [start], free)
+            found = [*again, *(each for each in found if each is not best)]
+        factors = _factors(setting, best.found)
+        at = Hardening(limits.vector(best.found.springs, best.found.others), best.postures, factors)
+        worst, screened = setting.worst(at)
+        setting.say("exchange", rounds, ROUNDS)
+        state = ExchangeState(best.found, instance, at, worst, tuple(active), rounds, unit)
+        shares = setting.shares_of_bounds(at)
+        too_far = int(np.argmax(shares))
+        allowed = max(state.bound, 1.0) if factors is not None else state.bound
+        worse = [s for s in screened if s.share > allowed * (1 + MOST_EXCESS)]
+        fresh = [] if everything else worst_few(setting, worse, set(active))
+        if shares[too_far] > 1 + KEEPS and too_far not in poses:
+            poses = [*poses, too_far]
+        elif not fresh:
+            more = [] if hopped else _hops(setting, instance, poses, best)
+            found, hopped = [*found, *more], True
+            if min(each.found.cost for each in found) >= best.found.cost * (1 - MOST_EXCESS):
+                break
+            continue
+        active = [*active, *fresh]
+        poses = _poses(setting, poses, active)
+        instance = _instance(setting, active, poses, unit)
+    return state
+
+
+def _hops(setting: Setting, instance: Instance, poses: list[int], best: _Optimum) -> list[_Optimum]:
+    """Return optima that differ from the best in one value, to begin with; postures are held."""
+    v = setting.limits.vector(best.found.springs, best.found.others)
+    shared = setting.program, instance, setting.limits, setting.given[poses]
+    starts = [_Start(*each, setting.given) for each in elsewhere(*shared, v)]
+    return _feasible(setting, instance, poses, starts, free=False)[0]
+
+
+def serves(study: Study, free: bool) -> bool:
+    """Return whether ``least_worst`` solves a study's NLPs."""
+    return not free and study.objective.kind == WorstForce.kind
+
+
+def _apart(optima: Sequence[_Optimum]) -> list[_Optimum]:
+    """Return the best of those whose costs are alike."""
+    kept: list[_Optimum] = []
+    for each in sorted(optima, key=lambda each: each.found.cost):
+        if not kept or each.found.cost - kept[-1].found.cost > ALIKE * abs(each.found.cost):
+            kept.append(each)
+    return kept
+
+
+def _poses(setting: Setting, poses: list[int], active: list[int]) -> list[int]:
+    """Return the poses whose bounds the NLP holds: some, and those of its scenarios."""
+    return list(dict.fromkeys([*poses, *(setting.scenarios[i].pose for i in active)]))
+
+
+def _factors(setting: Setting, best: Found) -> Array | None:
+    """Return the factors on the speed that a search ended with."""
+    if not setting.study.objective.scales_speed:
+        return None
+    return np.asarray(10**best.own)
+
+
+def worst_few(setting: Setting, screened: Sequence[Screened], known: set[int]) -> list[int]:
+    """Return the worst few that are not known, each of another pose, point or direction."""
+    kinds: set[tuple[int, ...]] = set()
+    fresh: list[int] = []
+    for each in screened:
+        kind = setting.scenarios[each.index][:3]
+        if each.index not in known and kind not in kinds and len(fresh) < ADDED_IN_AN_EXCHANGE:
+            kinds.add(kind)
+            fresh.append(each.index)
+    return fresh
+
+
+def _instance(setting: Setting, active: list[int], poses: list[int], unit: float) -> Instance:
+    study, scenarios = setting.study, setting.scenarios
+    places = [scenarios[i] for i in active]
+    tasks = [task_numbers(study, *tip_pose(study.model, scenarios.poses[k].q)) for k in poses]
+    own = [i // len(scenarios.motors) for i in active]
+    numbered = {which: k for k, which in enumerate(dict.fromkeys(own))}
+    shape = NlpShape(
+        len(poses),
+        tuple((poses.index(each.pose), each.point) for each in places),
+        tuple(numbered[which] for which in own),
+        study.objective,
+    )
+    return Instance(
+        shape,
+        np.array(tasks),
+        np.array([scenarios.numbers(each, setting.timing.step) for each in places]),
+        unit * np.array([scenarios.limit(each) for each in places]),
+    )
+
+
+def _searched(
+    setting: Setting, instance: Instance, poses: list[int], starts: Sequence[_Start], free: bool
+) -> list[_Optimum]:
+    """Return what searches from some starts found that keeps the bounds.
+
+    Raises:
+        SolverFailure: nothing.
+    """
+    optima, missed = _feasible(setting, instance, poses, starts, free)
+    if not optima:
+        nearest = min(missed, key=lambda each: each.violation)
+        raise SolverFailure([_as_outcome(nearest, instance, setting)], setting.study)
+    return optima
+
+
+def _feasible(
+    setting: Setting, instance: Instance, poses: list[int], starts: Sequence[_Start], free: bool
+) -> tuple[list[_Optimum], list[Found]]:
+    """Return what searches found that keeps the bounds, and what does not."""
+    shared = setting.program, instance, setting.limits
+    jobs = [
+        setting.pool.submit(search, *shared, s.postures[poses], s.springs, s.others, free)
+        for s in starts
+    ]
+    optima, missed = [], []
+    for job in as_completed(jobs):
+        found = job.result()
+        if found.violation > FEASIBLE:
+            missed.append(found)
+            continue
+        postures = setting.given.copy()
+        if free:
+            postures[poses] = found.postures
+        optima.append(_Optimum(found, instance, postures))
+    return optima, missed
+
+
+def search(
+    program: Program,
+    instance: Instance,
+    limits: VariableBounds,
+    postures: Array,
+    springs: Array,
+    others: Array | None,
+    free: bool,
+) -> Found:
+    """Run ``least_worst`` or, where it does not serve, ``minimise`` in a worker process."""
+    with IN_TURN:
+        if not free and instance.shape.objective.kind == WorstForce.kind:
+            found = least_worst(program, instance, limits, postures, springs, others)
+            if found.success and found.violation <= FEASIBLE:
+                return found
+        return minimise(program, instance, limits, postures, springs, others, free=free)
+
+
+def _as_outcome(found: Found, instance: Instance, setting: Setting) -> Outcome:
+    name = setting.scenarios.poses[0].pose.name
+    status, force = found.status, float((found.shares * instance.units).max())
+    q, k = found.postures[0], found.springs
+    return Outcome(
+        name, "table", status, False, found.iterations, 1, 0.0, q, k, force, found.violation
+    )

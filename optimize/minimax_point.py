@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""All that is known of a design NLP at one choice of the hardware, its postures held."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from softimpact.symbolic.robot.rigid import Array
+
+from .impact_program import ImpactProgram
+from .ipopt import Instance
+from .nlp import Program
+from .peaks import top_weights, tops
+
+TOGETHER = 4
+"""Derivatives come in multiples, so that few maps are made."""
+
+SAME_TOP = 6
+"""Nodes by which a peak may move from one iterate to the next and still be the same."""
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """A design NLP whose postures are held: what is sought is v, the log10 of the hardware."""
+
+    program: Program
+    instance: Instance
+    postures: Array
+
+    def at(self, v: Array) -> Point:
+        """Evaluate forces and bounds."""
+        program, instance, K = self.program, self.instance, len(self.postures)
+        y, by_v = (np.array(a) for a in _loaded(program.hardware)(v))
+        rows, slopes = bound_rows(program, self.postures, np.tile(v, (K, 1)), instance.tasks)
+        felt = np.column_stack(
+            [
+                self.postures[[k for k, _ in instance.shape.impacts]],
+                np.tile(y.T, (len(instance.impacts), 1)),
+            ]
+        )
+        forces = self._forces(felt)
+        return Point(
+            held=self,
+            v=v,
+            rows=rows,
+            slopes=slopes,
+            felt=felt,
+            by_v=by_v,
+            forces=forces,
+            tops=tops(forces),
+        )
+
+    def _forces(self, felt: Array) -> Array:
+        """Return the force of each impact over time, over what counts as one there."""
+        points = np.array([point for _, point in self.instance.shape.impacts])
+        found = np.empty((len(points), self.program.impacts[0].nodes))
+        for point in np.unique(points):
+            at = np.flatnonzero(points == point)
+            forces = _mapped(self.program.impacts[point], "forces", at.size)
+            found[at] = np.array(forces(felt[at].T, self.instance.impacts[at].T)).T
+        return found / self.instance.units[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """An iterate.
+
+    Attributes:
+        held: the NLP.
+        v: log10 of the hardware's values.
+        rows: of the bounds in each posture, at most zero where they are kept, K×R.
+        slopes: their derivatives by v, K×R×V.
+        felt: what each impact feels, a row each.
+        by_v: derivative of what is felt of the hardware by v.
+        forces: shares over time, a row for each impact.
+        tops: nodes and shares of each impact's peaks.
+    """
+
+    held: Held
+    v: Array
+    rows: Array
+    slopes: Array
+    felt: Array
+    by_v: Array
+    forces: Array
+    tops: list[tuple[NDArray[np.int64], Array]]
+    _known: dict[tuple[int, int], Array] = field(default_factory=dict)
+
+    @property
+    def shares(self) -> Array:
+        """The largest peak of each impact."""
+        return np.array([heights.max() for _, heights in self.tops])
+
+    @property
+    def worst(self) -> float:
+        """The largest peak of all."""
+        return float(self.shares.max())
+
+    @property
+    def violation(self) -> float:
+        """By how much the bounds are missed."""
+        return float(self.rows.max(initial=0.0))
+
+    def heights(self, tops: Sequence[tuple[int, int]]) -> Array:
+        """Return the shares of some peaks."""
+        found = [self.tops[impact][1][self.tops[impact][0] == node] for impact, node in tops]
+        return np.concatenate(found)
+
+    def slopes_of(self, tops: Sequence[tuple[int, int]]) -> Array:
+        """Return the derivatives by v of the shares of some peaks, given by impact and node."""
+        impacts, program = self.held.instance.shape.impacts, self.held.program
+        asked = [top for top in tops if top not in self._known]
+        for point in {impacts[impact][1] for impact, _ in asked}:
+            some = [top for top in asked if impacts[top[0]][1] == point]
+            for top, slope in zip(some, self._slopes(program.impacts[point], some), strict=True):
+                self._known[top] = slope
+        return np.array([self._known[top] for top in tops]).reshape(-1, self.v.size)
+
+    def _slopes(self, program: ImpactProgram, tops: Sequence[tuple[int, int]]) -> Array:
+        which = [impact for impact, _ in tops]
+        weights = np.array([top_weights(self.forces[i], node) for i, node in tops])
+        padded = np.resize(np.arange(len(tops)), -(-len(tops) // TOGETHER) * TOGETHER)
+        which_padded = np.array(which)[padded]
+        slope = _mapped(program, "slope", padded.size)
+        by_x = np.array(
+            slope(
+                self.felt[which_padded].T,
+                self.held.instance.impacts[which_padded].T,
+                weights[padded].T,
+            )
+        ).reshape(padded.size, -1)[: len(tops)]
+        n = self.held.program.n
+        by_felt = by_x[:, n : n + len(self.by_v)]
+        return np.asarray(by_felt @ self.by_v / self.held.instance.units[which][:, None])
+
+    def same_top(self, impact: int, node: int) -> tuple[int, float] | None:
+        """Return node and share of the peak that was at some node in another iterate."""
+        nodes, heights = self.tops[impact]
+        nearest = int(np.argmin(abs(nodes - node)))
+        if abs(nodes[nearest] - node) > SAME_TOP:
+            return None
+        return int(nodes[nearest]), float(heights[nearest])
+
+
+def bound_rows(program: Program, postures: Array, v: Array, tasks: Array) -> tuple[Array, Array]:
+    """Return the rows of the bounds, m×R, and their derivatives by v, m×R×V.
+
+    Args:
+        program: the functions.
+        postures: m×n [rad].
+        v: log10 of the hardware's values, m×V.
+        tasks: numbers of each posture's task, m×size.
+    """
+    count, x = len(postures), np.column_stack([postures, v])
+    rows, by_x = _tasks(program.task, count)(x.T, tasks.T)
+    slopes = np.array(by_x).reshape(program.rows, count, -1)[program.held :, :, program.n :]
+    return np.array(rows)[program.held :].T, slopes.transpose(1, 0, 2)
+
+
+@lru_cache(maxsize=16)
+def _loaded(serialised: str) -> ca.Function:
+    return ca.Function.deserialize(serialised)
+
+
+@lru_cache(maxsize=64)
+def _tasks(serialised: str, count: int) -> ca.Function:
+    return _loaded(serialised).map(count)
+
+
+@lru_cache(maxsize=64)
+def _mapped(program: ImpactProgram, name: str, count: int) -> ca.Function:
+    return program[name].map(count)
