@@ -312,13 +312,24 @@ static void see(state *s, double f, double h)
 }
 
 /*
- * Whether the damper follows the skin within a step, so that d' may be a difference of second order
- * and its force c s' = c (x - b - d)' is that of the step's end.
+ * Whether the damper follows the skin within a step, so that d' may be a backward difference and its
+ * force c s' = c (x - b - d)' is that of the step's end.
  */
-static int is_quick(const impact *p, const state *s, double h)
+static int is_quick(const impact *p, double root, double h)
 {
-    const double skin = 1.5*p->skin*sqrt(s->depth);
-    return p->damping > 0.0 && s->past > 1 && h*(p->stiffness + skin) > p->damping;
+    return p->damping > 0.0 && h*(p->stiffness + 1.5*p->skin*root) > p->damping;
+}
+
+/* d' = lag d + memory at a step's end, of second order but for the first steps in contact. */
+static void rate_of_depth(const state *s, double h, double *lag, double *memory)
+{
+    const double ratio = s->past > 0 ? h/s->h : 1.0;
+    *lag = 1.0/h;
+    *memory = -s->depth/h;
+    if (s->past > 1) {
+        *lag = (1.0 + 2.0*ratio)/((1.0 + ratio)*h);
+        *memory = (ratio*ratio/(1.0 + ratio)*s->shallow - (1.0 + ratio)*s->depth)/h;
+    }
 }
 
 /* A step, or none if it must be shorter. */
@@ -354,21 +365,20 @@ static void step(const impact *p, const prepared *linear, double speed, state *s
     gap += effect(&l->gap, &known);
     closing += effect(&l->closing, &known);
     const double yields = -effect(&l->gap, &share);
-    double soft;
-    double open;
-    const int quick = is_quick(p, s, h);
+    double open = gap - l->fade*s->bent - effect(&l->bent, &known);
+    double soft = yields + effect(&l->bent, &share);
+    double root = root_of(p->skin, open, soft, sqrt(s->depth));
+    const int quick = is_quick(p, s->past > 1 ? sqrt(s->depth) : root, h);
     if (quick) {
-        const double lag = (1.0 + 2.0*ratio)/((1.0 + ratio)*h);
-        const double memory = (ratio*ratio/(1.0 + ratio)*s->shallow - (1.0 + ratio)*s->depth)/h;
+        double lag;
+        double memory;
+        rate_of_depth(s, h, &lag, &memory);
         const double hold = p->stiffness + p->damping*lag;
         const double slows = -effect(&l->closing, &share);
         open = (p->stiffness*gap + p->damping*(closing - memory))/hold;
         soft = (1.0 + p->stiffness*yields + p->damping*slows)/hold;
-    } else {
-        open = gap - l->fade*s->bent - effect(&l->bent, &known);
-        soft = yields + effect(&l->bent, &share);
+        root = root_of(p->skin, open, soft, sqrt(s->depth));
     }
-    const double root = root_of(p->skin, open, soft, sqrt(s->depth));
     const double f = p->skin*root*root*root;
     const double straight = s->past > 0 ? s->now + (s->now - s->before)*ratio : s->now;
     const double off = fabs(f - straight)*(s->past > 0 ? ratio/(1.0 + ratio) : 0.5);
