@@ -2,9 +2,6 @@
 /* What is left of an impact of panda_ when its motors are let go, in modes of loose motors. */
 #include "panda_state.h"
 
-/* Levels by which the first step is shorter than the last: the force may turn within it. */
-#define AFTER 4
-
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const panda_state *s, int size, panda_real *place, panda_real *rate)
 {
@@ -130,18 +127,13 @@ void panda_release(panda_state *s)
         s->amplitude[i] = a[i];
         s->rate[i] = b[i];
     }
-    const panda_real h = s->phase->level[s->level].h;
     const panda_real more = next->compliance - s->phase->compliance; /* of modes that stand from now on */
     s->x += more*s->f;
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
     s->phase = next;
     s->drifted = PANDA_R(0.0);
-    s->level = 0;
-    for (int k = 0; k < PANDA_LEVELS - 1; ++k) { /* the longest step that is no longer than the last */
-        s->level = next->level[k].h > PANDA_R(1.01)*h ? k + 1 : s->level;
-    }
-    s->level = s->level + AFTER < PANDA_LEVELS ? s->level + AFTER : PANDA_LEVELS - 1;
+    s->level = PANDA_LEVELS - 1; /* the force may turn at once, and other modes stand */
     s->past = s->past > 1 ? 1 : s->past;
     s->even = 0;
     s->ticks = next->steps*(1 << (PANDA_LEVELS - 1));

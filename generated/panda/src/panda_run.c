@@ -3,7 +3,7 @@
 #include "panda_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS PANDA_R(0.03)
+#define BENDS PANDA_R(0.02)
 #define BENDS_ROUGH PANDA_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT PANDA_R(0.22)
@@ -230,23 +230,24 @@ static bool run_phase(panda_state *s, panda_budget *budget, panda_peak *peak)
 void panda_impact_run(panda_impact *impact, panda_real speed, panda_budget *budget, panda_peak *peak)
 {
     panda_state s;
-    start(impact, speed, budget->rough, &s);
     peak->force = PANDA_R(0.0);
     peak->time = PANDA_R(0.0);
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
-    for (int k = impact->first; k <= impact->last && !peak->ended; ++k) {
-        if (k > impact->first) {
-            panda_impact_let_go(impact);
-            if (impact->status != PANDA_OK) {
-                return;
-            }
-            panda_release(&s);
-        }
-        if (impact->phase[k].blurred || !run_phase(&s, budget, peak)) {
+    budget->steps -= PANDA_STEPS_OF_RUN;
+    if (budget->steps <= 0 || impact->phase[impact->first].blurred) {
+        return;
+    }
+    start(impact, speed, budget->rough, &s);
+    bool goes_on = run_phase(&s, budget, peak);
+    if (goes_on && !peak->ended && impact->last > impact->first) {
+        panda_impact_let_go(impact);
+        if (impact->status != PANDA_OK || impact->phase[impact->last].blurred) {
             return;
         }
+        panda_release(&s);
+        goes_on = run_phase(&s, budget, peak);
     }
-    peak->ended = true;
+    peak->ended = goes_on;
 }

@@ -131,6 +131,12 @@ static void chase(int first, int last, int size, panda_real *d, panda_real *e, p
     }
 }
 
+/* Whether an entry beside the diagonal is more than none. */
+static bool counts(int row, const panda_real *d, const panda_real *e, panda_real noise)
+{
+    return e[row]*e[row] > noise + SMALL*PANDA_FABS(d[row]*d[row + 1]);
+}
+
 bool panda_spectrum(int size, panda_matrix A, panda_real *values, panda_matrix vectors)
 {
     panda_real e[PANDA_SYSTEM];
@@ -141,21 +147,16 @@ bool panda_spectrum(int size, panda_matrix A, panda_real *values, panda_matrix v
     }
     const panda_real noise = PANDA_EPSILON*PANDA_EPSILON*all*all;
     int last = size - 1;
-    for (int step = 0; step < MOST_STEPS*size; ++step) {
-        int first = last;
-        while (first > 0) {
-            const panda_real square = e[first - 1]*e[first - 1];
-            if (square > noise + SMALL*PANDA_FABS(values[first - 1]*values[first])) {
-                --first;
-            } else if (first == last) {
-                --last;
-                first = last;
-            } else {
-                break;
-            }
+    for (int step = 0; step <= MOST_STEPS*size; ++step) {
+        while (last > 0 && !counts(last - 1, values, e, noise)) {
+            --last;
         }
         if (last == 0) {
             return true;
+        }
+        int first = last - 1;
+        while (first > 0 && counts(first - 1, values, e, noise)) {
+            --first;
         }
         chase(first, last, size, values, e, vectors);
     }

@@ -107,6 +107,9 @@ typedef struct {
 
 typedef struct rmin_watch rmin_watch;
 
+/* Steps of the budget that a run takes before its first: it is prepared, and motors are let go. */
+#define RMIN_STEPS_OF_RUN 6
+
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */

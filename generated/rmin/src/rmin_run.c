@@ -3,7 +3,7 @@
 #include "rmin_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS RMIN_R(0.03)
+#define BENDS RMIN_R(0.02)
 #define BENDS_ROUGH RMIN_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT RMIN_R(0.22)
@@ -230,23 +230,24 @@ static bool run_phase(rmin_state *s, rmin_budget *budget, rmin_peak *peak)
 void rmin_impact_run(rmin_impact *impact, rmin_real speed, rmin_budget *budget, rmin_peak *peak)
 {
     rmin_state s;
-    start(impact, speed, budget->rough, &s);
     peak->force = RMIN_R(0.0);
     peak->time = RMIN_R(0.0);
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
-    for (int k = impact->first; k <= impact->last && !peak->ended; ++k) {
-        if (k > impact->first) {
-            rmin_impact_let_go(impact);
-            if (impact->status != RMIN_OK) {
-                return;
-            }
-            rmin_release(&s);
-        }
-        if (impact->phase[k].blurred || !run_phase(&s, budget, peak)) {
+    budget->steps -= RMIN_STEPS_OF_RUN;
+    if (budget->steps <= 0 || impact->phase[impact->first].blurred) {
+        return;
+    }
+    start(impact, speed, budget->rough, &s);
+    bool goes_on = run_phase(&s, budget, peak);
+    if (goes_on && !peak->ended && impact->last > impact->first) {
+        rmin_impact_let_go(impact);
+        if (impact->status != RMIN_OK || impact->phase[impact->last].blurred) {
             return;
         }
+        rmin_release(&s);
+        goes_on = run_phase(&s, budget, peak);
     }
-    peak->ended = true;
+    peak->ended = goes_on;
 }

@@ -131,6 +131,12 @@ static void chase(int first, int last, int size, rmin_real *d, rmin_real *e, rmi
     }
 }
 
+/* Whether an entry beside the diagonal is more than none. */
+static bool counts(int row, const rmin_real *d, const rmin_real *e, rmin_real noise)
+{
+    return e[row]*e[row] > noise + SMALL*RMIN_FABS(d[row]*d[row + 1]);
+}
+
 bool rmin_spectrum(int size, rmin_matrix A, rmin_real *values, rmin_matrix vectors)
 {
     rmin_real e[RMIN_SYSTEM];
@@ -141,21 +147,16 @@ bool rmin_spectrum(int size, rmin_matrix A, rmin_real *values, rmin_matrix vecto
     }
     const rmin_real noise = RMIN_EPSILON*RMIN_EPSILON*all*all;
     int last = size - 1;
-    for (int step = 0; step < MOST_STEPS*size; ++step) {
-        int first = last;
-        while (first > 0) {
-            const rmin_real square = e[first - 1]*e[first - 1];
-            if (square > noise + SMALL*RMIN_FABS(values[first - 1]*values[first])) {
-                --first;
-            } else if (first == last) {
-                --last;
-                first = last;
-            } else {
-                break;
-            }
+    for (int step = 0; step <= MOST_STEPS*size; ++step) {
+        while (last > 0 && !counts(last - 1, values, e, noise)) {
+            --last;
         }
         if (last == 0) {
             return true;
+        }
+        int first = last - 1;
+        while (first > 0 && counts(first - 1, values, e, noise)) {
+            --first;
         }
         chase(first, last, size, values, e, vectors);
     }

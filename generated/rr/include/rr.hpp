@@ -241,7 +241,7 @@ inline result<rr_peak_force_t> peak_force_at(
 
 /* Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the
  * speed
- * that is returned is 0.5 to 2 % below the limit, or jumps over it with little more speed.
+ * that is returned is 1 to 2.3 % below the limit, or jumps over it with little more speed.
  * limit: N, > 0. RR_BOUNDED: the speed is safe, but slower ones only were looked at, or none. */
 inline result<rr_safe_speed_t> safe_speed(
     const vector<4> &q,
@@ -393,14 +393,14 @@ inline result<rr_allowed_factor_t> allowed_factor(
 /* Whether a contact point that moves as joints do might press on a clamped body harder than a
  * limit from
  * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
-inline result<rr_int> may_press(
+inline result<int> may_press(
     const vector<4> &q,
     const vector<4> &dq,
     real limit,
     const rr_region &region,
     const rr_params &p) noexcept
 {
-    result<rr_int> found;
+    result<int> found;
     found.status = rr_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
     return found;
 }

@@ -2,9 +2,6 @@
 /* What is left of an impact of rr_ when its motors are let go, in modes of loose motors. */
 #include "rr_state.h"
 
-/* Levels by which the first step is shorter than the last: the force may turn within it. */
-#define AFTER 4
-
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const rr_state *s, int size, rr_real *place, rr_real *rate)
 {
@@ -130,18 +127,13 @@ void rr_release(rr_state *s)
         s->amplitude[i] = a[i];
         s->rate[i] = b[i];
     }
-    const rr_real h = s->phase->level[s->level].h;
     const rr_real more = next->compliance - s->phase->compliance; /* of modes that stand from now on */
     s->x += more*s->f;
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
     s->phase = next;
     s->drifted = RR_R(0.0);
-    s->level = 0;
-    for (int k = 0; k < RR_LEVELS - 1; ++k) { /* the longest step that is no longer than the last */
-        s->level = next->level[k].h > RR_R(1.01)*h ? k + 1 : s->level;
-    }
-    s->level = s->level + AFTER < RR_LEVELS ? s->level + AFTER : RR_LEVELS - 1;
+    s->level = RR_LEVELS - 1; /* the force may turn at once, and other modes stand */
     s->past = s->past > 1 ? 1 : s->past;
     s->even = 0;
     s->ticks = next->steps*(1 << (RR_LEVELS - 1));

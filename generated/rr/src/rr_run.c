@@ -3,7 +3,7 @@
 #include "rr_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS RR_R(0.03)
+#define BENDS RR_R(0.02)
 #define BENDS_ROUGH RR_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT RR_R(0.22)
@@ -230,23 +230,24 @@ static bool run_phase(rr_state *s, rr_budget *budget, rr_peak *peak)
 void rr_impact_run(rr_impact *impact, rr_real speed, rr_budget *budget, rr_peak *peak)
 {
     rr_state s;
-    start(impact, speed, budget->rough, &s);
     peak->force = RR_R(0.0);
     peak->time = RR_R(0.0);
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
-    for (int k = impact->first; k <= impact->last && !peak->ended; ++k) {
-        if (k > impact->first) {
-            rr_impact_let_go(impact);
-            if (impact->status != RR_OK) {
-                return;
-            }
-            rr_release(&s);
-        }
-        if (impact->phase[k].blurred || !run_phase(&s, budget, peak)) {
+    budget->steps -= RR_STEPS_OF_RUN;
+    if (budget->steps <= 0 || impact->phase[impact->first].blurred) {
+        return;
+    }
+    start(impact, speed, budget->rough, &s);
+    bool goes_on = run_phase(&s, budget, peak);
+    if (goes_on && !peak->ended && impact->last > impact->first) {
+        rr_impact_let_go(impact);
+        if (impact->status != RR_OK || impact->phase[impact->last].blurred) {
             return;
         }
+        rr_release(&s);
+        goes_on = run_phase(&s, budget, peak);
     }
-    peak->ended = true;
+    peak->ended = goes_on;
 }

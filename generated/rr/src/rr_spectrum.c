@@ -131,6 +131,12 @@ static void chase(int first, int last, int size, rr_real *d, rr_real *e, rr_matr
     }
 }
 
+/* Whether an entry beside the diagonal is more than none. */
+static bool counts(int row, const rr_real *d, const rr_real *e, rr_real noise)
+{
+    return e[row]*e[row] > noise + SMALL*RR_FABS(d[row]*d[row + 1]);
+}
+
 bool rr_spectrum(int size, rr_matrix A, rr_real *values, rr_matrix vectors)
 {
     rr_real e[RR_SYSTEM];
@@ -141,21 +147,16 @@ bool rr_spectrum(int size, rr_matrix A, rr_real *values, rr_matrix vectors)
     }
     const rr_real noise = RR_EPSILON*RR_EPSILON*all*all;
     int last = size - 1;
-    for (int step = 0; step < MOST_STEPS*size; ++step) {
-        int first = last;
-        while (first > 0) {
-            const rr_real square = e[first - 1]*e[first - 1];
-            if (square > noise + SMALL*RR_FABS(values[first - 1]*values[first])) {
-                --first;
-            } else if (first == last) {
-                --last;
-                first = last;
-            } else {
-                break;
-            }
+    for (int step = 0; step <= MOST_STEPS*size; ++step) {
+        while (last > 0 && !counts(last - 1, values, e, noise)) {
+            --last;
         }
         if (last == 0) {
             return true;
+        }
+        int first = last - 1;
+        while (first > 0 && counts(first - 1, values, e, noise)) {
+            --first;
         }
         chase(first, last, size, values, e, vectors);
     }

@@ -347,7 +347,7 @@ inline result<ur5e_peak_force_t> peak_force_at(
 
 /* Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the
  * speed
- * that is returned is 0.5 to 2 % below the limit, or jumps over it with little more speed.
+ * that is returned is 1 to 2.3 % below the limit, or jumps over it with little more speed.
  * limit: N, > 0. UR5E_BOUNDED: the speed is safe, but slower ones only were looked at, or none. */
 inline result<ur5e_safe_speed_t> safe_speed(
     const vector<6> &q,
@@ -499,14 +499,14 @@ inline result<ur5e_allowed_factor_t> allowed_factor(
 /* Whether a contact point that moves as joints do might press on a clamped body harder than a
  * limit from
  * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
-inline result<ur5e_int> may_press(
+inline result<int> may_press(
     const vector<6> &q,
     const vector<6> &dq,
     real limit,
     const ur5e_region &region,
     const ur5e_params &p) noexcept
 {
-    result<ur5e_int> found;
+    result<int> found;
     found.status = ur5e_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
     return found;
 }

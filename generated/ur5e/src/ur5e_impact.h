@@ -107,6 +107,9 @@ typedef struct {
 
 typedef struct ur5e_watch ur5e_watch;
 
+/* Steps of the budget that a run takes before its first: it is prepared, and motors are let go. */
+#define UR5E_STEPS_OF_RUN 6
+
 /* What may be spent, and how exactly. */
 typedef struct {
     int steps; /* that are left */

@@ -3,7 +3,7 @@
 #include "ur5e_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS UR5E_R(0.03)
+#define BENDS UR5E_R(0.02)
 #define BENDS_ROUGH UR5E_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT UR5E_R(0.22)
@@ -230,23 +230,24 @@ static bool run_phase(ur5e_state *s, ur5e_budget *budget, ur5e_peak *peak)
 void ur5e_impact_run(ur5e_impact *impact, ur5e_real speed, ur5e_budget *budget, ur5e_peak *peak)
 {
     ur5e_state s;
-    start(impact, speed, budget->rough, &s);
     peak->force = UR5E_R(0.0);
     peak->time = UR5E_R(0.0);
     peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
-    for (int k = impact->first; k <= impact->last && !peak->ended; ++k) {
-        if (k > impact->first) {
-            ur5e_impact_let_go(impact);
-            if (impact->status != UR5E_OK) {
-                return;
-            }
-            ur5e_release(&s);
-        }
-        if (impact->phase[k].blurred || !run_phase(&s, budget, peak)) {
+    budget->steps -= UR5E_STEPS_OF_RUN;
+    if (budget->steps <= 0 || impact->phase[impact->first].blurred) {
+        return;
+    }
+    start(impact, speed, budget->rough, &s);
+    bool goes_on = run_phase(&s, budget, peak);
+    if (goes_on && !peak->ended && impact->last > impact->first) {
+        ur5e_impact_let_go(impact);
+        if (impact->status != UR5E_OK || impact->phase[impact->last].blurred) {
             return;
         }
+        ur5e_release(&s);
+        goes_on = run_phase(&s, budget, peak);
     }
-    peak->ended = true;
+    peak->ended = goes_on;
 }

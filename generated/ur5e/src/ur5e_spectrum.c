@@ -131,6 +131,12 @@ static void chase(int first, int last, int size, ur5e_real *d, ur5e_real *e, ur5
     }
 }
 
+/* Whether an entry beside the diagonal is more than none. */
+static bool counts(int row, const ur5e_real *d, const ur5e_real *e, ur5e_real noise)
+{
+    return e[row]*e[row] > noise + SMALL*UR5E_FABS(d[row]*d[row + 1]);
+}
+
 bool ur5e_spectrum(int size, ur5e_matrix A, ur5e_real *values, ur5e_matrix vectors)
 {
     ur5e_real e[UR5E_SYSTEM];
@@ -141,21 +147,16 @@ bool ur5e_spectrum(int size, ur5e_matrix A, ur5e_real *values, ur5e_matrix vecto
     }
     const ur5e_real noise = UR5E_EPSILON*UR5E_EPSILON*all*all;
     int last = size - 1;
-    for (int step = 0; step < MOST_STEPS*size; ++step) {
-        int first = last;
-        while (first > 0) {
-            const ur5e_real square = e[first - 1]*e[first - 1];
-            if (square > noise + SMALL*UR5E_FABS(values[first - 1]*values[first])) {
-                --first;
-            } else if (first == last) {
-                --last;
-                first = last;
-            } else {
-                break;
-            }
+    for (int step = 0; step <= MOST_STEPS*size; ++step) {
+        while (last > 0 && !counts(last - 1, values, e, noise)) {
+            --last;
         }
         if (last == 0) {
             return true;
+        }
+        int first = last - 1;
+        while (first > 0 && counts(first - 1, values, e, noise)) {
+            --first;
         }
         chase(first, last, size, values, e, vectors);
     }
