@@ -221,7 +221,7 @@ def design(
                 outcomes[key] = better(outcomes[key], outcome)
     solved = [outcome for outcome in outcomes.values() if outcome.solved]
     if not solved:
-        raise SolverFailure(list(outcomes.values()))
+        raise SolverFailure(list(outcomes.values()), study)
     results = tuple(
         PoseResult(
             pose,
@@ -318,12 +318,12 @@ def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None
     """Begin with the stiffest and with the softest springs, which lead to different local optima.
 
     Where springs were sought for the posture as given, a free one begins with these, so that
-    freedom does not end in a worse optimum; who lags behind begins again. If all fail, the task's
-    own posture is the last resort.
+    freedom does not end in a worse optimum; who lags behind begins again, and a single pose, which
+    lags behind none, with all. If all fail, the task's own posture is the last resort.
     """
     springs = [study.upper, study.lower]
     if table is not None:
-        springs = [table.springs]
+        springs = [table.springs, *([] if len(study.poses) > 1 else springs)]
     points = tuple((candidate.q, each) for each in springs)
     fallbacks = ((study.task_pose.q, study.upper),) if mode == "free" else ()
     return Start(candidate.pose.name, mode, points, fallbacks)

@@ -219,7 +219,7 @@ def _searched(
     optima, missed = _feasible(setting, instance, poses, starts, free)
     if not optima:
         nearest = min(missed, key=lambda each: each.violation)
-        raise SolverFailure([_as_outcome(nearest, setting)])
+        raise SolverFailure([_as_outcome(nearest, instance, setting)], setting.study)
     return optima
 
 
@@ -263,9 +263,9 @@ def search(
         return minimise(program, instance, limits, postures, springs, others, free=free)
 
 
-def _as_outcome(found: Found, setting: Setting) -> Outcome:
+def _as_outcome(found: Found, instance: Instance, setting: Setting) -> Outcome:
     name = setting.scenarios.poses[0].pose.name
-    status, force = found.status, float(found.worst)
+    status, force = found.status, float((found.shares * instance.units).max())
     q, k = found.postures[0], found.springs
     return Outcome(
         name, "table", status, False, found.iterations, 1, 0.0, q, k, force, found.violation

@@ -5,10 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from .bounds import Bound
+from .evaluation import kept
 from .ipopt import FEASIBLE
 from .solve import Outcome, preference
 from .stiffest import Stiffest
+from .study import Study
+from .tip_pose import tip_pose, tip_pose_error
 from .units import figure_in_words
 
 
@@ -22,12 +27,14 @@ class SolverFailure(Exception):
 
     exit_code = 3
 
-    def __init__(self, outcomes: Sequence[Outcome]) -> None:
+    def __init__(self, outcomes: Sequence[Outcome], study: Study | None = None) -> None:
+        """Return the failure of some searches; of a study, what the best of them misses is told."""
         self.outcomes = tuple(outcomes)
         self.best = min(outcomes, key=preference)
         statuses = ", ".join(self.statuses)
         super().__init__(
-            f"none of {len(outcomes)} starts was solved (Ipopt: {statuses}); {_in_words(self.best)}"
+            f"none of {len(outcomes)} starts was solved (Ipopt: {statuses}); "
+            f"{_in_words(self.best, study)}"
         )
 
     @property
@@ -110,17 +117,32 @@ class Infeasible(Exception):
         )
 
 
-def _in_words(best: Outcome) -> str:
+def _in_words(best: Outcome, study: Study | None) -> str:
     angles = ", ".join(f"{angle:.4f}" for angle in best.q)
     springs = ", ".join(f"{k:.0f}" for k in best.springs)
     found = f"{best.force:.1f} N at q = [{angles}] rad with k_s = [{springs}] N·m/rad"
     if best.violation <= FEASIBLE:
         return f"the best feasible point, from {best.name}, has a peak force of {found}"
-    return (
-        f"no point found is feasible: the nearest, from {best.name}, violates a constraint by "
-        f"{best.violation:.2g} (m or rad of the tip's pose, or the square of deflection over bound "
-        f"less 1) and has {found}"
-    )
+    missed = f"misses by a share of {best.violation:.2g}" if study is None else _missed(best, study)
+    return f"no point found is feasible: the nearest, from {best.name}, {missed} and has {found}"
+
+
+def _missed(best: Outcome, study: Study) -> str:
+    """Return what an outcome misses: each bound in its own unit, and the tip's pose."""
+    others = best.others if best.others.size else None
+    missed = [
+        f"has {figure_in_words(each.figure, each.unit)} of {each.name}, at {each.sense} "
+        f"{figure_in_words(each.limit, each.unit)},"
+        for each in kept(study, best.q, best.springs, others)
+        if each.share > 1 + FEASIBLE
+    ]
+    if best.mode == "free":
+        task = tip_pose(study.model, study.task_pose.q)
+        error = np.array(tip_pose_error(study.model, best.q, *task)).ravel()
+        away, turned = np.linalg.norm(error[:3]), np.linalg.norm(error[3:])
+        if max(away, turned) > FEASIBLE:
+            missed.append(f"holds the tip {1e3 * away:.3g} mm and {turned:.2g} rad off the task,")
+    return " ".join(missed) or f"misses by a share of {best.violation:.2g}"
 
 
 class Unavailable(Exception):

@@ -15,9 +15,11 @@ from pydantic import ValidationError
 from softimpact.robots import study_path
 from softimpact.symbolic import InvalidValue
 
+from .axes import asked_axes
 from .poses import candidates
 from .study import build_study, robot_of_study
 from .study_file import Fault, RobotSection, StudyFile, faults_of, read_toml
+from .study_scenarios import scenarios_of
 from .timing import require_time_steps
 
 ROUNDS = 100
@@ -103,10 +105,17 @@ def _faults(content: dict[str, Any], source: Path) -> list[Fault]:
 
 
 def _of_search(content: dict[str, Any], source: Path) -> list[Fault]:
-    """Look at what a study that can be built asks of the search: its poses and its time steps."""
+    """Look at what a study that can be built asks of the search.
+
+    Its poses and time steps, its scenarios, and what its front trades.
+    """
     try:
         study = build_study(StudyFile.model_validate(deepcopy(content)), source)
         require_time_steps(study, [pose.q for pose in candidates(study)])
+        if study.scenarios is not None:
+            scenarios_of(study)
+        if study.levels.objectives is not None:
+            asked_axes(study, study.levels.objectives).study(study)
     except InvalidValue as error:
         return [(_place(content, error.field.removeprefix(f"{source}: ")), error.reason)]
     return []

@@ -61,7 +61,9 @@ class Trade:
             _, screened = setting.worst(Hardening(limits.vector(study.nominal), postures))
             active = worst_few(setting, screened, set())
             try:
-                state = exchange(setting, active, starts, postures, self.unit, free=self.free)
+                state = exchange(
+                    setting, active, starts, postures, self.unit, free=self.free, thorough=True
+                )
             except SolverFailure as failure:
                 failed = failure
                 continue

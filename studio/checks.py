@@ -39,13 +39,13 @@ class Check:
     full: float
 
 
-def doubts(optimum: float, *simulated: float) -> list[str]:
+def doubts(optimum: float, *simulated: float, of: str = "the winner") -> list[str]:
     """Return a line if simulation finds a force larger than an optimum's by over ``AGREED``."""
     largest = max(simulated)
     if largest <= (1 + AGREED) * optimum:
         return []
     return [
-        f"simulation finds {largest:.1f} N for the winner, where the optimum has {optimum:.1f} N: "
+        f"simulation finds {largest:.1f} N for {of}, where the optimum has {optimum:.1f} N: "
         "count on the larger; limits, prices and gains rest on the smaller"
     ]
 

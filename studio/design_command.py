@@ -97,6 +97,8 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
     from softimpact.optimize.study_scenarios import scenarios_of
 
     from .design_report import GENERATOR
+    from .figures.robust import figure_of_robust_design
+    from .figures.style import save
     from .output import failures_as_json, print_json, print_warnings, say, write_json
     from .progress import optimiser_bar
     from .results_folder import RESULTS, replaced_folder, running
@@ -114,6 +116,7 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
         record = robust_record(found)
         with replaced_folder(folder, GENERATOR) as fresh:
             write_json(fresh / RESULTS, record)
+            save(figure_of_robust_design(found), fresh / "design.png")
             _write_package(designed_model(found), fresh)
     if page is not None:
         from .report.design_pages import write_robust_report
@@ -125,7 +128,7 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
         return
     for line in robust_in_words(found):
         say(line)
-    say(f"Results and the C package: {folder}")
+    say(f"Results, figure and the C package: {folder}")
 
 
 def _modes(name: str, study: Study) -> tuple[Mode, ...]:

@@ -10,7 +10,6 @@ from softimpact.optimize.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers_in_words import answers_in_words
-from .checks import doubts
 from .design_report import (
     DesignReport,
     RankedPose,
@@ -155,7 +154,6 @@ def _winner(report: DesignReport) -> list[str]:
         f"Check of the winner: linearised by SUNDIALS {check.linearised:.2f} N "
         f"({100 * (check.linearised / check.nlp - 1):+.3f} % from the optimum), "
         f"nonlinear {check.full:.2f} N ({100 * (check.full / check.nlp - 1):+.2f} %)",
-        *(f"warning: {line}" for line in doubts(check.nlp, check.linearised, check.full)),
     ]
 
 

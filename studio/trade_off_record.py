@@ -11,9 +11,10 @@ from softimpact.optimize.answers import by_name
 from softimpact.optimize.trade_off import TradePoint
 
 from .cautions import study_warnings
+from .checks import doubts
 from .design_report import inputs, versions
 from .pareto_record import GENERATOR
-from .robust_report import scenario_record
+from .robust_report import ROUNDING, scenario_record
 from .trade_off_report import TradeOffReport, broken_before
 
 FORM = "objectives"
@@ -29,7 +30,7 @@ def trade_off_record(report: TradeOffReport) -> dict[str, Any]:
         "versions": versions(),
         "study": {**inputs(study), "pareto": study.levels.model_dump()},
         "peak_definition": "peak",
-        "warnings": study_warnings(study),
+        "warnings": [*study_warnings(study), *_doubts(report)],
         "objectives": [
             {
                 "kind": axis.kind,
@@ -64,6 +65,14 @@ def trade_off_record(report: TradeOffReport) -> dict[str, Any]:
     }
 
 
+def _doubts(report: TradeOffReport) -> list[str]:
+    """Return a line for each design whose force simulation contradicts on the unsafe side."""
+    pairs = enumerate(zip(report.points, report.checks, strict=True), 1)
+    return [
+        line for i, (p, check) in pairs for line in doubts(p.worst.force, check, of=f"design {i}")
+    ]
+
+
 def _values(report: TradeOffReport, values: tuple[float, ...]) -> dict[str, float]:
     return dict(zip((view.kind for view in report.views), values, strict=True))
 
@@ -81,7 +90,7 @@ def _point(report: TradeOffReport, point: TradePoint, check: float, knee: bool) 
         "worst_force": worst.force,
         "worst_share": worst.share * point.scenarios.allowed,
         "worst_scenario": scenario_record(point, worst),
-        "meets_limit": worst.share * point.scenarios.allowed <= 1,
+        "meets_limit": worst.share * point.scenarios.allowed <= 1 + ROUNDING,
         "check": {"nlp": worst.force, "linearised": check},
         "bounds": worst.bounds,
         "indifferent": by_name(study, point.indifferent),
@@ -112,7 +121,7 @@ def write_points(report: TradeOffReport, path: Path) -> None:
                     *point.values,
                     str(i == report.found.knee).lower(),
                     *(point.worst.force, share, check),
-                    str(share <= 1).lower(),
+                    str(share <= 1 + ROUNDING).lower(),
                     point.status,
                     *point.springs.tolist(),
                     *point.others.tolist(),

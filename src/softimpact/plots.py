@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from softimpact.optimize import Design, Pareto
+from softimpact.optimize import Design, Pareto, TradeOff
 from softimpact.simulate import Assessment, Assessments, ImpactHistory
 from softimpact.simulate.assessments import AssessedImpact
 from softimpact.studio.figures.style import (
@@ -51,7 +51,7 @@ def plot(result: Any, axes: Any = None) -> Any:
 
     Args:
         result: of ``analyse``, ``simulate_impact``, ``assess_impact``, ``assess_impacts``,
-            ``design`` or ``pareto_fronts``.
+            ``design``, ``pareto_fronts`` or ``trade_off_front``.
         axes: Matplotlib's, to draw into; None makes a figure of its own.
 
     Returns:
@@ -194,4 +194,26 @@ def plot_pareto(result: Pareto, axes: Any = None) -> Any:
     axes.set_title(result.study.title, fontsize=TEXT + 1)
     tidy(axes)
     axes.legend(fontsize=TEXT, frameon=False)
+    return axes
+
+
+@plot.register
+def plot_trade_off(result: TradeOff, axes: Any = None) -> Any:
+    """Draw the front of two or three objectives; the third is a colour."""
+    axes = own_axes(axes)
+    all_, order = result.axes.all, result.axes.order
+    values = np.array([point.values for point in result.points])
+    y, x, *third = (order.index(place) for place in range(len(all_)))
+    titles = [f"{axis.kind.replace('_', ' ')} [{axis.unit}]" for axis in all_]
+    if third:
+        look: dict[str, Any] = {"c": values[:, third[0]], "cmap": "cividis", "edgecolors": "black"}
+        marks = axes.scatter(values[:, x], values[:, y], **look)
+        axes.figure.colorbar(marks, ax=axes).set_label(titles[third[0]], fontsize=TEXT)
+    else:
+        axes.plot(values[:, x], values[:, y], "o-", color=BOTH)
+    axes.set_xscale("log")
+    axes.set_xlabel(titles[x], fontsize=TEXT)
+    axes.set_ylabel(titles[y], fontsize=TEXT)
+    axes.set_title(result.study.title, fontsize=TEXT + 1)
+    tidy(axes)
     return axes

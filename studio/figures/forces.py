@@ -69,7 +69,8 @@ def _message(report: DesignReport) -> str:
 
 def _before_in_words(report: DesignReport, worst: str) -> str:
     first = "before" if len(report.poses) == 1 else "worst"
-    return f"{first}: {worst}, nominal springs"
+    breaks = "" if report.worst.keeps_before else ", which break a bound there"
+    return f"{first}: {worst}, nominal springs{breaks}"
 
 
 def until_apart(history: ImpactHistory) -> tuple[Array, Array]:

@@ -44,7 +44,8 @@ def figure_of_hardware(report: TradeOffReport) -> Figure:
         for point, place, colour in zip(report.points, at, colours, strict=True):
             value = point.springs[own] if i < springs else point.others[own]
             bar = point.indifferent[i]
-            axes.plot([place, place], bar, color=colour, linewidth=3.0, alpha=0.5, zorder=2)
+            line: dict[str, Any] = {"color": colour, "linewidth": 3.0, "alpha": 0.5}
+            axes.plot([place, place], bar, solid_capstyle="butt", zorder=2, **line)
             mark: dict[str, Any] = {"color": colour, "markeredgecolor": BLACK, "markersize": 5}
             axes.plot(place, value, "o", zorder=3, **mark)
         wide_as_logarithm(axes, "x", at)

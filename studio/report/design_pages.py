@@ -22,8 +22,9 @@ from ..figures import (
     figure_of_ranking,
     figure_of_springs,
 )
+from ..figures.robust import figure_of_robust_design
 from ..output import Cell
-from ..robust_report import robust_in_words, simulated_worst
+from ..robust_report import ROUNDING, robust_in_words, simulated_worst
 from .arms import ORIGIN, arm_picture
 from .page import Hit, Section, TableOfNumbers, write_page
 from .study_pages import impact_in_words, joints, study_page
@@ -119,7 +120,7 @@ def write_robust_report(design: RobustDesign, path: Path) -> Path:
     study, scenarios, worst = design.study, design.scenarios, design.worst
     one = scenarios[worst.index]
     words = scenarios.describe(one)
-    good = worst.share <= 1
+    good = worst.share <= 1 + ROUNDING
     question = f"Which springs of {study.robot.name} hurt least in {len(scenarios)} scenarios?"
     answer = (
         f"At worst {worst.force:.0f} N, {100 * worst.share:.0f} % of its limit: pose "
@@ -137,9 +138,17 @@ def write_robust_report(design: RobustDesign, path: Path) -> Path:
     )
     checks = [("the optimiser", worst.force), ("linearised, by SUNDIALS", by_sundials)]
     sections = [
-        Section("What was found", lines=robust_in_words(design)),
+        Section(
+            "What was found",
+            lines=robust_in_words(design),
+            figure=figure_of_robust_design(design),
+            caption="The objective before and after, and each spring with its indifferent range.",
+        ),
         Section("The worst scenario", arms=[arm]),
-        Section("The springs", tables=[joints(study, design.springs, None)]),
+        Section(
+            "The springs",
+            tables=[joints(study, design.springs, design.indifferent[list(study.groups)])],
+        ),
         Section(
             "How far to trust it",
             words=["The worst scenario, integrated independently."],

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..figures.trade_off import figure_of_front
 from ..figures.trade_off_hardware import figure_of_hardware
+from ..robust_report import ROUNDING
 from ..trade_off_report import TradeOffReport
 from ..trade_off_words import columns, in_words, rows, values_in_words
 from .arms import ORIGIN, arm_picture
@@ -61,5 +62,5 @@ def write_trade_off_report(report: TradeOffReport, path: Path) -> Path:
             tables=[TableOfNumbers("By model", ("design", "optimiser N", "linearised N"), checks)],
         ),
     ]
-    good = any(p.worst.share * p.scenarios.allowed <= 1 for p in report.points)
+    good = any(p.worst.share * p.scenarios.allowed <= 1 + ROUNDING for p in report.points)
     return write_page(study_page(study, question, answer, good, sections), path)

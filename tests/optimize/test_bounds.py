@@ -12,7 +12,7 @@ from scipy.linalg import eigh
 from small_arm import small_study
 from studies import InProcess
 
-from softimpact.optimize import Infeasible, Study
+from softimpact.optimize import Infeasible, Outcome, SolverFailure, Study
 from softimpact.optimize import bounds as package
 from softimpact.optimize.bounds import Bound, Deflection
 from softimpact.optimize.bounds.cartesian_stiffness import CartesianStiffness
@@ -266,3 +266,17 @@ def test_mass(tmp_path: Path) -> None:
     factors = np.array([0.9, 1.1, 1.0])
     expected = 4 * 0.9 + 3 * 1.1 + 2 * 1.0
     assert figures(Mass(1.0), study, Q, SPRINGS, factors)[0] == pytest.approx(expected)
+
+
+def test_a_failure_tells_each_bound_in_its_own_unit(study: Study) -> None:
+    """Not one number for metres, radians and shares of bounds."""
+    bounded = replace(study, max_deflection=1e-3, other_bounds=(NaturalFrequency(50.0),))
+    q = study.task_pose.q
+    best = Outcome("bent", "free", "Stopped", False, 1, 1, 0.0, q + 0.01, SPRINGS, 90.0, 0.4)
+    said = str(SolverFailure([best], bounded))
+    assert "mm of accuracy.max_deflection, at most 1 mm," in said
+    assert "Hz of bounds.natural_frequency.least, at least 50 Hz," in said
+    assert "mm and 0.0" in said
+    assert "rad off the task, and has 90.0 N" in said
+    held = replace(best, mode="table", springs=np.full(3, 1e9))
+    assert "misses by a share of 0.4" in str(SolverFailure([held], study))

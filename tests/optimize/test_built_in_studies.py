@@ -17,7 +17,7 @@ STUDIES = sorted((FOLDER / "studies").glob("*.toml"))
 
 
 def test_there_are_some() -> None:
-    assert len(STUDIES) >= 4
+    assert len(STUDIES) >= 6
 
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)

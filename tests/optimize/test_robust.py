@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from studies import InProcess, changed, study_of, written
 
 from softimpact.optimize import Infeasible, Study, design, load_study
@@ -17,6 +19,7 @@ from softimpact.optimize.robust import RobustDesign, robust_design
 from softimpact.optimize.study_scenarios import scenarios_of
 from softimpact.optimize.tip_pose import tip_pose
 from softimpact.simulate import Approach, simulate_impact
+from softimpact.studio.figures.robust import figure_of_robust_design
 from softimpact.symbolic import InvalidValue, impact_model, limits_of, with_load
 from softimpact.symbolic.robot.rigid import Array
 
@@ -242,3 +245,38 @@ def test_free_postures_hold_their_tasks_and_never_hurt(
         assert largest_deflection(study, q, moved.springs) <= study.max_deflection * (1 + 1e-5)
     shares = [simulated(moved, i, moved.springs) for i in range(len(moved.scenarios))]
     assert max(shares) == pytest.approx(moved.worst.share, rel=1e-3)
+
+
+def test_the_figure_marks_a_machine_that_breaks_bounds(found: RobustDesign) -> None:
+    """Text is legible and inside; a machine before that breaks a bound is hollow and says so."""
+    broken = replace(found.before, bounds=(replace(found.before.bounds[0], share=2.0),))
+    for shown_design, breaks in (
+        (replace(found, before=replace(found.before, bounds=())), False),
+        (replace(found, before=broken), True),
+    ):
+        figure = figure_of_robust_design(shown_design)
+        figure.draw_without_rendering()
+        shown = [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip()]
+        assert any("breaks" in text.get_text() for text in shown) == breaks
+        assert min(float(text.get_fontsize()) for text in shown) >= 9
+        box, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
+        assert 0 <= box.x0 < box.x1 <= width
+        assert 0 <= box.y0 < box.y1 <= height
+
+
+def test_what_is_indifferent_costs_little_in_every_scenario(found: RobustDesign) -> None:
+    """Within a range, the others held, no scenario exceeds the worst by more than 0.5 %."""
+    random, scenarios, timing = np.random.default_rng(1), found.scenarios, found.timing
+    program = impact_program(found.study.model, timing.nodes, timing.substeps, compiled=True)
+    for group, (low, high) in enumerate(found.indifferent):
+        assert low <= found.springs[found.study.groups.index(group)] * (1 + 1e-9)
+        for value in (low, high, *np.exp(random.uniform(np.log(low), np.log(high), 2))):
+            springs = np.where(np.array(found.study.groups) == group, value, found.springs)
+            for i in range(len(scenarios)):
+                one = scenarios[i]
+                x = np.r_[found.postures[one.pose], np.log10(springs)]
+                force = np.array(program["forces"](x, scenarios.numbers(one, timing.step))).max()
+                assert force / scenarios.limit(one) <= found.worst.share * (1.005 + 1e-3)
+            for q in found.postures:
+                deflection = largest_deflection(found.study, q, springs)
+                assert deflection <= found.study.max_deflection * (1 + 2e-5)

@@ -27,6 +27,7 @@ from softimpact.optimize.dominance import knee, undominated
 from softimpact.optimize.evaluation import figures, kept
 from softimpact.optimize.impact_program import impact_program
 from softimpact.optimize.robust import robust_design
+from softimpact.optimize.study_check import study_problems
 from softimpact.optimize.study_file import ParetoSection
 from softimpact.optimize.study_scenarios import scenarios_of
 from softimpact.studio.figures.trade_off import figure_of_front
@@ -188,6 +189,18 @@ def test_the_record_has_the_published_form(report: TradeOffReport, tmp_path: Pat
 
 
 @pytest.mark.slow
+def test_a_front_is_a_table_and_a_drawing(found: TradeOff) -> None:
+    told = found.to_dict()
+    assert json.loads(json.dumps(told, allow_nan=False)) == told
+    rows = found.rows()
+    assert [row["worst_force"] for row in rows] == [point.values[0] for point in found.points]
+    axes = found.plot()
+    assert "deflection [m]" in axes.get_xlabel()
+    marks = axes.collections[0].get_offsets()
+    np.testing.assert_allclose(marks[:, 1], [point.values[0] for point in found.points])
+
+
+@pytest.mark.slow
 def test_words_and_figures(report: TradeOffReport, tmp_path: Path) -> None:
     said = "\n".join([heading(report), *in_words(report)])
     for piece in ("worst force, deflection and natural frequency", "Before", "SUNDIALS", "Hz"):
@@ -262,6 +275,28 @@ def test_fronts_that_cannot_be(
 ) -> None:
     with pytest.raises(InvalidValue, match=reason):
         trade_off_front(asked(study, *names, **more), InProcess())
+
+
+@pytest.mark.parametrize(
+    ("tables", "field"),
+    [
+        ('[pareto]\nobjectives = ["force", "beauty"]', ("pareto", "objectives")),
+        ('[pareto]\nobjectives = ["speed", "energy"]', ("pareto", "objectives")),
+        ("", ()),
+    ],
+)
+def test_a_check_looks_at_what_a_front_trades(
+    tmp_path: Path, tables: str, field: tuple[str, ...]
+) -> None:
+    problems = study_problems(small_study(tmp_path, tables).source)
+    assert [tuple(problem.field.split(".")) for problem in problems] == ([field] if field else [])
+
+
+def test_a_check_looks_at_scenarios(tmp_path: Path) -> None:
+    source = small_study(tmp_path, scenarios='points = ["hand"]').source
+    (problem,) = study_problems(source)
+    assert problem.field == "scenarios"
+    assert "unknown frame 'hand'" in problem.reason
 
 
 def test_bounds_beside_the_objectives_must_be_within_reach(tmp_path: Path) -> None:

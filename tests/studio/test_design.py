@@ -5,13 +5,27 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from command_line import refusal, run, run_json
+from matplotlib.text import Text
+from small_arm import small_study as arm_study
+from studies import InProcess
 
+from softimpact.optimize import design
 from softimpact.studio.checks import doubts
+from softimpact.studio.design_report import (
+    design_record,
+    design_report,
+    gains_in_words,
+    nominal_in_words,
+    task_result,
+)
+from softimpact.studio.figures.gains import figure_of_gains
+from softimpact.studio.figures.ranking import figure_of_ranking
 
 Results = tuple[Path, dict[str, Any]]
 
@@ -197,6 +211,32 @@ def test_bad_input_is_refused_before_the_search(tmp_path: Path) -> None:
     assert "stiffness" in refusal("design", bounds)
     outside = small_study(tmp_path, ("0.63, -0.10, -2.36", "1.90, -0.10, -2.36"))
     assert "outside its limits" in refusal("design", outside)
+
+
+@pytest.mark.slow
+def test_nominal_springs_that_break_a_bound_are_no_reference(tmp_path: Path) -> None:
+    """They are marked as such in record, words and figures; gains are over springs that keep it."""
+    study = replace(arm_study(tmp_path, deflection=1e-3), scenarios=None)
+    report = design_report(design(study, executor=InProcess()))
+    task = task_result(report.design)
+    reference, gains = report.design.answers.reference, report.design.gains
+    assert not task.keeps_before
+    assert task.deflection_before > study.max_deflection
+    assert reference.deflection == pytest.approx(study.max_deflection, rel=2e-3)
+    assert gains is not None
+    assert gains.before == reference.force > gains.springs
+    record = design_record(report)
+    assert [pose["keeps_bounds_before"] for pose in record["poses"]] == [
+        pose.result.keeps_before for pose in report.poses
+    ]
+    words = nominal_in_words(report.design) or ""
+    assert "break accuracy.max_deflection in bent" in words
+    assert f"{task.force_before:.1f} N" in words
+    said = " ".join(gains_in_words(gains, report))
+    assert f"{reference.force:.1f} → {gains.springs:.1f} N" in said
+    assert "break a bound" in figure_of_gains(report, gains).get_suptitle()
+    labels = [text.get_text() for text in figure_of_ranking(report).findobj(Text)]
+    assert "before, but nominal springs break a bound there" in labels
 
 
 def test_an_optimum_that_simulation_contradicts_is_said() -> None:
