@@ -76,7 +76,7 @@ def _cpp_function(name: str, entry: Entry) -> dict[str, Any]:
     (out,) = [a for a in entry.arguments if a.written]
     shape = [size or 1 for size in out.shape]
     kinds = {
-        0: "real" if out.type == "real" else f"{name}_{out.type}",
+        0: out.type if out.type in (*RUST, "real") else f"{name}_{out.type}",
         1: f"vector<{shape[0] if shape else 0}>",
         2: f"matrix<{', '.join(map(str, shape))}>",
     }

@@ -500,14 +500,14 @@ inline result<panda_allowed_factor_t> allowed_factor(
 /* Whether a contact point that moves as joints do might press on a clamped body harder than a
  * limit from
  * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
-inline result<panda_int> may_press(
+inline result<int> may_press(
     const vector<7> &q,
     const vector<7> &dq,
     real limit,
     const panda_region &region,
     const panda_params &p) noexcept
 {
-    result<panda_int> found;
+    result<int> found;
     found.status = panda_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
     return found;
 }

@@ -331,14 +331,14 @@ inline result<rmin_allowed_factor_t> allowed_factor(
 /* Whether a contact point that moves as joints do might press on a clamped body harder than a
  * limit from
  * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
-inline result<rmin_int> may_press(
+inline result<int> may_press(
     const vector<6> &q,
     const vector<6> &dq,
     real limit,
     const rmin_region &region,
     const rmin_params &p) noexcept
 {
-    result<rmin_int> found;
+    result<int> found;
     found.status = rmin_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
     return found;
 }

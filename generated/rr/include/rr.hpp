@@ -393,14 +393,14 @@ inline result<rr_allowed_factor_t> allowed_factor(
 /* Whether a contact point that moves as joints do might press on a clamped body harder than a
  * limit from
  * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
-inline result<rr_int> may_press(
+inline result<int> may_press(
     const vector<4> &q,
     const vector<4> &dq,
     real limit,
     const rr_region &region,
     const rr_params &p) noexcept
 {
-    result<rr_int> found;
+    result<int> found;
     found.status = rr_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
     return found;
 }

@@ -499,14 +499,14 @@ inline result<ur5e_allowed_factor_t> allowed_factor(
 /* Whether a contact point that moves as joints do might press on a clamped body harder than a
  * limit from
  * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
-inline result<ur5e_int> may_press(
+inline result<int> may_press(
     const vector<6> &q,
     const vector<6> &dq,
     real limit,
     const ur5e_region &region,
     const ur5e_params &p) noexcept
 {
-    result<ur5e_int> found;
+    result<int> found;
     found.status = ur5e_may_press(q.data(), dq.data(), limit, &region, &p, &found.value);
     return found;
 }
