@@ -32,8 +32,9 @@ DEVICES = re.compile(r"aux|con|nul|prn|(com|lpt)\d")
 
 INNER = frozenset((
     "body", "check", "config", "contact", "damping", "default", "directional", "driven", "fill",
-    "foreign", "free", "generalised", "generalised_mass", "golden", "impact", "internal", "is",
-    "kinds_of", "mass", "phase", "reduced", "select", "servo", "single_joint", "state", "stiffness",
+    "find", "foreign", "frame", "free", "generalised", "generalised_mass", "golden", "impact",
+    "internal", "is", "joint", "kinds_of", "law", "mass", "may", "phase", "reduced", "select",
+    "servo", "single_joint", "state", "steps_of", "stiffness",
 ))  # fmt: skip
 """What packages' own names begin with: ``arm_contact_jacobian`` is a function of ``arm``, and would
 be one of a package ``arm_contact``; linkers would take either for both."""

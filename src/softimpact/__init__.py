@@ -60,7 +60,7 @@ _HOMES = {
         "simulate_impact",
     ),
     "optimize": ("design", "load_study", "pareto_fronts"),
-    "optimize.robust": ("robust_design",),
+    "optimize.robust.robust": ("robust_design",),
     "batch": ("compiled",),
     "plots": ("plot",),
     "codegen": ("generate_package",),

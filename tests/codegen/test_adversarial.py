@@ -116,7 +116,9 @@ def test_integrator_agrees_with_scipy(
     assert found[k] == pytest.approx(right.max(), rel=1e-4)
 
 
-@pytest.mark.parametrize("name", mostly_slow(["panda", "rr", "rmin", "two_links"], ["panda", "rr"]))
+@pytest.mark.parametrize(
+    "name", mostly_slow(["panda", "rr", "rmin", "two_links", "gen3"], ["panda", "rr"])
+)
 def test_what_was_found_once_keeps_its_limit(
     package: Callable[[str], Generated], name: str, tmp_path: Path
 ) -> None:
