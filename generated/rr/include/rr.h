@@ -280,7 +280,8 @@ typedef struct {
 
 /*
  * Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the speed
- * that is returned is 1 to 2.3 % below the limit, or jumps over it with little more speed.
+ * that is returned is 1 to 2.3 % below the limit (3.8 % on bodies that damp hard), or jumps over it with
+ * little more speed.
  * limit: N, > 0. RR_BOUNDED: the speed is safe, but slower ones only were looked at, or none.
  */
 int rr_safe_speed(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real limit,
