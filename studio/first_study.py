@@ -50,7 +50,7 @@ title = "{name}"
 [robot]
 model = {model}
 tip = {tip}  # contact frame{others}
-{rotors}
+{base}{rotors}
 
 [impact]
 region = "chest"  # TODO: chest, head, hand, ...: what may be hit
@@ -83,17 +83,20 @@ q = {q}
 """
 
 
-def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
+def first_study(
+    model: str, tip: str | None = None, *, hold_base: bool = False
+) -> tuple[str, list[str]]:
     """Return a study file for a robot, and what there is to say about its model file.
 
     Args:
         model: name of a robot, or path of a file.
         tip: contact frame; default the robot's own.
+        hold_base: whether to hold a base that floats or stands, where its file has it.
 
     Raises:
         SoftImpactError: the robot cannot be read, or no contact frame that moves is named.
     """
-    robot = load_robot(model, toward=tip)
+    robot = load_robot(model, hold_base=hold_base, toward=tip)
     arm = arm_of(robot, tip, tip)
     q, direction = first_posture(arm.robot)
     looped = _has_loops(arm.robot)
@@ -105,6 +108,7 @@ def first_study(model: str, tip: str | None = None) -> tuple[str, list[str]]:
         model=json.dumps(name, ensure_ascii=False),
         tip=json.dumps(arm.robot.tip, ensure_ascii=False),
         others=f"; others are {', '.join(others[:8])}" if others else "",
+        base="hold_base = true  # else floating = true\n" if hold_base else "",
         rotors=_rotors(arm.robot),
         direction=list(direction),
         motors=_motors(arm.robot),

@@ -8,11 +8,13 @@ import typer
 from . import options as o
 
 
-def init(model: o.ModelArgument, tip: o.TipOption = None) -> None:
+def init(
+    model: o.ModelArgument, tip: o.TipOption = None, hold_base: o.HoldBaseOption = False
+) -> None:
     """Print a study file for a robot, with what its file has and what is missing."""
     from .first_study import first_study
     from .output import print_warnings
 
-    text, warnings = first_study(model, tip)
+    text, warnings = first_study(model, tip, hold_base=hold_base)
     print_warnings(warnings)
     typer.echo(text, nl=False)

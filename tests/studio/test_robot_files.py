@@ -138,6 +138,16 @@ def test_inspect_of_files_from_the_wild() -> None:
     ]
 
 
+def test_a_study_of_an_arm_whose_base_floats(tmp_path: Path) -> None:
+    arm = (
+        '<joint name="j" axis="0 0 1"/><geom size="0.1" mass="1"/><site name="tool" pos="0.5 0 0"/>'
+    )
+    body = f'<body><freejoint/><geom size="0.1"/><body pos="0 0 1">{arm}</body></body>'
+    path = written(tmp_path, f"<mujoco><worldbody>{body}</worldbody></mujoco>")
+    assert "hold the robot's base by --hold-base" in refusal("init", path, "--tip", "tool")
+    assert "hold_base = true" in run("init", path, "--tip", "tool", "--hold-base").out
+
+
 def test_inspect_of_a_file_that_is_none(tmp_path: Path) -> None:
     assert "no such file" in refusal("inspect", tmp_path / "gone.urdf")
 
