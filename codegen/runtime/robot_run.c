@@ -114,12 +114,12 @@ static bool step_apart(robot_state *s, const robot_trial *t, int shortest, robot
     const robot_real rest = s->rest*s->phase->level[s->level].relax;
     if (t->x > rest) {
         if (s->level < shortest) { /* to a step that ends before they touch, if both approach evenly */
-            robot_real share = (s->rest - s->x)/(s->rest - s->x + t->x - rest);
-            int level = s->level;
-            do {
-                ++level;
+            robot_real share = ROBOT_R(2.0)*(s->rest - s->x)/(s->rest - s->x + t->x - rest);
+            int level = s->level + 1;
+            while (level < shortest && !(share >= ROBOT_R(1.0))) {
                 share += share;
-            } while (level < shortest && !(share >= ROBOT_R(1.0)));
+                ++level;
+            }
             change_level(s, level);
             return false;
         }

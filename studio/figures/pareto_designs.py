@@ -46,7 +46,7 @@ def figure_of_designs(report: ParetoReport) -> Figure:
         style = _style(i)
         if i in places:
             found = springs[:, places.index(i)]
-            stiffness.plot(deflection, found, **style)
+            stiffness.plot(deflection, found, label=joint.name, **style)
         scale = 180 / np.pi if joint.kind is JointKind.HINGE else 1e3
         change = [scale * (p.outcome.q[i] - report.pareto.reference.q[i]) for p in points]
         handles += angles.plot(deflection, change, label=joint.name, **style)

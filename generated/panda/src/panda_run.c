@@ -114,12 +114,12 @@ static bool step_apart(panda_state *s, const panda_trial *t, int shortest, panda
     const panda_real rest = s->rest*s->phase->level[s->level].relax;
     if (t->x > rest) {
         if (s->level < shortest) { /* to a step that ends before they touch, if both approach evenly */
-            panda_real share = (s->rest - s->x)/(s->rest - s->x + t->x - rest);
-            int level = s->level;
-            do {
-                ++level;
+            panda_real share = PANDA_R(2.0)*(s->rest - s->x)/(s->rest - s->x + t->x - rest);
+            int level = s->level + 1;
+            while (level < shortest && !(share >= PANDA_R(1.0))) {
                 share += share;
-            } while (level < shortest && !(share >= PANDA_R(1.0)));
+                ++level;
+            }
             change_level(s, level);
             return false;
         }
