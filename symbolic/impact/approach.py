@@ -41,9 +41,8 @@ def approach_velocity(model: ImpactModel, q: ArrayLike, direction: ArrayLike) ->
         SingularDirection: the point cannot move along n alone.
     """
     n = np.asarray(direction, dtype=float)
-    J = np.array(model.jacobian(np.asarray(q, dtype=float))) * np.array(model.actuated, dtype=float)
-    velocity = np.asarray(np.linalg.pinv(J, rcond=1e-9) @ n)
-    if np.linalg.norm(J @ velocity - n) > REACHED:
+    velocity, missed = _least_motion(model, np.array(model.jacobian(np.asarray(q, dtype=float))), n)
+    if missed > REACHED:
         raise SingularDirection(n.tolist(), "choose another direction, frame or configuration")
     return velocity
 
@@ -59,10 +58,14 @@ def singular_postures(model: ImpactModel, postures: Array, direction: Array) -> 
     q = ca.SX.sym("q", model.robot.n)
     jacobians = np.array(ca.Function("J", [q], [model.jacobian(q)])(postures.T))
     J = jacobians.reshape(3, len(postures), -1).transpose(1, 0, 2)
-    J = J * np.array(model.actuated, dtype=float)
-    velocities = np.linalg.pinv(J, rcond=1e-9) @ direction
-    missed = np.linalg.norm((J @ velocities[:, :, None])[:, :, 0] - direction, axis=1)
-    return np.flatnonzero(missed > REACHED)
+    return np.flatnonzero(_least_motion(model, J, direction)[1] > REACHED)
+
+
+def _least_motion(model: ImpactModel, jacobians: Array, n: Array) -> tuple[Array, Array]:
+    """Return the motors' velocities of least norm along n, …×n, and by how much they miss it."""
+    J = jacobians * np.array(model.actuated, dtype=float)
+    velocity = np.linalg.pinv(J, rcond=1e-9) @ n
+    return velocity, np.linalg.norm((J @ velocity[..., None])[..., 0] - n, axis=-1)
 
 
 def generalised_velocity(model: ImpactModel, link_velocity: ArrayLike) -> Array:

@@ -9,6 +9,9 @@
 /* When the quasi-static limit takes over from the transient one, s; a little less for rounding. */
 #define PRESSED_FROM ROBOT_R(0.499999)
 
+/* Share of the runtime's bend at which steps are halved here: lines between them are drawn straight. */
+#define DRAWN ROBOT_R(0.2)
+
 /* Writes down every so many moments, twice as many once there is no more room. */
 typedef struct {
     int every, passed;
@@ -38,11 +41,11 @@ static bool step_on(robot_state *s, int *left, robot_peak *peak)
     robot_trial t;
     bool taken = false;
     while (!taken) { /* steps on trial count, too */
-        if (--*left < 0) {
+        if (--*left < 0 || peak->contacts > MOST_CONTACTS) {
             return false;
         }
         robot_glide(s, &t);
-        taken = s->touching ? step_pressed(s, &t, s->impact->smooth*BENDS, SHORTEST, peak)
+        taken = s->touching ? step_pressed(s, &t, s->impact->smooth*DRAWN*BENDS, SHORTEST, peak)
                             : step_apart(s, &t, SHORTEST, peak);
     }
     if (s->phase->damped) {
