@@ -101,7 +101,9 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     rigid = counted_as_rigid(model, how.drives)
     cautions = _cautions(robot, bodies, seen)
     warnings = [*arm.warnings, *rigid, *told, *limits, *assumed, *cautions]
-    warnings += [*answer.warnings, *doubts(question, answer.worst)]
+    worst, doubtful = doubts(question, answer.worst)
+    answer = replace(answer, worst=worst, warnings=[*answer.warnings, *doubtful])
+    warnings += answer.warnings
     record = program_record(path, question, answer, warnings)
     return ProgramResult(question, answer, record)
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from softimpact.simulate import assess_impact
@@ -15,26 +15,29 @@ KEPT = 1 + 1e-3
 """Share of a limit up to which it is kept: C and Python find speeds to so much."""
 
 
-def doubts(question: Question, moments: Sequence[dict[str, Any]]) -> Iterator[str]:
+def doubts(
+    question: Question, moments: Sequence[dict[str, Any]]
+) -> tuple[list[dict[str, Any]], list[str]]:
     """Simulate the worst moments slowed down, the nonlinear robot too where that is needed.
 
-    Yields a line for each that then exceeds a limit; each gets its ``linear_error``.
+    Returns:
+        The moments with their ``linear_error``, and a line for each that then exceeds a limit.
     """
+    seen, lines = [], []
     for moment in moments:
-        body = question.bodies[moment["body"]]
-        speed = min(1.0, moment["factor"]) * moment["speed"]
         found = assess_impact(
             at_point(question.model, moment["point"]),
-            approach_at(question, moment, speed),
-            body.contact,
+            approach_at(question, moment, moment["factor"] * moment["speed"]),
+            question.bodies[moment["body"]].contact,
             motors=question.ends[moment["motors"]],
             horizon=question.horizon,
-            shape=body.shape,
+            shape=question.bodies[moment["body"]].shape,
         )
-        moment["linear_error"] = found.linear_error
+        seen.append({**moment, "linear_error": found.linear_error})
         if not_trusted(found.linear_error) and found.verdict.share > KEPT:
             off = f"{100 * (found.verdict.share - 1):.0f} % of {found.verdict.binding}"
-            yield (
+            lines.append(
                 f"at {moment['t']:.4g} s '{moment['point']}' is beyond its limit by {off}, says "
                 "the nonlinear robot; factors near there are too high by as much"
             )
+    return seen, lines

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -95,6 +96,36 @@ def test_blunter_is_better(radius: float, length: float, force: float, more: flo
     assert Sphere(more * radius).pressure(force) < ball
     assert Edge(more * radius, length).pressure(force) <= edge
     assert Edge(radius, more * length).pressure(force) <= edge
+
+
+@given(st.floats(1e-3, 0.1), st.floats(1e-3, 0.3), st.floats(1, 1e3), st.floats(0.3, 3))
+def test_bounds_have_the_dimension_of_a_pressure(
+    radius: float, length: float, force: float, scale: float
+) -> None:
+    """Lengths times a number and forces times its square: the same pressure on the same rubber."""
+    thick = replace(HARDEST, thickness=scale * HARDEST.thickness)
+    for one, other in (
+        (Sphere(radius), Sphere(scale * radius)),
+        (Edge(radius, length), Edge(scale * radius, scale * length)),
+        (Flat(length**2, radius), Flat((scale * length) ** 2, scale * radius)),
+    ):
+        found = other.pressure(scale**2 * force, thick)
+        assert found == pytest.approx(one.pressure(force), rel=1e-9)
+
+
+@given(st.floats(1e-2, 0.1), st.floats(1e-2, 0.3), st.floats(1, 1e3))
+def test_a_face_is_twice_its_mean_and_its_rim(radius: float, side: float, force: float) -> None:
+    """The rim is an edge without ends, as long as a round face's, of a formula of its own here."""
+    f, E, t = force / (2 * side * math.sqrt(math.pi)), HARDEST.modulus, HARDEST.thickness
+    hertz = math.sqrt(f * 4 / 3 * E / (math.pi * radius))  # Johnson, Eq. 4.45
+    a = (15 * radius * t**3 * f / (2 * E / 3)) ** (1 / 5)  # a thin layer that cannot give way
+    rim = hertz + 15 * f / (16 * a)
+    face = Flat(side**2, radius).pressure(force)
+    assert face == pytest.approx(2 * force / side**2 + rim, rel=1e-9)
+    edge, ball = Edge(radius, side).pressure(force), Sphere(radius).pressure(force)
+    alone = Edge(radius, 2 * side * math.sqrt(math.pi)).pressure(force)
+    assert alone <= 1.5 * rim * (1 + 1e-9)  # Edge's ends: half as much again, at most a ball's
+    assert edge <= ball
 
 
 def test_a_ball_on_a_half_space_is_hertzs() -> None:
