@@ -2,9 +2,6 @@
 /* By how much robot_ has to slow down so that no contact point hits too hard. */
 #include "robot_impact.h"
 
-/* Speed of a contact point that counts as rest: it can hardly be measured. */
-#define AT_REST ROBOT_R(1e-6)
-
 /* What the search of the least factor knows. */
 typedef struct {
     robot_impact impact;
@@ -40,7 +37,7 @@ static int watch(const robot_region *region, const robot_params *p, int point, r
         s->speed = robot_arrive_as_it_moves(point, s->rates, &s->impact.arrival);
         robot_impact_forget(&s->impact);
     }
-    if (!(s->speed > AT_REST)) {
+    if (!(s->speed > ROBOT_AT_REST)) {
         return ROBOT_OK;
     }
     robot_safe_speed_t safe;
