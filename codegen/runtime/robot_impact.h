@@ -132,6 +132,10 @@ int robot_check_impact(const robot_region *region, const robot_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival);
 
+/* Links of a robot whose joints move, and the velocities of its independent joints. */
+int robot_set_off(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
+    const robot_params *p, robot_real rates[ROBOT_N], robot_arrival *arrival);
+
 /* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
 robot_real robot_arrive_as_it_moves(int point, const robot_real rates[ROBOT_N], robot_arrival *arrival);
 

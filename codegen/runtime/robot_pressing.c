@@ -169,21 +169,6 @@ int robot_allowed_speed_at(const robot_real q[ROBOT_JOINTS], int point, const ro
     return status;
 }
 
-/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
-static int set_off(const robot_real *q, const robot_real *dq, const robot_region *region,
-    const robot_params *p, robot_real rates[ROBOT_N], robot_pressing *k)
-{
-    int status = robot_check_finite(dq, ROBOT_JOINTS);
-    if (status == ROBOT_OK) {
-        status = robot_check_impact(region, p);
-    }
-    for (int i = 0; i < ROBOT_N; ++i) {
-        rates[i] = dq[ROBOT_INDEPENDENT(i)];
-    }
-    (void)q;
-    return status == ROBOT_OK ? robot_links(ROBOT_LINKS_OF(q, p), &k->impact.arrival.links) : status;
-}
-
 int robot_allowed_factor(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
     const robot_region *region, const robot_params *p, robot_allowed_factor_t *out)
 {
@@ -196,7 +181,10 @@ int robot_allowed_factor(const robot_real q[ROBOT_JOINTS], const robot_real dq[R
     bool bounded = false;
     int status = check_limits(region);
     if (status == ROBOT_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = robot_check_impact(region, p);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     for (int point = 0; point < ROBOT_POINTS && status == ROBOT_OK; ++point) {
         const robot_real speed = robot_arrive_as_it_moves(point, rates, &k.impact.arrival);
@@ -238,7 +226,10 @@ int robot_may_press(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_
     robot_real rates[ROBOT_N];
     int status = robot_check_positive(&limit, 1);
     if (status == ROBOT_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = robot_check_impact(region, p);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     if (status != ROBOT_OK) {
         return status;
