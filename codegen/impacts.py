@@ -12,7 +12,6 @@ from typing import Literal
 import numpy as np
 
 from softimpact.symbolic import REGIONS, BodyRegion, Contact, Robot, closed_chain
-from softimpact.symbolic.body.laws import HERTZ_EXPONENT, PowerLaw
 from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
@@ -28,6 +27,7 @@ from .reference import (
     reference_bracket,
     reference_peak,
 )
+from .region_parameters import hertz_stiffness
 from .samples import Sample, as_columns, draw_samples
 
 BODIES = ("head", "chest", "hand")
@@ -84,9 +84,7 @@ class Impact:
     def body(self) -> ReferenceBody:
         """The contact as the integrator sees it."""
         mass = None if self.clamped else self.region.effective_mass
-        law = self.contact.law
-        is_hertz = isinstance(law, PowerLaw) and law.exponent == HERTZ_EXPONENT
-        skin = law.stiffness if isinstance(law, PowerLaw) and is_hertz else points_of(law)
+        skin = hertz_stiffness(self.contact.law) or points_of(self.contact.law)
         return ReferenceBody(self.region.stiffness, self.region.damping, mass, skin)
 
     @property

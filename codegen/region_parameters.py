@@ -7,7 +7,7 @@ from math import inf
 from typing import Any
 
 from softimpact.symbolic import Contact, InvalidValue
-from softimpact.symbolic.body.laws import HERTZ_EXPONENT, PowerLaw
+from softimpact.symbolic.body.laws import HERTZ_EXPONENT, Law, PowerLaw
 from softimpact.symbolic.body.shapes import Shape
 from softimpact.symbolic.body.verdict import limits_of
 
@@ -33,7 +33,7 @@ def region_parameters(contact: Contact, shape: Shape | None = None) -> dict[str,
     region, law = contact.region, contact.law
     if region.plate_mass:
         raise InvalidValue("plate_mass", "must be 0 here: only simulations take a plate")
-    is_hertz = isinstance(law, PowerLaw) and law.exponent == HERTZ_EXPONENT
+    hertz = hertz_stiffness(law)
     limits = limits_of(region, contact.clamped, shape)
     pressing = limits_of(region, True, shape).quasi_static
     assert pressing is not None
@@ -41,12 +41,19 @@ def region_parameters(contact: Contact, shape: Shape | None = None) -> dict[str,
         "stiffness": region.stiffness,
         "damping": region.damping,
         "effective_mass": region.effective_mass,
-        "hertz_stiffness": law.stiffness if isinstance(law, PowerLaw) and is_hertz else 0.0,
+        "hertz_stiffness": hertz or 0.0,
         "quasi_static_limit": _known(pressing.force),
         "force_limit": _known(limits.transient.force),
-        "law": None if is_hertz else law_points(law),
+        "law": None if hertz else law_points(law),
         "clamped": contact.clamped,
     }
+
+
+def hertz_stiffness(law: Law) -> float | None:
+    """Return k_f [N/m^1.5] of Hertz's law; None for another."""
+    if isinstance(law, PowerLaw) and law.exponent == HERTZ_EXPONENT:
+        return law.stiffness
+    return None
 
 
 def _known(limit: float) -> float:

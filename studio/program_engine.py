@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Speed factors of long programs by the generated C, some two hundred times as fast as Python.
 
-C answers from the safe side: its speeds keep 1 to 2.3 % of a limit free (3.8 % on bodies that damp
-hard), Python's 0.3 %. What C does not know, it does not decide: a status other than OK, what may
-press on a clamped body later, and a point outside of its zones are left to Python, one by one.
+C answers from the safe side: its speeds keep 1 to 2.3 % of a limit free (up to 3.8 % on bodies
+that damp hard), Python's 0.3 %. What C does not know, it does not decide: a status other than OK,
+what may press on a clamped body later, and a point outside of its zones are left to Python, one by
+one.
 """
 
 from __future__ import annotations

@@ -38,8 +38,8 @@ CHECKED = 20
 """Samples of a program by C at which Python is asked, too, beside the worst."""
 
 AGREED = 0.04
-"""Largest difference of both, relative: C leaves up to 2.3 % of a limit, 3.8 % on bodies
-that damp hard."""
+"""Largest difference of both, relative: C leaves 1 to 2.3 % of a limit free, up to 3.8 %
+on bodies that damp hard."""
 
 Announce = Callable[[str, float], AbstractContextManager[Callable[[float], None]]]
 

@@ -32,7 +32,7 @@ def bound_of_driven_safe_speed(package: Generated, image: Path, steps: int) -> i
     """Return the bound for Hertz's law; None for robots whose modes are found in another way.
 
     Args:
-        package: with springs in all joints and without gravity.
+        package: with springs in all joints, without gravity and the joints' own damping.
         image: of its float build, with lines.
         steps: budget.
     """
@@ -40,6 +40,8 @@ def bound_of_driven_safe_speed(package: Generated, image: Path, steps: int) -> i
     internal = (package.folder / f"src/{name}_internal.h").read_text()
     header = f"_ELASTIC 1 .*\\n#define {name.upper()}_POTENTIAL 0 "
     if not re.search(header, internal) or package.robot.loops:
+        return None
+    if package.robot.damping.any():  # `damp`, which is not counted here, is for servos alone
         return None
     known = {f"{name}_{function}": 0 for function in NEVER}
     known |= {f"{name}_law_twice_work": 130, f"{name}_law_stiffness": 120, f"{name}_law_is_one": 12}

@@ -13,14 +13,13 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+from compiled_impacts import DRIVEN, FREE, FREE_OR_DRIVEN
 from compiled_packages import KINDS, Generated, run, tool
 
 from softimpact.symbolic import REGIONS, contact_point_jacobian, mass_matrix
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 from softimpact.symbolic.robot.rigid import Array
 
-OK, SINGULAR, UNRESOLVED, BOUNDED = 0, 5, 8, 9
-BRACKET, FREE, DRIVEN, SERVO = range(4)
 SOURCE = Path(__file__).parent / "codegen/impact_oracle.c"
 
 LONGEST = 2e-5
@@ -100,7 +99,7 @@ class Robot:
             speed: of the impact [m/s].
             coarse: factor on its steps; at 2 errors are still below 1e-4.
         """
-        if case.motors == BRACKET:
+        if case.motors == FREE_OR_DRIVEN:
             ends = (FREE, DRIVEN)
             return max(self.right_force(replace(case, motors=m), speed, coarse) for m in ends)
         inverse, row, rates = self.arrival(case)

@@ -94,7 +94,7 @@ class LongestPath:
 
     Args:
         image: ELF file with lines (``-g``).
-        rounds: of a loop by its line of C, ``BUDGET`` for the one that steps through time.
+        rounds: of a loop by its line of C, a ``Budget`` for the one that steps through time.
         once: functions that run but once whatever calls them: counted by the caller, not here.
         known: costs of functions without lines.
     """

@@ -26,7 +26,8 @@ using Call = std::function<void(const sample&, double*)>;
 
 constexpr int largest = PANDA_JOINTS * PANDA_JOINTS;
 constexpr double exact = 1e-9, integrated = 1e-3;
-constexpr double aimed = 0.02; // safe speeds of both keep from 0 to 2 % of the limit free
+// Forces of both safe speeds lie between the same shares, and grow no slower than speeds.
+constexpr double aimed = RK4_KEPT / RK4_NEAR - 1 + 2 * integrated;
 
 struct Contender {
   std::string quantity, name;

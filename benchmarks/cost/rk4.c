@@ -103,8 +103,8 @@ double rk4_safe_speed(const sample *s, double limit, double share)
     double speed = 0.8 * limit / sqrt(c.body.stiffness * c.chain.mass[0]);
     for (int trial = 0; trial < TRIALS; trial++) {
         const double f = peak(&c, speed, share);
-        if (f <= limit && f > 0.98 * limit) return speed; /* as the package does */
-        speed *= 0.99 * limit / f;                        /* forces grow about as fast as speed */
+        if (f <= RK4_KEPT * limit && f >= RK4_NEAR * limit) return speed;
+        speed *= (RK4_KEPT + RK4_NEAR) / 2 * limit / f; /* forces grow about as fast as speed */
     }
     return NAN;
 }

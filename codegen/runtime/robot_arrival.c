@@ -93,6 +93,18 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
     return fast < ROBOT_FASTEST && ROBOT_FABS(along - ROBOT_R(1.0)) < ASTRAY ? ROBOT_OK : ROBOT_SINGULAR;
 }
 
+int robot_set_off(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
+    const robot_params *p, robot_real rates[ROBOT_N], robot_arrival *arrival)
+{
+    const int status = robot_check_finite(dq, ROBOT_JOINTS);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        rates[i] = dq[ROBOT_INDEPENDENT(i)];
+    }
+    (void)q;
+    (void)p;
+    return status == ROBOT_OK ? robot_links(ROBOT_LINKS_OF(q, p), &arrival->links) : status;
+}
+
 robot_real robot_arrive_as_it_moves(int point, const robot_real rates[ROBOT_N], robot_arrival *arrival)
 {
     robot_real v[3];

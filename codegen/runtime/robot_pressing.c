@@ -4,11 +4,8 @@
 
 /* Until when it is looked, s. */
 #define PRESSED_UNTIL ROBOT_R(0.6)
-/* Share of a limit up to which it counts as kept, as for peaks. */
-#define PRESSED_KEPT ROBOT_R(0.995)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
-#define LEAST_SPEED ROBOT_R(1e-6) /* of a contact point that does not rest, m/s */
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -50,7 +47,7 @@ static bool keeps(robot_pressing *k, const robot_region *region, robot_real spee
     bool kept = true;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = robot_impact_prepare(region, &k->p, motors, limit, &k->impact) == ROBOT_OK
-            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+            && pressed_by(k, speed, ROBOT_KEPT*limit) <= ROBOT_KEPT*limit;
     }
     return kept;
 }
@@ -172,21 +169,6 @@ int robot_allowed_speed_at(const robot_real q[ROBOT_JOINTS], int point, const ro
     return status;
 }
 
-/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
-static int set_off(const robot_real *q, const robot_real *dq, const robot_region *region,
-    const robot_params *p, robot_real rates[ROBOT_N], robot_pressing *k)
-{
-    int status = robot_check_finite(dq, ROBOT_JOINTS);
-    if (status == ROBOT_OK) {
-        status = robot_check_impact(region, p);
-    }
-    for (int i = 0; i < ROBOT_N; ++i) {
-        rates[i] = dq[ROBOT_INDEPENDENT(i)];
-    }
-    (void)q;
-    return status == ROBOT_OK ? robot_links(ROBOT_LINKS_OF(q, p), &k->impact.arrival.links) : status;
-}
-
 int robot_allowed_factor(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
     const robot_region *region, const robot_params *p, robot_allowed_factor_t *out)
 {
@@ -199,18 +181,21 @@ int robot_allowed_factor(const robot_real q[ROBOT_JOINTS], const robot_real dq[R
     bool bounded = false;
     int status = check_limits(region);
     if (status == ROBOT_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = robot_check_impact(region, p);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     for (int point = 0; point < ROBOT_POINTS && status == ROBOT_OK; ++point) {
         const robot_real speed = robot_arrive_as_it_moves(point, rates, &k.impact.arrival);
         robot_allowed_speed_t allowed = {speed, ROBOT_R(0.0), 0};
         robot_impact_forget(&k.impact);
-        if (speed > LEAST_SPEED) {
+        if (speed > ROBOT_AT_REST) {
             status = find_allowed(region, p, found.factor*speed, &k, &allowed);
             bounded = bounded || status == ROBOT_BOUNDED;
             status = status == ROBOT_BOUNDED ? ROBOT_OK : status;
         }
-        if (speed > LEAST_SPEED && status == ROBOT_OK
+        if (speed > ROBOT_AT_REST && status == ROBOT_OK
             && (allowed.speed < found.factor*speed || found.point < 0)) {
             found.factor = ROBOT_FMIN(found.factor, allowed.speed/speed);
             found.point = point;
@@ -241,7 +226,10 @@ int robot_may_press(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_
     robot_real rates[ROBOT_N];
     int status = robot_check_positive(&limit, 1);
     if (status == ROBOT_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = robot_check_impact(region, p);
+    }
+    if (status == ROBOT_OK) {
+        status = robot_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     if (status != ROBOT_OK) {
         return status;
@@ -251,7 +239,7 @@ int robot_may_press(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_
         const robot_real speed = robot_arrive_as_it_moves(point, rates, &k.impact.arrival);
         robot_impact_forget(&k.impact);
         prepare_pressing(p, &k);
-        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+        kept = !(speed > ROBOT_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;
     return ROBOT_OK;

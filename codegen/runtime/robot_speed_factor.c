@@ -2,9 +2,6 @@
 /* By how much robot_ has to slow down so that no contact point hits too hard. */
 #include "robot_impact.h"
 
-/* Speed of a contact point that counts as rest: it can hardly be measured. */
-#define AT_REST ROBOT_R(1e-6)
-
 /* What the search of the least factor knows. */
 typedef struct {
     robot_impact impact;
@@ -18,17 +15,11 @@ typedef struct {
 static int set_out(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],
     const robot_params *p, slowdown *s)
 {
-    const int status = robot_check_finite(dq, ROBOT_JOINTS);
-    for (int i = 0; i < ROBOT_N; ++i) {
-        s->rates[i] = dq[ROBOT_INDEPENDENT(i)];
-    }
     const robot_speed_factor_over_t nothing = {ROBOT_R(1.0), -1, ROBOT_R(0.0), ROBOT_R(0.0)};
     s->found = nothing;
     s->bounded = false;
     s->point = -1;
-    (void)q;
-    (void)p;
-    return status == ROBOT_OK ? robot_links(ROBOT_LINKS_OF(q, p), &s->impact.arrival.links) : status;
+    return robot_set_off(q, dq, p, s->rates, &s->impact.arrival);
 }
 
 /* Slows down until one point keeps the limit of one region. */
@@ -40,7 +31,7 @@ static int watch(const robot_region *region, const robot_params *p, int point, r
         s->speed = robot_arrive_as_it_moves(point, s->rates, &s->impact.arrival);
         robot_impact_forget(&s->impact);
     }
-    if (!(s->speed > AT_REST)) {
+    if (!(s->speed > ROBOT_AT_REST)) {
         return ROBOT_OK;
     }
     robot_safe_speed_t safe;

@@ -111,6 +111,9 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
     }
     const robot_real seen = w->force;
     look_around(region, p, w);
+    if (w->unknown) { /* so may be the hardest */
+        return ROBOT_UNRESOLVED;
+    }
     for (int k = 0; k < 3; ++k) {
         out->n[k] = ROBOT_R(0.0);
         for (int l = 0; l < ROBOT_REACH; ++l) {

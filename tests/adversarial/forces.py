@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from compiled_impacts import FREE, SERVO
 from numpy.typing import NDArray
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .impacts import FREE, SERVO, Cases, Robot
+from .impacts import Cases, Robot
 
 LOOSE_ALONE, LED_FIRST = 1, 2
 """What the integrator integrates; see ``oracle.c``."""

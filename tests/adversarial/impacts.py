@@ -20,8 +20,6 @@ from softimpact.codegen.inputs import is_elastic
 from softimpact.symbolic import Drives, closed_chain, impact_model
 from softimpact.symbolic.robot.rigid import Array
 
-OK, OUT_OF_RANGE, SINGULAR, UNRESOLVED, BOUNDED = 0, 4, 5, 8, 9
-BRACKET, FREE, DRIVEN, SERVO = range(4)
 SOURCE = Path(__file__).with_name("oracle.c")
 
 FIELDS = {

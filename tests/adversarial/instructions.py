@@ -5,7 +5,7 @@ Usage: PYTHONPATH=tests python -m adversarial.instructions [--turns N] [--steps 
            [--seed N] [ROBOT ...]
 
 Float builds, counted under QEMU. Every turn changes each of ``CLIMBS`` inputs; those that take more
-instructions stay. ``--motors`` as in C's enumeration; all kinds if it is left out.
+instructions stay. ``--motors`` as in C's enumeration; driven ones if it is left out.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from compiled_impacts import DRIVEN
 from compiled_packages import Generated
 from cross_compiled import BOARD, build, compile_one, link, run_image
 from measured_costs import FEW_STEPS, Call
@@ -25,7 +26,7 @@ from measured_costs import FEW_STEPS, Call
 from softimpact.symbolic.robot.rigid import Array
 
 from .cases import Draw
-from .impacts import DRIVEN, FIELDS, Cases, Robot
+from .impacts import FIELDS, Cases, Robot
 from .robots import package_of
 from .search import pick
 
@@ -103,14 +104,13 @@ def _number(value: Array | np.integer) -> str:
     return str(int(value)) if isinstance(value, np.integer) else f"{float(value)!r}f"
 
 
-def climb(
-    counter: Counter, draw: Draw, turns: int, steps: int, motors: int | None
-) -> tuple[Array, Cases]:
+def climb(counter: Counter, draw: Draw, turns: int, steps: int, motors: int) -> tuple[Array, Cases]:
     """Return the inputs at which the climbs end, and their instructions."""
 
     def allowed(cases: Cases) -> Cases:
-        kinds = cases.motors if motors is None else np.full(len(cases), motors, np.int32)
-        return replace(cases, motors=kinds, steps=np.full(len(cases), steps, np.int32))
+        count = len(cases)
+        kinds, budgets = np.full(count, motors, np.int32), np.full(count, steps, np.int32)
+        return replace(cases, motors=kinds, steps=budgets)
 
     cases = allowed(draw.cases(CLIMBS))
     most = counter(cases)

@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from compiled_impacts import BOUNDED, OK
 from numpy.typing import NDArray
 
 from softimpact.symbolic.robot.rigid import Array
 
 from .cases import Draw
 from .forces import forces as forces_of
-from .impacts import BOUNDED, OK, Cases, Robot
+from .impacts import Cases, Robot
 
 TURNS = 40
 """Of a climb."""

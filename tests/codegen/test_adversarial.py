@@ -15,9 +15,10 @@ import pytest
 from adversarial.__main__ import key, read
 from adversarial.cases import Draw
 from adversarial.forces import forces
-from adversarial.impacts import BOUNDED, DRIVEN, FREE, OK, SERVO, SINGULAR, Cases, Robot
+from adversarial.impacts import Cases, Robot
 from adversarial.robots import ROBOTS, package_of
 from adversarial.search import Search, look
+from compiled_impacts import BOUNDED, DRIVEN, FREE, OK, SERVO, SINGULAR
 from compiled_packages import Generated, mostly_slow
 from independent_impacts import arm_of, force_by_scipy
 

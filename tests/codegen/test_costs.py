@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from compiled_impacts import BOUNDED, DRIVEN
 from compiled_packages import COMMITTED, Generated, missing, tool
 from cross_compiled import BOARD, build, compile_one, link, run_image
-from impact_search import BOUNDED, DRIVEN, Case, Robot, draw
+from impact_search import Case, Robot, draw
 from measured_costs import FEW_STEPS, Call, compiler_version, measure, stacks_of
 
 from softimpact.codegen import costs as costs_module

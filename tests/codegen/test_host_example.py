@@ -11,8 +11,9 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
+from compiled_impacts import FREE_OR_DRIVEN
 from compiled_packages import WARNINGS, Generated, run, tool
-from impact_search import BRACKET, Case, Robot
+from impact_search import Case, Robot
 
 from softimpact.symbolic import body_region, load_robot
 
@@ -71,8 +72,8 @@ def test_states_from_a_file_get_the_speed_that_an_integrator_allows(
     velocity = np.array(robot.model(q)[1]) @ rate
     none = np.zeros(7)
     case = Case(
-        q, velocity, np.full(7, 3e3), panda.armature, none, none, BRACKET, 0.02, 0.1, "chest",
-        False, chest.stiffness, chest.damping, chest.force_limit,
+        q, velocity, np.full(7, 3e3), panda.armature, none, none, FREE_OR_DRIVEN, 0.02, 0.1,
+        "chest", False, chest.stiffness, chest.damping, chest.force_limit,
     )  # fmt: skip
     assert time == 0.5
     assert planned == pytest.approx(np.linalg.norm(velocity), abs=1e-3)
