@@ -51,9 +51,9 @@ typedef enum {
     PANDA_LOOP_OPEN = 6,      /* the joint coordinates do not close the chain (closed chains) */
     PANDA_NO_EQUILIBRIUM = 7, /* Newton's method found no stable rest at these motor angles
                                 (closed chains) */
-    PANDA_UNRESOLVED = 8,     /* the budget of steps is used up, and no bound is known */
-    PANDA_BOUNDED = 9,        /* the budget of steps is used up; what was written is a bound on the
-                                safe side */
+    PANDA_UNRESOLVED = 8,     /* impacts cannot be followed to their end, and no bound is known */
+    PANDA_BOUNDED = 9,        /* impacts cannot be followed to their end: steps are used up, contacts
+                                too many or digits too few; what was written is on the safe side */
     PANDA_FOREIGN_PARAMS = 10 /* panda_default_params of this header, in this number type, has not
                                 filled in p */
 } panda_status;
@@ -396,9 +396,10 @@ typedef struct {
 
 /*
  * Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the speed
- * that is returned is 1 to 2.3 % below the limit (3.8 % on bodies that damp hard), or jumps over it with
- * little more speed.
- * limit: N, > 0. PANDA_BOUNDED: the speed is safe, but slower ones only were looked at, or none.
+ * that is returned is 1 to 2.3 % below the limit (up to 3.8 % on bodies that damp hard), or jumps over it
+ * with little more speed. That slower speeds press less is searched for, not proven.
+ * limit: N, > 0. PANDA_BOUNDED: the search did not end. The speed keeps the limit by its own impact, or
+ * by a proven bound; a greater one may, too.
  */
 int panda_safe_speed(const panda_real q[PANDA_JOINTS], const panda_real n[3], panda_real limit,
     const panda_region *region, const panda_params *p, panda_safe_speed_t *out);

@@ -93,6 +93,18 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
     return fast < PANDA_FASTEST && PANDA_FABS(along - PANDA_R(1.0)) < ASTRAY ? PANDA_OK : PANDA_SINGULAR;
 }
 
+int panda_set_off(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    const panda_params *p, panda_real rates[PANDA_N], panda_arrival *arrival)
+{
+    const int status = panda_check_finite(dq, PANDA_JOINTS);
+    for (int i = 0; i < PANDA_N; ++i) {
+        rates[i] = dq[PANDA_INDEPENDENT(i)];
+    }
+    (void)q;
+    (void)p;
+    return status == PANDA_OK ? panda_links(PANDA_LINKS_OF(q, p), &arrival->links) : status;
+}
+
 panda_real panda_arrive_as_it_moves(int point, const panda_real rates[PANDA_N], panda_arrival *arrival)
 {
     panda_real v[3];

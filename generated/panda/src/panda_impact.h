@@ -132,6 +132,10 @@ int panda_check_impact(const panda_region *region, const panda_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival);
 
+/* Links of a robot whose joints move, and the velocities of its independent joints. */
+int panda_set_off(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
+    const panda_params *p, panda_real rates[PANDA_N], panda_arrival *arrival);
+
 /* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
 panda_real panda_arrive_as_it_moves(int point, const panda_real rates[PANDA_N], panda_arrival *arrival);
 
@@ -182,6 +186,14 @@ bool panda_law_is_one(const panda_region *region);
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 panda_real panda_two_body_force(const panda_region *region, panda_real mobility, panda_real speed);
 panda_real panda_two_body_speed(const panda_region *region, panda_real mobility, panda_real force);
+
+/*
+ * Largest share of a limit that counts as kept: with what arms and bodies have, forces are within 2e-3 of the
+ * right ones, in the worst of 100,000 within 1e-2.
+ */
+#define PANDA_KEPT PANDA_R(0.99)
+/* Speed of a contact point that counts as rest: it can hardly be measured, m/s. */
+#define PANDA_AT_REST PANDA_R(1e-6)
 
 /*
  * Largest speed, at most `cap` where that is positive, up to which an impact keeps a limit: OK,

@@ -4,11 +4,8 @@
 
 /* Until when it is looked, s. */
 #define PRESSED_UNTIL PANDA_R(0.6)
-/* Share of a limit up to which it counts as kept, as for peaks. */
-#define PRESSED_KEPT PANDA_R(0.995)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
-#define LEAST_SPEED PANDA_R(1e-6) /* of a contact point that does not rest, m/s */
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -50,7 +47,7 @@ static bool keeps(panda_pressing *k, const panda_region *region, panda_real spee
     bool kept = true;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = panda_impact_prepare(region, &k->p, motors, limit, &k->impact) == PANDA_OK
-            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+            && pressed_by(k, speed, PANDA_KEPT*limit) <= PANDA_KEPT*limit;
     }
     return kept;
 }
@@ -172,21 +169,6 @@ int panda_allowed_speed_at(const panda_real q[PANDA_JOINTS], int point, const pa
     return status;
 }
 
-/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
-static int set_off(const panda_real *q, const panda_real *dq, const panda_region *region,
-    const panda_params *p, panda_real rates[PANDA_N], panda_pressing *k)
-{
-    int status = panda_check_finite(dq, PANDA_JOINTS);
-    if (status == PANDA_OK) {
-        status = panda_check_impact(region, p);
-    }
-    for (int i = 0; i < PANDA_N; ++i) {
-        rates[i] = dq[PANDA_INDEPENDENT(i)];
-    }
-    (void)q;
-    return status == PANDA_OK ? panda_links(PANDA_LINKS_OF(q, p), &k->impact.arrival.links) : status;
-}
-
 int panda_allowed_factor(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
     const panda_region *region, const panda_params *p, panda_allowed_factor_t *out)
 {
@@ -199,18 +181,21 @@ int panda_allowed_factor(const panda_real q[PANDA_JOINTS], const panda_real dq[P
     bool bounded = false;
     int status = check_limits(region);
     if (status == PANDA_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = panda_check_impact(region, p);
+    }
+    if (status == PANDA_OK) {
+        status = panda_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     for (int point = 0; point < PANDA_POINTS && status == PANDA_OK; ++point) {
         const panda_real speed = panda_arrive_as_it_moves(point, rates, &k.impact.arrival);
         panda_allowed_speed_t allowed = {speed, PANDA_R(0.0), 0};
         panda_impact_forget(&k.impact);
-        if (speed > LEAST_SPEED) {
+        if (speed > PANDA_AT_REST) {
             status = find_allowed(region, p, found.factor*speed, &k, &allowed);
             bounded = bounded || status == PANDA_BOUNDED;
             status = status == PANDA_BOUNDED ? PANDA_OK : status;
         }
-        if (speed > LEAST_SPEED && status == PANDA_OK
+        if (speed > PANDA_AT_REST && status == PANDA_OK
             && (allowed.speed < found.factor*speed || found.point < 0)) {
             found.factor = PANDA_FMIN(found.factor, allowed.speed/speed);
             found.point = point;
@@ -241,7 +226,10 @@ int panda_may_press(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_
     panda_real rates[PANDA_N];
     int status = panda_check_positive(&limit, 1);
     if (status == PANDA_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = panda_check_impact(region, p);
+    }
+    if (status == PANDA_OK) {
+        status = panda_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     if (status != PANDA_OK) {
         return status;
@@ -251,7 +239,7 @@ int panda_may_press(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_
         const panda_real speed = panda_arrive_as_it_moves(point, rates, &k.impact.arrival);
         panda_impact_forget(&k.impact);
         prepare_pressing(p, &k);
-        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+        kept = !(speed > PANDA_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;
     return PANDA_OK;

@@ -2,13 +2,9 @@
 /* Largest speed of panda_ up to which impacts stay below a force. */
 #include "panda_impact.h"
 
-/*
- * Share of the limit at which trials aim, the share from which on one is near enough, and the largest
- * that counts as kept: forces are within 2e-3 of the right ones, in the worst of 100,000 within 1e-2.
- */
+/* Share of the limit at which trials aim, below PANDA_KEPT, and from which on one is near enough. */
 #define AIM PANDA_R(0.984)
 #define NEAR PANDA_R(0.977)
-#define KEPT PANDA_R(0.99)
 /*
  * Smoothness below which a body damps harder than it springs back, and the share of the limit that counts there:
  * forces on such bodies were up to 1.5e-2 too low in inputs that a search climbed to.
@@ -49,7 +45,7 @@ static bool try_speed(panda_impact *impact, panda_real v, bool rough, search *s,
     if (!peak.ended || rough) {
         return peak.ended && peak.force > PANDA_R(0.0);
     }
-    if (peak.force <= KEPT*s->limit) {
+    if (peak.force <= PANDA_KEPT*s->limit) {
         s->low = v;
         s->low_force = peak.force;
     } else {
@@ -114,7 +110,7 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
     found->speed = cap;
     found->force = PANDA_R(0.0);
     for (int motors = last; motors >= first; --motors) {
-        if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
+        if (motors < last && are_weak(impact, found->speed, PANDA_KEPT*limit)) {
             continue;
         }
         const int status = panda_impact_prepare(region, p, motors, limit, impact);

@@ -2,9 +2,6 @@
 /* By how much panda_ has to slow down so that no contact point hits too hard. */
 #include "panda_impact.h"
 
-/* Speed of a contact point that counts as rest: it can hardly be measured. */
-#define AT_REST PANDA_R(1e-6)
-
 /* What the search of the least factor knows. */
 typedef struct {
     panda_impact impact;
@@ -18,17 +15,11 @@ typedef struct {
 static int set_out(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],
     const panda_params *p, slowdown *s)
 {
-    const int status = panda_check_finite(dq, PANDA_JOINTS);
-    for (int i = 0; i < PANDA_N; ++i) {
-        s->rates[i] = dq[PANDA_INDEPENDENT(i)];
-    }
     const panda_speed_factor_over_t nothing = {PANDA_R(1.0), -1, PANDA_R(0.0), PANDA_R(0.0)};
     s->found = nothing;
     s->bounded = false;
     s->point = -1;
-    (void)q;
-    (void)p;
-    return status == PANDA_OK ? panda_links(PANDA_LINKS_OF(q, p), &s->impact.arrival.links) : status;
+    return panda_set_off(q, dq, p, s->rates, &s->impact.arrival);
 }
 
 /* Slows down until one point keeps the limit of one region. */
@@ -40,7 +31,7 @@ static int watch(const panda_region *region, const panda_params *p, int point, p
         s->speed = panda_arrive_as_it_moves(point, s->rates, &s->impact.arrival);
         panda_impact_forget(&s->impact);
     }
-    if (!(s->speed > AT_REST)) {
+    if (!(s->speed > PANDA_AT_REST)) {
         return PANDA_OK;
     }
     panda_safe_speed_t safe;

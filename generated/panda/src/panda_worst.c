@@ -111,6 +111,9 @@ static int find_hardest(const panda_region *region, const panda_params *p, harde
     }
     const panda_real seen = w->force;
     look_around(region, p, w);
+    if (w->unknown) { /* so may be the hardest */
+        return PANDA_UNRESOLVED;
+    }
     for (int k = 0; k < 3; ++k) {
         out->n[k] = PANDA_R(0.0);
         for (int l = 0; l < PANDA_REACH; ++l) {

@@ -222,10 +222,12 @@ inline result<rmin_peak_force_t> peak_force_at(
 
 /* Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the
  * speed
- * that is returned is 1 to 2.3 % below the limit (3.8 % on bodies that damp hard), or jumps over
- * it with
- * little more speed.
- * limit: N, > 0. RMIN_BOUNDED: the speed is safe, but slower ones only were looked at, or none. */
+ * that is returned is 1 to 2.3 % below the limit (up to 3.8 % on bodies that damp hard), or jumps
+ * over it
+ * with little more speed. That slower speeds press less is searched for, not proven.
+ * limit: N, > 0. RMIN_BOUNDED: the search did not end. The speed keeps the limit by its own
+ * impact, or
+ * by a proven bound; a greater one may, too. */
 inline result<rmin_safe_speed_t> safe_speed(
     const vector<6> &q,
     const vector<3> &n,

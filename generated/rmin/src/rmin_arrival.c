@@ -93,6 +93,18 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
     return fast < RMIN_FASTEST && RMIN_FABS(along - RMIN_R(1.0)) < ASTRAY ? RMIN_OK : RMIN_SINGULAR;
 }
 
+int rmin_set_off(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
+    const rmin_params *p, rmin_real rates[RMIN_N], rmin_arrival *arrival)
+{
+    const int status = rmin_check_finite(dq, RMIN_JOINTS);
+    for (int i = 0; i < RMIN_N; ++i) {
+        rates[i] = dq[RMIN_INDEPENDENT(i)];
+    }
+    (void)q;
+    (void)p;
+    return status == RMIN_OK ? rmin_links(RMIN_LINKS_OF(q, p), &arrival->links) : status;
+}
+
 rmin_real rmin_arrive_as_it_moves(int point, const rmin_real rates[RMIN_N], rmin_arrival *arrival)
 {
     rmin_real v[3];

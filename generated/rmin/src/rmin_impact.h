@@ -132,6 +132,10 @@ int rmin_check_impact(const rmin_region *region, const rmin_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival);
 
+/* Links of a robot whose joints move, and the velocities of its independent joints. */
+int rmin_set_off(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
+    const rmin_params *p, rmin_real rates[RMIN_N], rmin_arrival *arrival);
+
 /* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
 rmin_real rmin_arrive_as_it_moves(int point, const rmin_real rates[RMIN_N], rmin_arrival *arrival);
 
@@ -182,6 +186,14 @@ bool rmin_law_is_one(const rmin_region *region);
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 rmin_real rmin_two_body_force(const rmin_region *region, rmin_real mobility, rmin_real speed);
 rmin_real rmin_two_body_speed(const rmin_region *region, rmin_real mobility, rmin_real force);
+
+/*
+ * Largest share of a limit that counts as kept: with what arms and bodies have, forces are within 2e-3 of the
+ * right ones, in the worst of 100,000 within 1e-2.
+ */
+#define RMIN_KEPT RMIN_R(0.99)
+/* Speed of a contact point that counts as rest: it can hardly be measured, m/s. */
+#define RMIN_AT_REST RMIN_R(1e-6)
 
 /*
  * Largest speed, at most `cap` where that is positive, up to which an impact keeps a limit: OK,

@@ -4,11 +4,8 @@
 
 /* Until when it is looked, s. */
 #define PRESSED_UNTIL RMIN_R(0.6)
-/* Share of a limit up to which it counts as kept, as for peaks. */
-#define PRESSED_KEPT RMIN_R(0.995)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
-#define LEAST_SPEED RMIN_R(1e-6) /* of a contact point that does not rest, m/s */
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -50,7 +47,7 @@ static bool keeps(rmin_pressing *k, const rmin_region *region, rmin_real speed, 
     bool kept = true;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = rmin_impact_prepare(region, &k->p, motors, limit, &k->impact) == RMIN_OK
-            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+            && pressed_by(k, speed, RMIN_KEPT*limit) <= RMIN_KEPT*limit;
     }
     return kept;
 }
@@ -172,21 +169,6 @@ int rmin_allowed_speed_at(const rmin_real q[RMIN_JOINTS], int point, const rmin_
     return status;
 }
 
-/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
-static int set_off(const rmin_real *q, const rmin_real *dq, const rmin_region *region,
-    const rmin_params *p, rmin_real rates[RMIN_N], rmin_pressing *k)
-{
-    int status = rmin_check_finite(dq, RMIN_JOINTS);
-    if (status == RMIN_OK) {
-        status = rmin_check_impact(region, p);
-    }
-    for (int i = 0; i < RMIN_N; ++i) {
-        rates[i] = dq[RMIN_INDEPENDENT(i)];
-    }
-    (void)q;
-    return status == RMIN_OK ? rmin_links(RMIN_LINKS_OF(q, p), &k->impact.arrival.links) : status;
-}
-
 int rmin_allowed_factor(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
     const rmin_region *region, const rmin_params *p, rmin_allowed_factor_t *out)
 {
@@ -199,18 +181,21 @@ int rmin_allowed_factor(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_
     bool bounded = false;
     int status = check_limits(region);
     if (status == RMIN_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = rmin_check_impact(region, p);
+    }
+    if (status == RMIN_OK) {
+        status = rmin_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     for (int point = 0; point < RMIN_POINTS && status == RMIN_OK; ++point) {
         const rmin_real speed = rmin_arrive_as_it_moves(point, rates, &k.impact.arrival);
         rmin_allowed_speed_t allowed = {speed, RMIN_R(0.0), 0};
         rmin_impact_forget(&k.impact);
-        if (speed > LEAST_SPEED) {
+        if (speed > RMIN_AT_REST) {
             status = find_allowed(region, p, found.factor*speed, &k, &allowed);
             bounded = bounded || status == RMIN_BOUNDED;
             status = status == RMIN_BOUNDED ? RMIN_OK : status;
         }
-        if (speed > LEAST_SPEED && status == RMIN_OK
+        if (speed > RMIN_AT_REST && status == RMIN_OK
             && (allowed.speed < found.factor*speed || found.point < 0)) {
             found.factor = RMIN_FMIN(found.factor, allowed.speed/speed);
             found.point = point;
@@ -241,7 +226,10 @@ int rmin_may_press(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINT
     rmin_real rates[RMIN_N];
     int status = rmin_check_positive(&limit, 1);
     if (status == RMIN_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = rmin_check_impact(region, p);
+    }
+    if (status == RMIN_OK) {
+        status = rmin_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     if (status != RMIN_OK) {
         return status;
@@ -251,7 +239,7 @@ int rmin_may_press(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINT
         const rmin_real speed = rmin_arrive_as_it_moves(point, rates, &k.impact.arrival);
         rmin_impact_forget(&k.impact);
         prepare_pressing(p, &k);
-        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+        kept = !(speed > RMIN_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;
     return RMIN_OK;

@@ -2,9 +2,6 @@
 /* By how much rmin_ has to slow down so that no contact point hits too hard. */
 #include "rmin_impact.h"
 
-/* Speed of a contact point that counts as rest: it can hardly be measured. */
-#define AT_REST RMIN_R(1e-6)
-
 /* What the search of the least factor knows. */
 typedef struct {
     rmin_impact impact;
@@ -18,17 +15,11 @@ typedef struct {
 static int set_out(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
     const rmin_params *p, slowdown *s)
 {
-    const int status = rmin_check_finite(dq, RMIN_JOINTS);
-    for (int i = 0; i < RMIN_N; ++i) {
-        s->rates[i] = dq[RMIN_INDEPENDENT(i)];
-    }
     const rmin_speed_factor_over_t nothing = {RMIN_R(1.0), -1, RMIN_R(0.0), RMIN_R(0.0)};
     s->found = nothing;
     s->bounded = false;
     s->point = -1;
-    (void)q;
-    (void)p;
-    return status == RMIN_OK ? rmin_links(RMIN_LINKS_OF(q, p), &s->impact.arrival.links) : status;
+    return rmin_set_off(q, dq, p, s->rates, &s->impact.arrival);
 }
 
 /* Slows down until one point keeps the limit of one region. */
@@ -40,7 +31,7 @@ static int watch(const rmin_region *region, const rmin_params *p, int point, rmi
         s->speed = rmin_arrive_as_it_moves(point, s->rates, &s->impact.arrival);
         rmin_impact_forget(&s->impact);
     }
-    if (!(s->speed > AT_REST)) {
+    if (!(s->speed > RMIN_AT_REST)) {
         return RMIN_OK;
     }
     rmin_safe_speed_t safe;

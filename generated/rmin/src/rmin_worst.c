@@ -111,6 +111,9 @@ static int find_hardest(const rmin_region *region, const rmin_params *p, hardest
     }
     const rmin_real seen = w->force;
     look_around(region, p, w);
+    if (w->unknown) { /* so may be the hardest */
+        return RMIN_UNRESOLVED;
+    }
     for (int k = 0; k < 3; ++k) {
         out->n[k] = RMIN_R(0.0);
         for (int l = 0; l < RMIN_REACH; ++l) {

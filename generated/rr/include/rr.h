@@ -50,9 +50,9 @@ typedef enum {
     RR_LOOP_OPEN = 6,      /* the joint coordinates do not close the chain (closed chains) */
     RR_NO_EQUILIBRIUM = 7, /* Newton's method found no stable rest at these motor angles
                                 (closed chains) */
-    RR_UNRESOLVED = 8,     /* the budget of steps is used up, and no bound is known */
-    RR_BOUNDED = 9,        /* the budget of steps is used up; what was written is a bound on the
-                                safe side */
+    RR_UNRESOLVED = 8,     /* impacts cannot be followed to their end, and no bound is known */
+    RR_BOUNDED = 9,        /* impacts cannot be followed to their end: steps are used up, contacts
+                                too many or digits too few; what was written is on the safe side */
     RR_FOREIGN_PARAMS = 10 /* rr_default_params of this header, in this number type, has not
                                 filled in p */
 } rr_status;
@@ -280,9 +280,10 @@ typedef struct {
 
 /*
  * Speed along n up to which impacts keep a limit, found by integrating impacts: the force at the speed
- * that is returned is 1 to 2.3 % below the limit (3.8 % on bodies that damp hard), or jumps over it with
- * little more speed.
- * limit: N, > 0. RR_BOUNDED: the speed is safe, but slower ones only were looked at, or none.
+ * that is returned is 1 to 2.3 % below the limit (up to 3.8 % on bodies that damp hard), or jumps over it
+ * with little more speed. That slower speeds press less is searched for, not proven.
+ * limit: N, > 0. RR_BOUNDED: the search did not end. The speed keeps the limit by its own impact, or
+ * by a proven bound; a greater one may, too.
  */
 int rr_safe_speed(const rr_real q[RR_JOINTS], const rr_real n[3], rr_real limit,
     const rr_region *region, const rr_params *p, rr_safe_speed_t *out);

@@ -93,6 +93,18 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
     return fast < RR_FASTEST && RR_FABS(along - RR_R(1.0)) < ASTRAY ? RR_OK : RR_SINGULAR;
 }
 
+int rr_set_off(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    const rr_params *p, rr_real rates[RR_N], rr_arrival *arrival)
+{
+    const int status = rr_check_finite(dq, RR_JOINTS);
+    for (int i = 0; i < RR_N; ++i) {
+        rates[i] = dq[RR_INDEPENDENT(i)];
+    }
+    (void)q;
+    (void)p;
+    return status == RR_OK ? rr_links(RR_LINKS_OF(q, p), &arrival->links) : status;
+}
+
 rr_real rr_arrive_as_it_moves(int point, const rr_real rates[RR_N], rr_arrival *arrival)
 {
     rr_real v[3];

@@ -132,6 +132,10 @@ int rr_check_impact(const rr_region *region, const rr_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival);
 
+/* Links of a robot whose joints move, and the velocities of its independent joints. */
+int rr_set_off(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
+    const rr_params *p, rr_real rates[RR_N], rr_arrival *arrival);
+
 /* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
 rr_real rr_arrive_as_it_moves(int point, const rr_real rates[RR_N], rr_arrival *arrival);
 
@@ -182,6 +186,14 @@ bool rr_law_is_one(const rr_region *region);
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 rr_real rr_two_body_force(const rr_region *region, rr_real mobility, rr_real speed);
 rr_real rr_two_body_speed(const rr_region *region, rr_real mobility, rr_real force);
+
+/*
+ * Largest share of a limit that counts as kept: with what arms and bodies have, forces are within 2e-3 of the
+ * right ones, in the worst of 100,000 within 1e-2.
+ */
+#define RR_KEPT RR_R(0.99)
+/* Speed of a contact point that counts as rest: it can hardly be measured, m/s. */
+#define RR_AT_REST RR_R(1e-6)
 
 /*
  * Largest speed, at most `cap` where that is positive, up to which an impact keeps a limit: OK,

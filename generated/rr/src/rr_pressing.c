@@ -4,11 +4,8 @@
 
 /* Until when it is looked, s. */
 #define PRESSED_UNTIL RR_R(0.6)
-/* Share of a limit up to which it counts as kept, as for peaks. */
-#define PRESSED_KEPT RR_R(0.995)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
-#define LEAST_SPEED RR_R(1e-6) /* of a contact point that does not rest, m/s */
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -50,7 +47,7 @@ static bool keeps(rr_pressing *k, const rr_region *region, rr_real speed, rr_rea
     bool kept = true;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = rr_impact_prepare(region, &k->p, motors, limit, &k->impact) == RR_OK
-            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+            && pressed_by(k, speed, RR_KEPT*limit) <= RR_KEPT*limit;
     }
     return kept;
 }
@@ -172,21 +169,6 @@ int rr_allowed_speed_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3
     return status;
 }
 
-/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
-static int set_off(const rr_real *q, const rr_real *dq, const rr_region *region,
-    const rr_params *p, rr_real rates[RR_N], rr_pressing *k)
-{
-    int status = rr_check_finite(dq, RR_JOINTS);
-    if (status == RR_OK) {
-        status = rr_check_impact(region, p);
-    }
-    for (int i = 0; i < RR_N; ++i) {
-        rates[i] = dq[RR_INDEPENDENT(i)];
-    }
-    (void)q;
-    return status == RR_OK ? rr_links(RR_LINKS_OF(q, p), &k->impact.arrival.links) : status;
-}
-
 int rr_allowed_factor(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     const rr_region *region, const rr_params *p, rr_allowed_factor_t *out)
 {
@@ -199,18 +181,21 @@ int rr_allowed_factor(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     bool bounded = false;
     int status = check_limits(region);
     if (status == RR_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = rr_check_impact(region, p);
+    }
+    if (status == RR_OK) {
+        status = rr_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     for (int point = 0; point < RR_POINTS && status == RR_OK; ++point) {
         const rr_real speed = rr_arrive_as_it_moves(point, rates, &k.impact.arrival);
         rr_allowed_speed_t allowed = {speed, RR_R(0.0), 0};
         rr_impact_forget(&k.impact);
-        if (speed > LEAST_SPEED) {
+        if (speed > RR_AT_REST) {
             status = find_allowed(region, p, found.factor*speed, &k, &allowed);
             bounded = bounded || status == RR_BOUNDED;
             status = status == RR_BOUNDED ? RR_OK : status;
         }
-        if (speed > LEAST_SPEED && status == RR_OK
+        if (speed > RR_AT_REST && status == RR_OK
             && (allowed.speed < found.factor*speed || found.point < 0)) {
             found.factor = RR_FMIN(found.factor, allowed.speed/speed);
             found.point = point;
@@ -241,7 +226,10 @@ int rr_may_press(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     rr_real rates[RR_N];
     int status = rr_check_positive(&limit, 1);
     if (status == RR_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = rr_check_impact(region, p);
+    }
+    if (status == RR_OK) {
+        status = rr_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     if (status != RR_OK) {
         return status;
@@ -251,7 +239,7 @@ int rr_may_press(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
         const rr_real speed = rr_arrive_as_it_moves(point, rates, &k.impact.arrival);
         rr_impact_forget(&k.impact);
         prepare_pressing(p, &k);
-        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+        kept = !(speed > RR_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;
     return RR_OK;

@@ -2,13 +2,9 @@
 /* Largest speed of rr_ up to which impacts stay below a force. */
 #include "rr_impact.h"
 
-/*
- * Share of the limit at which trials aim, the share from which on one is near enough, and the largest
- * that counts as kept: forces are within 2e-3 of the right ones, in the worst of 100,000 within 1e-2.
- */
+/* Share of the limit at which trials aim, below RR_KEPT, and from which on one is near enough. */
 #define AIM RR_R(0.984)
 #define NEAR RR_R(0.977)
-#define KEPT RR_R(0.99)
 /*
  * Smoothness below which a body damps harder than it springs back, and the share of the limit that counts there:
  * forces on such bodies were up to 1.5e-2 too low in inputs that a search climbed to.
@@ -49,7 +45,7 @@ static bool try_speed(rr_impact *impact, rr_real v, bool rough, search *s,
     if (!peak.ended || rough) {
         return peak.ended && peak.force > RR_R(0.0);
     }
-    if (peak.force <= KEPT*s->limit) {
+    if (peak.force <= RR_KEPT*s->limit) {
         s->low = v;
         s->low_force = peak.force;
     } else {
@@ -114,7 +110,7 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
     found->speed = cap;
     found->force = RR_R(0.0);
     for (int motors = last; motors >= first; --motors) {
-        if (motors < last && are_weak(impact, found->speed, KEPT*limit)) {
+        if (motors < last && are_weak(impact, found->speed, RR_KEPT*limit)) {
             continue;
         }
         const int status = rr_impact_prepare(region, p, motors, limit, impact);

@@ -2,9 +2,6 @@
 /* By how much rr_ has to slow down so that no contact point hits too hard. */
 #include "rr_impact.h"
 
-/* Speed of a contact point that counts as rest: it can hardly be measured. */
-#define AT_REST RR_R(1e-6)
-
 /* What the search of the least factor knows. */
 typedef struct {
     rr_impact impact;
@@ -18,17 +15,11 @@ typedef struct {
 static int set_out(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     const rr_params *p, slowdown *s)
 {
-    const int status = rr_check_finite(dq, RR_JOINTS);
-    for (int i = 0; i < RR_N; ++i) {
-        s->rates[i] = dq[RR_INDEPENDENT(i)];
-    }
     const rr_speed_factor_over_t nothing = {RR_R(1.0), -1, RR_R(0.0), RR_R(0.0)};
     s->found = nothing;
     s->bounded = false;
     s->point = -1;
-    (void)q;
-    (void)p;
-    return status == RR_OK ? rr_links(RR_LINKS_OF(q, p), &s->impact.arrival.links) : status;
+    return rr_set_off(q, dq, p, s->rates, &s->impact.arrival);
 }
 
 /* Slows down until one point keeps the limit of one region. */
@@ -40,7 +31,7 @@ static int watch(const rr_region *region, const rr_params *p, int point, rr_real
         s->speed = rr_arrive_as_it_moves(point, s->rates, &s->impact.arrival);
         rr_impact_forget(&s->impact);
     }
-    if (!(s->speed > AT_REST)) {
+    if (!(s->speed > RR_AT_REST)) {
         return RR_OK;
     }
     rr_safe_speed_t safe;

@@ -111,6 +111,9 @@ static int find_hardest(const rr_region *region, const rr_params *p, hardest *w,
     }
     const rr_real seen = w->force;
     look_around(region, p, w);
+    if (w->unknown) { /* so may be the hardest */
+        return RR_UNRESOLVED;
+    }
     for (int k = 0; k < 3; ++k) {
         out->n[k] = RR_R(0.0);
         for (int l = 0; l < RR_REACH; ++l) {

@@ -93,6 +93,18 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
     return fast < UR5E_FASTEST && UR5E_FABS(along - UR5E_R(1.0)) < ASTRAY ? UR5E_OK : UR5E_SINGULAR;
 }
 
+int ur5e_set_off(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    const ur5e_params *p, ur5e_real rates[UR5E_N], ur5e_arrival *arrival)
+{
+    const int status = ur5e_check_finite(dq, UR5E_JOINTS);
+    for (int i = 0; i < UR5E_N; ++i) {
+        rates[i] = dq[UR5E_INDEPENDENT(i)];
+    }
+    (void)q;
+    (void)p;
+    return status == UR5E_OK ? ur5e_links(UR5E_LINKS_OF(q, p), &arrival->links) : status;
+}
+
 ur5e_real ur5e_arrive_as_it_moves(int point, const ur5e_real rates[UR5E_N], ur5e_arrival *arrival)
 {
     ur5e_real v[3];

@@ -22,9 +22,9 @@ const char *ur5e_status_text(int status)
     case UR5E_NO_EQUILIBRIUM:
         return "no equilibrium of springs and gravity was found";
     case UR5E_UNRESOLVED:
-        return "the budget of steps is used up, and no bound is known";
+        return "impacts cannot be followed to their end, and no bound is known";
     case UR5E_BOUNDED:
-        return "the budget of steps is used up; the result is a bound on the safe side";
+        return "impacts cannot be followed to their end; the result is on the safe side";
     case UR5E_FOREIGN_PARAMS:
         return "the parameters were not filled in for this library";
     default:

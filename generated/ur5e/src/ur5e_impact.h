@@ -132,6 +132,10 @@ int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p);
 /* The contact point's row along n, and the joint velocities of least norm that move it along n. */
 int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival);
 
+/* Links of a robot whose joints move, and the velocities of its independent joints. */
+int ur5e_set_off(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
+    const ur5e_params *p, ur5e_real rates[UR5E_N], ur5e_arrival *arrival);
+
 /* Prepares the arrival of a point as it moves at joint velocities, along its way; returns its speed. */
 ur5e_real ur5e_arrive_as_it_moves(int point, const ur5e_real rates[UR5E_N], ur5e_arrival *arrival);
 
@@ -182,6 +186,14 @@ bool ur5e_law_is_one(const ur5e_region *region);
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */
 ur5e_real ur5e_two_body_force(const ur5e_region *region, ur5e_real mobility, ur5e_real speed);
 ur5e_real ur5e_two_body_speed(const ur5e_region *region, ur5e_real mobility, ur5e_real force);
+
+/*
+ * Largest share of a limit that counts as kept: with what arms and bodies have, forces are within 2e-3 of the
+ * right ones, in the worst of 100,000 within 1e-2.
+ */
+#define UR5E_KEPT UR5E_R(0.99)
+/* Speed of a contact point that counts as rest: it can hardly be measured, m/s. */
+#define UR5E_AT_REST UR5E_R(1e-6)
 
 /*
  * Largest speed, at most `cap` where that is positive, up to which an impact keeps a limit: OK,

@@ -4,11 +4,8 @@
 
 /* Until when it is looked, s. */
 #define PRESSED_UNTIL UR5E_R(0.6)
-/* Share of a limit up to which it counts as kept, as for peaks. */
-#define PRESSED_KEPT UR5E_R(0.995)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
-#define LEAST_SPEED UR5E_R(1e-6) /* of a contact point that does not rest, m/s */
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -50,7 +47,7 @@ static bool keeps(ur5e_pressing *k, const ur5e_region *region, ur5e_real speed, 
     bool kept = true;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = ur5e_impact_prepare(region, &k->p, motors, limit, &k->impact) == UR5E_OK
-            && pressed_by(k, speed, PRESSED_KEPT*limit) <= PRESSED_KEPT*limit;
+            && pressed_by(k, speed, UR5E_KEPT*limit) <= UR5E_KEPT*limit;
     }
     return kept;
 }
@@ -172,21 +169,6 @@ int ur5e_allowed_speed_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_
     return status;
 }
 
-/* Links of a motion of joints, whose velocities are `rates`; 0 or a status. */
-static int set_off(const ur5e_real *q, const ur5e_real *dq, const ur5e_region *region,
-    const ur5e_params *p, ur5e_real rates[UR5E_N], ur5e_pressing *k)
-{
-    int status = ur5e_check_finite(dq, UR5E_JOINTS);
-    if (status == UR5E_OK) {
-        status = ur5e_check_impact(region, p);
-    }
-    for (int i = 0; i < UR5E_N; ++i) {
-        rates[i] = dq[UR5E_INDEPENDENT(i)];
-    }
-    (void)q;
-    return status == UR5E_OK ? ur5e_links(UR5E_LINKS_OF(q, p), &k->impact.arrival.links) : status;
-}
-
 int ur5e_allowed_factor(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
     const ur5e_region *region, const ur5e_params *p, ur5e_allowed_factor_t *out)
 {
@@ -199,18 +181,21 @@ int ur5e_allowed_factor(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_
     bool bounded = false;
     int status = check_limits(region);
     if (status == UR5E_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = ur5e_check_impact(region, p);
+    }
+    if (status == UR5E_OK) {
+        status = ur5e_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     for (int point = 0; point < UR5E_POINTS && status == UR5E_OK; ++point) {
         const ur5e_real speed = ur5e_arrive_as_it_moves(point, rates, &k.impact.arrival);
         ur5e_allowed_speed_t allowed = {speed, UR5E_R(0.0), 0};
         ur5e_impact_forget(&k.impact);
-        if (speed > LEAST_SPEED) {
+        if (speed > UR5E_AT_REST) {
             status = find_allowed(region, p, found.factor*speed, &k, &allowed);
             bounded = bounded || status == UR5E_BOUNDED;
             status = status == UR5E_BOUNDED ? UR5E_OK : status;
         }
-        if (speed > LEAST_SPEED && status == UR5E_OK
+        if (speed > UR5E_AT_REST && status == UR5E_OK
             && (allowed.speed < found.factor*speed || found.point < 0)) {
             found.factor = UR5E_FMIN(found.factor, allowed.speed/speed);
             found.point = point;
@@ -241,7 +226,10 @@ int ur5e_may_press(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINT
     ur5e_real rates[UR5E_N];
     int status = ur5e_check_positive(&limit, 1);
     if (status == UR5E_OK) {
-        status = set_off(q, dq, region, p, rates, &k);
+        status = ur5e_check_impact(region, p);
+    }
+    if (status == UR5E_OK) {
+        status = ur5e_set_off(q, dq, p, rates, &k.impact.arrival);
     }
     if (status != UR5E_OK) {
         return status;
@@ -251,7 +239,7 @@ int ur5e_may_press(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINT
         const ur5e_real speed = ur5e_arrive_as_it_moves(point, rates, &k.impact.arrival);
         ur5e_impact_forget(&k.impact);
         prepare_pressing(p, &k);
-        kept = !(speed > LEAST_SPEED) || keeps(&k, region, speed, limit);
+        kept = !(speed > UR5E_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;
     return UR5E_OK;

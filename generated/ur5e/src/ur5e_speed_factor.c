@@ -2,9 +2,6 @@
 /* By how much ur5e_ has to slow down so that no contact point hits too hard. */
 #include "ur5e_impact.h"
 
-/* Speed of a contact point that counts as rest: it can hardly be measured. */
-#define AT_REST UR5E_R(1e-6)
-
 /* What the search of the least factor knows. */
 typedef struct {
     ur5e_impact impact;
@@ -18,17 +15,11 @@ typedef struct {
 static int set_out(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],
     const ur5e_params *p, slowdown *s)
 {
-    const int status = ur5e_check_finite(dq, UR5E_JOINTS);
-    for (int i = 0; i < UR5E_N; ++i) {
-        s->rates[i] = dq[UR5E_INDEPENDENT(i)];
-    }
     const ur5e_speed_factor_over_t nothing = {UR5E_R(1.0), -1, UR5E_R(0.0), UR5E_R(0.0)};
     s->found = nothing;
     s->bounded = false;
     s->point = -1;
-    (void)q;
-    (void)p;
-    return status == UR5E_OK ? ur5e_links(UR5E_LINKS_OF(q, p), &s->impact.arrival.links) : status;
+    return ur5e_set_off(q, dq, p, s->rates, &s->impact.arrival);
 }
 
 /* Slows down until one point keeps the limit of one region. */
@@ -40,7 +31,7 @@ static int watch(const ur5e_region *region, const ur5e_params *p, int point, ur5
         s->speed = ur5e_arrive_as_it_moves(point, s->rates, &s->impact.arrival);
         ur5e_impact_forget(&s->impact);
     }
-    if (!(s->speed > AT_REST)) {
+    if (!(s->speed > UR5E_AT_REST)) {
         return UR5E_OK;
     }
     ur5e_safe_speed_t safe;

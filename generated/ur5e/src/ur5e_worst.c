@@ -111,6 +111,9 @@ static int find_hardest(const ur5e_region *region, const ur5e_params *p, hardest
     }
     const ur5e_real seen = w->force;
     look_around(region, p, w);
+    if (w->unknown) { /* so may be the hardest */
+        return UR5E_UNRESOLVED;
+    }
     for (int k = 0; k < 3; ++k) {
         out->n[k] = UR5E_R(0.0);
         for (int l = 0; l < UR5E_REACH; ++l) {
