@@ -254,7 +254,7 @@ def _kept(bound: Kept) -> str:
 
 
 def _broken(worst: Worst) -> str:
-    broken = [each.name for each in worst.bounds if each.share > 1 + 1e-5]
+    broken = [each.name for each in worst.bounds if each.broken]
     return f", which breaks {' and '.join(broken)}" if broken else ""
 
 
