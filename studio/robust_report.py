@@ -211,7 +211,7 @@ def robust_in_words(design: RobustDesign) -> list[str]:
         f"{place_in_words(design, worst)}",
         *(_kept(each) for each in worst.bounds),
         f"Equal proportions, just accurate (k_s = {_range(springs)}): {equal.force:.1f} N, "
-        f"{equal.value:.4g} {objective.unit}; the design {gain} {saved:.1f} %",
+        f"{equal.value:.4g} {objective.unit}{_broken(equal)}; the design {gain} {saved:.1f} %",
         f"Before: {design.before.force:.1f} N, {design.before.value:.4g} {objective.unit}, "
         f"{1e3 * design.before.deflection:.4g} mm" + _broken(design.before),
     ]
