@@ -29,7 +29,7 @@ from softimpact.studio.figures.pareto import (
 from softimpact.studio.figures.pareto_designs import figure_of_designs
 from softimpact.studio.pareto_report import ParetoReport, pareto_report
 from softimpact.studio.pareto_schema import ParetoResults
-from softimpact.studio.pareto_words import in_words, markdown, rows
+from softimpact.studio.pareto_words import front_words, in_words, rows
 from softimpact.studio.report.pareto_pages import write_pareto_report
 
 POSES = ("q9", "q18")
@@ -148,7 +148,7 @@ def test_words(report: ParetoReport) -> None:
     assert f"{report.pareto.reference.force:.1f} N" in said
     assert "Ipopt solved all" in said
     assert len(rows(report)) == report.pareto.levels.size
-    assert "# " in markdown(report, [])
+    assert "# " in front_words(report).markdown([])
 
 
 @pytest.mark.slow
