@@ -19,6 +19,9 @@ from .machine.hardware import Hardware, Machine, TaskMotion
 from .study.study import Study
 from .variables import Variable
 
+KEEPS = 1e-5
+"""Share of a limit by which a design may miss it: Ipopt's tolerance."""
+
 
 @dataclass(frozen=True, eq=False)
 class Kept:
@@ -39,6 +42,11 @@ class Kept:
     figure: float
     limit: float
     share: float
+
+    @property
+    def broken(self) -> bool:
+        """Whether it is missed by more than Ipopt's tolerance."""
+        return self.share > 1 + KEEPS
 
 
 def equipped(study: Study, springs: Matrix, others: Matrix | None = None) -> Hardware:

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
-from .evaluation import largest_share
-from .robust.certificate import KEEPS
+from .evaluation import KEEPS, largest_share
 from .search.ipopt import Found, Instance
 from .search.problem import Problem, peak_force
 from .search.solve import Outcome

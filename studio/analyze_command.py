@@ -50,7 +50,12 @@ def analyze(
     from .typed_motors import TypedMotors, motors_meant
 
     given = TypedDrives(
-        joint_stiffness, rotor_inertia, position_gain, computed_torque_gain, gear_ratio
+        joint_stiffness,
+        rotor_inertia,
+        position_gain,
+        computed_torque_gain,
+        gear_ratio,
+        servo=motors == "servo",
     )
     known, _ = motors_meant(TypedMotors(motors), given)
     law = None if known is None else known.kind

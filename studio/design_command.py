@@ -100,18 +100,13 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
     from .figures.robust import figure_of_robust_design
     from .figures.style import save
     from .output import failures_as_json, print_json, print_warnings, say, write_json
-    from .progress import optimiser_bar
+    from .progress import optimiser_stages
     from .results_folder import RESULTS, replaced_folder, running
     from .robust_report import designed_model, robust_in_words, robust_record
 
     asked, scenarios = study.scenarios, scenarios_of(study)
     free = isinstance(asked, ScenariosSection) and asked.posture == "free"
-    with failures_as_json(json), running(how, folder) as pool, optimiser_bar() as progress:
-        task = progress.add_task("compile", total=None)
-
-        def advance(what: str, done: int, total: int) -> None:
-            progress.update(task, description=what, completed=done, total=total)
-
+    with failures_as_json(json), running(how, folder) as pool, optimiser_stages() as advance:
         found = robust_design(study, scenarios, pool, advance, free=free)
         record = robust_record(found)
         with replaced_folder(folder, GENERATOR) as fresh:

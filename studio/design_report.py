@@ -134,7 +134,7 @@ def nominal_in_words(design: Design) -> str | None:
     task, reference, study = task_result(design), design.answers.reference, design.study
     if task.keeps_before:
         return None
-    broken = [b.name for b in kept(study, task.candidate.q, study.nominal) if b.share > 1 + 1e-5]
+    broken = [b.name for b in kept(study, task.candidate.q, study.nominal) if b.broken]
     return (
         f"nominal springs break {' and '.join(broken)} in {study.task_pose.name} "
         f"({task.force_before:.1f} N, {1e3 * task.deflection_before:.3g} mm); before means springs "

@@ -102,6 +102,16 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell
     console.print(table)
 
 
+def folded(cell: Cell) -> Cell:
+    """Return a cell with its words, and a point behind its body, in lines of their own.
+
+    So 80 columns hold tables of many words. CSV keeps cells as they are: ``BODY@x,y,z`` is typed.
+    """
+    if AS_CSV.get() or not isinstance(cell, str):
+        return cell
+    return cell.replace(" ", "\n").replace("@", "\n@")
+
+
 def _print_csv(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     writer = csv.writer(sys.stdout, lineterminator="\n")
     print(f"# {' '.join(title.split())}")

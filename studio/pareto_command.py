@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,9 +17,9 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from softimpact.optimize import Study
-    from softimpact.optimize.running.execution import Execution
+    from softimpact.optimize.running.workers import Progress
 
-    from .pareto_report import ParetoReport
+    from .front_words import FrontWords
 
 OutOption = Annotated[
     Path | None,
@@ -55,9 +58,11 @@ def pareto(
     from softimpact.optimize.front.trade_off import asks_for_trade_off
     from softimpact.optimize.running.execution import Execution
 
-    from .output import failures_as_json, print_json, print_warnings
-    from .pareto_record import GENERATOR, pareto_record
+    from .output import failures_as_json, print_json, print_warnings, write_json
+    from .pareto_record import GENERATOR
+    from .progress import optimiser_stages
     from .results_folder import (
+        RESULTS,
         replaced_folder,
         require_folder_of,
         require_replaceable_results,
@@ -76,108 +81,69 @@ def pareto(
     require_replaceable_results(folder, GENERATOR)
     require_folder_of(page)
     how = Execution(workers, dask, resume)
-    if asks_for_trade_off(problem):
-        _trade_off(problem, folder, page, how, json)
-        return
-    with failures_as_json(json), running(how, folder) as pool:
-        report = _search(problem, pool)
-        record = pareto_record(report)
+    search = _trade_off if asks_for_trade_off(problem) else _of_postures
+    with failures_as_json(json), running(how, folder) as pool, optimiser_stages() as advance:
+        found = search(problem, pool, advance)
         with replaced_folder(folder, GENERATOR) as fresh:
-            _write(report, record, fresh)
+            write_json(fresh / RESULTS, found.record)
+            found.write_table(fresh / found.words.file)
+            figures = [figure.name for figure in found.draw(fresh)]
+            (fresh / "report.md").write_text(found.words.markdown(figures), encoding="utf-8")
     if page is not None:
-        from .report.pareto_pages import write_pareto_report
-
-        write_pareto_report(report, page)
-    print_warnings(record["warnings"])
+        found.write_page(page)
+    print_warnings(found.record["warnings"])
     if json:
-        print_json({"out": folder, **record})
+        print_json({"out": folder, **found.record})
     else:
-        _print(report, folder)
+        found.words.show(folder)
 
 
-def _trade_off(study: Study, folder: Path, page: Path | None, how: Execution, json: bool) -> None:
-    """Find and write a front over objectives of a machine for scenarios."""
+@dataclass(frozen=True)
+class _Found:
+    """A front, as plain data and in words, and how its files are written."""
+
+    record: dict[str, Any]
+    words: FrontWords
+    write_table: Callable[[Path], None]
+    draw: Callable[[Path], list[Path]]
+    write_page: Callable[[Path], Path]
+
+
+def _trade_off(study: Study, pool: Executor, advance: Progress) -> _Found:
+    """Find a front over objectives of a machine for scenarios."""
     from softimpact.optimize.front.trade_off import trade_off_front
 
     from .figures.trade_off import draw_trade_off_figures
-    from .output import (
-        failures_as_json,
-        print_json,
-        print_table,
-        print_warnings,
-        say,
-        write_json,
-    )
-    from .pareto_record import GENERATOR
-    from .progress import optimiser_bar
-    from .results_folder import RESULTS, replaced_folder, running
+    from .report.trade_off_pages import write_trade_off_report
     from .trade_off_record import trade_off_record, write_points
     from .trade_off_report import trade_off_report
-    from .trade_off_words import columns, heading, in_words, markdown, rows
+    from .trade_off_words import front_words
 
-    with failures_as_json(json), running(how, folder) as pool, optimiser_bar() as progress:
-        task = progress.add_task("compile", total=None)
-
-        def advance(what: str, done: int, total: int) -> None:
-            progress.update(task, description=what, completed=done, total=total)
-
-        report = trade_off_report(trade_off_front(study, pool, advance), advance)
-        record = trade_off_record(report)
-        with replaced_folder(folder, GENERATOR) as fresh:
-            write_json(fresh / RESULTS, record)
-            write_points(report, fresh / "front.csv")
-            figures = draw_trade_off_figures(report, fresh)
-            words = markdown(report, [figure.name for figure in figures])
-            (fresh / "report.md").write_text(words, encoding="utf-8")
-    if page is not None:
-        from .report.trade_off_pages import write_trade_off_report
-
-        write_trade_off_report(report, page)
-    print_warnings(record["warnings"])
-    if json:
-        print_json({"out": folder, **record})
-        return
-    print_table(heading(report), columns(report), rows(report))
-    for line in in_words(report):
-        say(line)
-    say(f"\nResults, table, report and figures: {folder}")
+    report = trade_off_report(trade_off_front(study, pool, advance), advance)
+    return _Found(
+        trade_off_record(report),
+        front_words(report),
+        partial(write_points, report),
+        partial(draw_trade_off_figures, report),
+        partial(write_trade_off_report, report),
+    )
 
 
-def _search(study: Study, pool: Executor) -> ParetoReport:
-    """Find the fronts and check them, with a progress bar on stderr."""
+def _of_postures(study: Study, pool: Executor, advance: Progress) -> _Found:
+    """Find the fronts of postures for the study's own impact."""
     from softimpact.optimize import pareto_fronts
 
-    from .pareto_report import pareto_report
-    from .progress import optimiser_bar
-
-    with optimiser_bar() as progress:
-        task = progress.add_task("compile", total=None)
-
-        def advance(what: str, done: int, total: int) -> None:
-            progress.update(task, description=what, completed=done, total=total)
-
-        return pareto_report(pareto_fronts(study, pool, advance), advance)
-
-
-def _write(report: ParetoReport, record: dict[str, Any], folder: Path) -> None:
     from .figures.pareto import draw_pareto_figures
-    from .output import write_json
-    from .pareto_record import write_table
-    from .pareto_words import markdown
-    from .results_folder import RESULTS
+    from .pareto_record import pareto_record, write_table
+    from .pareto_report import pareto_report
+    from .pareto_words import front_words
+    from .report.pareto_pages import write_pareto_report
 
-    write_json(folder / RESULTS, record)
-    write_table(report, folder / "fronts.csv")
-    figures = draw_pareto_figures(report, folder)
-    words = markdown(report, [figure.name for figure in figures])
-    (folder / "report.md").write_text(words, encoding="utf-8")
-
-
-def _print(report: ParetoReport, folder: Path) -> None:
-    from .output import print_table, say
-    from .pareto_words import columns, heading, in_words, rows
-
-    print_table(heading(report), columns(report), rows(report))
-    for line in in_words(report):
-        say(line)
-    say(f"\nResults, table, report and figures: {folder}")
+    report = pareto_report(pareto_fronts(study, pool, advance), advance)
+    return _Found(
+        pareto_record(report),
+        front_words(report),
+        partial(write_table, report),
+        partial(draw_pareto_figures, report),
+        partial(write_pareto_report, report),
+    )

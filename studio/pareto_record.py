@@ -11,6 +11,7 @@ from softimpact.optimize import Front, ParetoPoint
 from softimpact.optimize.answers import by_name
 
 from .cautions import study_warnings
+from .checks import doubts
 from .design_report import inputs, limit_kind, versions
 from .pareto_report import FRONTS, CheckedFrontPoint, ParetoReport, price_of_deflection
 
@@ -29,7 +30,7 @@ def pareto_record(report: ParetoReport) -> dict[str, Any]:
         "limit": report.limit,
         "limit_kind": limit_kind(study),
         "peak_definition": "peak",
-        "warnings": study_warnings(study),
+        "warnings": [*study_warnings(study), *_doubts(report)],
         "accuracy": "largest deflection of the tip by the springs under the study's forces [m]",
         "solver": {
             "compiled": pareto.compiled,
@@ -59,6 +60,21 @@ def pareto_record(report: ParetoReport) -> dict[str, Any]:
             if front.unsolved
         },
     }
+
+
+def _doubts(report: ParetoReport) -> list[str]:
+    """Return a line for each design whose force simulation contradicts on the unsafe side."""
+    return [
+        line
+        for name in FRONTS
+        for one in report.fronts[name]
+        for line in doubts(
+            one.check.nlp,
+            one.check.linearised,
+            one.check.full,
+            of=f"the design of {1e3 * one.point.deflection:.3g} mm ({name} front)",
+        )
+    ]
 
 
 def _point(point: ParetoPoint) -> dict[str, Any]:

@@ -8,11 +8,13 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 
 
-class _Part(BaseModel):
+class Part(BaseModel):
+    """Of a record, with no fields but its own."""
+
     model_config = ConfigDict(extra="forbid")
 
 
-class PointRecord(_Part):
+class PointRecord(Part):
     """A design on a front."""
 
     bound: float = Field(description="on the deflection, with which it was sought [m]")
@@ -28,7 +30,7 @@ class PointRecord(_Part):
     springs: list[float] = Field(description="joint stiffness [N·m/rad]")
 
 
-class CheckedRecord(_Part):
+class CheckedRecord(Part):
     """A force by independent simulation [N]."""
 
     nlp: float
@@ -36,7 +38,7 @@ class CheckedRecord(_Part):
     full: float
 
 
-class PriceRecord(_Part):
+class PriceRecord(Part):
     """What a bound costs: how much a little more room buys, to first order."""
 
     bound: str
@@ -61,7 +63,7 @@ class CheckedPointRecord(PointRecord):
     knee: bool = Field(description="whether the front bends there")
 
 
-class Unsolved(_Part):
+class Unsolved(Part):
     """A level at which Ipopt failed."""
 
     bound: float
@@ -70,7 +72,7 @@ class Unsolved(_Part):
     violation: float
 
 
-class ReferenceRecord(_Part):
+class ReferenceRecord(Part):
     """The design to improve on."""
 
     name: str
@@ -81,7 +83,7 @@ class ReferenceRecord(_Part):
     safe_speed: float
 
 
-class Fronts(_Part):
+class Fronts(Part):
     """Fronts, the most accurate design first; none of a front beats another in both."""
 
     free: list[CheckedPointRecord]
@@ -89,7 +91,7 @@ class Fronts(_Part):
     task: list[CheckedPointRecord]
 
 
-class Solver(_Part):
+class Solver(Part):
     """How the impacts were integrated, and how many searches there were."""
 
     compiled: bool
@@ -98,7 +100,7 @@ class Solver(_Part):
     impact_steps: int
 
 
-class ParetoResults(_Part):
+class ParetoResults(Part):
     """Everything that ``softimpact pareto`` found."""
 
     generator: str

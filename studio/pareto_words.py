@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What Pareto fronts say, as a table, sentences and a page of Markdown."""
+"""What Pareto fronts of postures say, as a table and sentences."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import pairwise
 from math import log
 
@@ -12,7 +11,8 @@ from softimpact.optimize.study.poses import leaves_a_choice
 
 from .answers_in_words import answers_in_words
 from .design_report import limit_kind, peak_in_words
-from .output import Cell, shown
+from .front_words import FrontWords
+from .output import Cell
 from .pareto_report import CheckedFrontPoint, ParetoReport, price_of_deflection
 
 MM = 1e3
@@ -36,8 +36,23 @@ COLUMNS = (
     "safe,\ntask's\nm/s",
 )
 
+TABLE = "fronts.csv"
+"""File with the points of all fronts."""
+
 STATUS = "Ipopt"
 """Head of a column that is there where Ipopt failed at a level."""
+
+
+def front_words(report: ParetoReport) -> FrontWords:
+    """Return what the fronts say."""
+    return FrontWords(
+        heading(report),
+        columns(report),
+        rows(report),
+        in_words(report),
+        TABLE,
+        "A dash: out of reach, or no better than a more accurate design.",
+    )
 
 
 def heading(report: ParetoReport) -> str:
@@ -224,26 +239,3 @@ def _unsolved(report: ParetoReport) -> list[str]:
         return [f"Ipopt solved all {asked} levels of all postures."]
     kinds = ", ".join(sorted({outcome.status for outcome in failed}))
     return [f"Ipopt failed at {len(failed)} of {asked} levels of all postures ({kinds})."]
-
-
-def as_one_line(heads: Sequence[str]) -> list[str]:
-    """Return heads with their last line, the unit, in brackets."""
-    parted = (head.rpartition("\n") for head in heads)
-    return [f"{' '.join(name.split())} [{unit}]" if name else unit for name, _, unit in parted]
-
-
-def markdown(report: ParetoReport, figures: Sequence[str]) -> str:
-    """Return a page with the table, what it says, and links to figures beside it."""
-    titles = as_one_line(columns(report))
-    table = [titles, ["---"] * len(titles), *([shown(c) for c in row] for row in rows(report))]
-    title, setting = heading(report).split("\n")
-    blocks = [
-        f"# {title}",
-        f"{setting}.",
-        "\n".join(f"| {' | '.join(row)} |" for row in table),
-        "A dash: out of reach, or no better than a more accurate design.",
-        "\n".join(f"- {line}" for line in in_words(report)),
-        *(f"![{figure.removesuffix('.png').replace('_', ' ')}]({figure})" for figure in figures),
-        "Every number is in `results.json`; the fronts are also in `fronts.csv`.",
-    ]
-    return "\n\n".join(blocks) + "\n"

@@ -12,7 +12,7 @@ import numpy as np
 
 from softimpact.simulate.zones import Somebody
 
-from .output import Cell, print_table, say
+from .output import Cell, folded, print_table, say
 from .program_run import Question, SlowedProgram
 
 GENERATOR = "softimpact program"
@@ -101,14 +101,7 @@ COLUMNS = ("at\ns", "factor", "point", "region", "limit", "motors", "m/s", "safe
 def print_program(found: ProgramResult, out: Path | None) -> None:
     """Print what limits a program as a table."""
     record = found.record
-    # points and kinds of limits in two lines, so that 80 columns hold the table
-    rows = [
-        [
-            c.replace(" ", "\n").replace("@", "\n@") if isinstance(c, str) else c
-            for c in moment_row(moment)
-        ]
-        for moment in record["worst"]
-    ]
+    rows = [[folded(cell) for cell in moment_row(moment)] for moment in record["worst"]]
     print_table(f"{record['robot']}: {in_a_sentence(record)}", COLUMNS, rows)
     banded = [moment for moment in record["worst"] if "band" in moment]
     if banded:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
 from typing import Any
@@ -93,6 +93,18 @@ def progress_bar() -> Progress:
         TimeRemainingColumn(),
     )
     return Progress(*columns, console=console)
+
+
+@contextmanager
+def optimiser_stages() -> Iterator[Callable[[str, int, int], None]]:
+    """Show the bar of an optimiser; yield what tells it what is done of what."""
+    with optimiser_bar() as bar:
+        task = bar.add_task("compile", total=None)
+
+        def advance(what: str, done: int, total: int) -> None:
+            bar.update(task, description=what, completed=done, total=total)
+
+        yield advance
 
 
 def optimiser_bar() -> Progress:

@@ -14,7 +14,7 @@ from .cautions import study_warnings
 from .checks import doubts
 from .design_report import inputs, versions
 from .pareto_record import GENERATOR
-from .robust_report import ROUNDING, scenario_record
+from .robust_report import meets_limit, scenario_record, share_of_limit
 from .trade_off_report import TradeOffReport, broken_before
 
 FORM = "objectives"
@@ -88,9 +88,9 @@ def _point(report: TradeOffReport, point: TradePoint, check: float, knee: bool) 
         "others": dict(zip(names, point.others.tolist(), strict=True)),
         "postures": dict(zip(poses, point.postures.tolist(), strict=True)),
         "worst_force": worst.force,
-        "worst_share": worst.share * point.scenarios.allowed,
+        "worst_share": share_of_limit(point),
         "worst_scenario": scenario_record(point, worst),
-        "meets_limit": worst.share * point.scenarios.allowed <= 1 + ROUNDING,
+        "meets_limit": meets_limit(point),
         "check": {"nlp": worst.force, "linearised": check},
         "bounds": worst.bounds,
         "indifferent": by_name(study, point.indifferent),
@@ -115,13 +115,12 @@ def write_points(report: TradeOffReport, path: Path) -> None:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(header)
         for i, (point, check) in enumerate(zip(report.points, report.checks, strict=True)):
-            share = point.worst.share * point.scenarios.allowed
             table.writerow(
                 [
                     *point.values,
                     str(i == report.found.knee).lower(),
-                    *(point.worst.force, share, check),
-                    str(share <= 1 + ROUNDING).lower(),
+                    *(point.worst.force, share_of_limit(point), check),
+                    str(meets_limit(point)).lower(),
                     point.status,
                     *point.springs.tolist(),
                     *point.others.tolist(),

@@ -110,5 +110,4 @@ def broken_before(found: TradeOff) -> list[str]:
     """Return the bounds that the machine as it is breaks, of those that no objective moves."""
     moved = {axis.kind for axis in found.axes.held}
     names = {b.name for b in found.study.bounds if b.kind in moved}
-    return [kept.name for kept in found.before.bounds if kept.share > 1 + 1e-5
-            and kept.name not in names]  # fmt: skip
+    return [b.name for b in found.before.bounds if b.broken and b.name not in names]

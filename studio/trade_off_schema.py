@@ -5,16 +5,12 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from .pareto_schema import PriceRecord
-
-
-class _Part(BaseModel):
-    model_config = ConfigDict(extra="forbid")
+from .pareto_schema import Part, PriceRecord
 
 
-class ObjectiveRecord(_Part):
+class ObjectiveRecord(Part):
     """One of the quantities that the front trades."""
 
     kind: str = Field(description="name of an objective or a bound in study files")
@@ -24,7 +20,7 @@ class ObjectiveRecord(_Part):
     levels: list[float] | None = Field(description="at which it was held; null if it was sought")
 
 
-class KeptRecord(_Part):
+class KeptRecord(Part):
     """How well a bound is kept, in the pose where it is kept worst."""
 
     name: str
@@ -35,7 +31,7 @@ class KeptRecord(_Part):
     share: float = Field(description="of the limit that is used; above 1 it is broken")
 
 
-class ScenarioRecord(_Part):
+class ScenarioRecord(Part):
     """An impact."""
 
     pose: str
@@ -49,14 +45,14 @@ class ScenarioRecord(_Part):
     limit: float = Field(description="largest force that it allows [N]")
 
 
-class CheckRecord(_Part):
+class CheckRecord(Part):
     """The worst scenario's peak [N] as the optimiser has it and by independent simulation."""
 
     nlp: float
     linearised: float
 
 
-class TradePointRecord(_Part):
+class TradePointRecord(Part):
     """A design that no other beats in all objectives."""
 
     values: dict[str, float] = Field(description="of the objectives, by kind, in their units")
@@ -78,7 +74,7 @@ class TradePointRecord(_Part):
     status: str = Field(description="Ipopt's")
 
 
-class BeforeRecord(_Part):
+class BeforeRecord(Part):
     """The machine as it is."""
 
     values: dict[str, float]
@@ -89,7 +85,7 @@ class BeforeRecord(_Part):
     breaks: list[str]
 
 
-class TradeSolverRecord(_Part):
+class TradeSolverRecord(Part):
     """How the impacts were integrated."""
 
     compiled: bool
@@ -97,7 +93,7 @@ class TradeSolverRecord(_Part):
     impact_steps: int
 
 
-class ObjectivesResults(_Part):
+class ObjectivesResults(Part):
     """What ``softimpact pareto`` found of a machine for scenarios."""
 
     generator: str

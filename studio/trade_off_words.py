@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What fronts over two or three objectives say, as a table, sentences and a page of Markdown."""
+"""What fronts over two or three objectives say, as a table and sentences."""
 
 from __future__ import annotations
 
@@ -11,10 +11,18 @@ from softimpact.optimize.front.axes import BoundAxis
 
 from .answers_in_words import answers_in_words
 from .design_report import peak_in_words
-from .output import Cell, shown
-from .pareto_words import as_one_line
+from .front_words import FrontWords
+from .output import Cell
 from .robust_report import others_in_words, place_in_words
 from .trade_off_report import TradeOffReport, View, broken_before
+
+TABLE = "front.csv"
+"""File with the designs."""
+
+
+def front_words(report: TradeOffReport) -> FrontWords:
+    """Return what the front says."""
+    return FrontWords(heading(report), columns(report), rows(report), in_words(report), TABLE)
 
 
 def heading(report: TradeOffReport) -> str:
@@ -157,19 +165,3 @@ def _levels(report: TradeOffReport) -> Iterator[str]:
         yield f"Ipopt failed at {len(found.unsolved)} combinations within reach ({kinds})."
     else:
         yield f"Ipopt solved all {found.searched} combinations within reach."
-
-
-def markdown(report: TradeOffReport, figures: Sequence[str]) -> str:
-    """Return a page with the table, what it says, and links to figures beside it."""
-    titles = as_one_line(columns(report))
-    table = [titles, ["---"] * len(titles), *([shown(c) for c in row] for row in rows(report))]
-    title, setting = heading(report).split("\n")
-    blocks = [
-        f"# {title}",
-        f"{setting}.",
-        "\n".join(f"| {' | '.join(row)} |" for row in table),
-        "\n".join(f"- {line}" for line in in_words(report)),
-        *(f"![{figure.removesuffix('.png').replace('_', ' ')}]({figure})" for figure in figures),
-        "Every number is in `results.json`; the points are also in `front.csv`.",
-    ]
-    return "\n\n".join(blocks) + "\n"

@@ -69,11 +69,7 @@ class Worst:
     @property
     def keeps(self) -> bool:
         """Whether all bounds are kept."""
-        return all(each.share <= 1 + KEEPS for each in self.bounds)
-
-
-KEEPS = 1e-5
-"""Share of a limit by which a design may miss it: Ipopt's tolerance."""
+        return not any(each.broken for each in self.bounds)
 
 
 @dataclass(frozen=True, eq=False)

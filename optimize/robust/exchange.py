@@ -10,6 +10,7 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+from ..evaluation import KEEPS
 from ..failure import SolverFailure
 from ..machine.tip_pose import tip_pose
 from ..objectives import WorstForce
@@ -20,7 +21,7 @@ from ..search.nlp import NlpShape, Program, task_numbers
 from ..search.samples import elsewhere, promising
 from ..search.solve import Outcome
 from ..study.study import Study
-from .certificate import KEEPS, Hardening, Setting, Worst
+from .certificate import Hardening, Setting, Worst
 from .screening import Screened
 
 ROUNDS = 40

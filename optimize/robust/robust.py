@@ -20,7 +20,7 @@ from softimpact.symbolic.record import Record
 from softimpact.symbolic.robot.rigid import Array
 
 from ..answers import Price, indifferent_ranges, prices_of, worth_of
-from ..evaluation import equipped, largest_share
+from ..evaluation import KEEPS, equipped, largest_share
 from ..impact.timing import Timing
 from ..machine.hardware import Hardware
 from ..running.workers import Progress, cores, workers, works_elsewhere
@@ -30,7 +30,7 @@ from ..search.repair import accurate_springs
 from ..study.scenarios import Scenarios
 from ..study.study import Study
 from ..variables.cover import Cover
-from .certificate import KEEPS, Hardening, Setting, Worst
+from .certificate import Hardening, Setting, Worst
 from .exchange import ExchangeState, exchange, serves, worst_few
 from .screening import SCENARIOS_IN_A_JOB
 from .setting import setting_of

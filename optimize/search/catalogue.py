@@ -11,10 +11,10 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+from ..evaluation import KEEPS, largest_share
 from ..evaluation import kept as kept_bounds
-from ..evaluation import largest_share
 from ..failure import Unavailable
-from ..robust.certificate import KEEPS, Hardening, Setting, Worst
+from ..robust.certificate import Hardening, Setting, Worst
 from ..study.study import Study
 
 ROUNDS = 20

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
 
-from ..evaluation import largest_deflection, largest_share
+from ..evaluation import KEEPS, largest_deflection, largest_share
 from ..machine.coordinates import freedom, posture_limits
 from ..machine.tip_pose import POSE, posture_error
 from ..study.study import Study
@@ -30,7 +30,7 @@ STILL = 1e-8
 
 
 ENOUGH = 1e-3
-"""Share by which springs in proportion may miss a bound, or be stiffer than need be."""
+"""Share of a bound that springs in proportion may leave free."""
 
 
 def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) -> Array | None:
@@ -136,7 +136,7 @@ def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
     scaled = np.clip(springs, study.lower, study.upper)
     for _ in range(4 * len(study.groups)):
         share = largest_deflection(study, q, scaled) / study.max_deflection
-        if abs(share - 1.0) < ENOUGH:
+        if 1 - ENOUGH < share <= 1 + KEEPS:
             break
         scaled = np.clip(scaled * share, study.lower, study.upper)
     return _stiffened(study, q, scaled) if study.other_bounds else scaled
@@ -149,7 +149,7 @@ def _stiffened(study: Study, q: Array, springs: Array) -> Array:
         return np.asarray(np.clip(springs * np.exp(logarithm), study.lower, study.upper))
 
     def keeps(logarithm: float) -> bool:
-        return largest_share(study, q, times(logarithm)) <= 1 + ENOUGH
+        return largest_share(study, q, times(logarithm)) <= 1 + KEEPS
 
     low, high = 0.0, float(np.log(np.max(study.upper / springs)))
     if keeps(low) or not keeps(high):

@@ -38,20 +38,23 @@ def figure_of_front(report: TradeOffReport) -> Figure:
     values = report.shown
     (y, sought), (x, across) = report.view_of(0), report.view_of(1)
     handles: list[Any] = []
+    star: dict[str, Any] = {"marker": "*", "markersize": 20, "linestyle": "none", "zorder": 5}
+    star |= {"color": "white", "markeredgecolor": BLACK}
+    knee = report.found.knee
     if len(report.views) > 2:
         z, third = report.view_of(2)
         _lines(axes, values[:, [x, y, z]])
-        look = {"cmap": COLOURS, "norm": shades(values[:, z]), "edgecolors": BLACK}
+        look: dict[str, Any] = {"cmap": COLOURS, "norm": shades(values[:, z]), "edgecolors": BLACK}
         marks = axes.scatter(values[:, x], values[:, y], c=values[:, z], s=55, zorder=3, **look)
         _colour_bar(figure, marks, third, values[:, z])
+        if knee is not None:
+            star["color"] = colormaps[COLOURS](look["norm"](values[knee, z]))
     else:
         handles += axes.plot(
             values[:, x], values[:, y], "o-", color=BOTH, markersize=6, label="designs"
         )
-    if report.found.knee is not None:
-        at = values[report.found.knee]
-        star: dict[str, Any] = {"marker": "*", "markersize": 20, "linestyle": "none", "zorder": 5}
-        star |= {"color": "white", "markeredgecolor": BLACK}
+    if knee is not None:
+        at = values[knee]
         handles += axes.plot(at[x], at[y], label="knee", **star)
     handles += _before(axes, report, x, y)
     _limit(axes, sought, handles)

@@ -24,7 +24,7 @@ from ..figures import (
 )
 from ..figures.robust import figure_of_robust_design
 from ..output import Cell
-from ..robust_report import ROUNDING, robust_in_words, simulated_worst
+from ..robust_report import meets_limit, robust_in_words, simulated_worst
 from .arms import ORIGIN, arm_picture
 from .page import Hit, Section, TableOfNumbers, write_page
 from .study_pages import impact_in_words, joints, study_page
@@ -120,7 +120,7 @@ def write_robust_report(design: RobustDesign, path: Path) -> Path:
     study, scenarios, worst = design.study, design.scenarios, design.worst
     one = scenarios[worst.index]
     words = scenarios.describe(one)
-    good = worst.share <= 1 + ROUNDING
+    good = meets_limit(design)
     question = f"Which springs of {study.robot.name} hurt least in {len(scenarios)} scenarios?"
     answer = (
         f"At worst {worst.force:.0f} N, {100 * worst.share:.0f} % of its limit: pose "

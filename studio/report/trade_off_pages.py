@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..figures.trade_off import figure_of_front
 from ..figures.trade_off_hardware import figure_of_hardware
-from ..robust_report import ROUNDING
+from ..robust_report import meets_limit, share_of_limit
 from ..trade_off_report import TradeOffReport
 from ..trade_off_words import columns, in_words, rows, values_in_words
 from .arms import ORIGIN, arm_picture
@@ -31,8 +31,7 @@ def write_trade_off_report(report: TradeOffReport, path: Path) -> Path:
     )
     one = point.scenarios[point.worst.index]
     frame = point.scenarios.points[one.point]
-    share = point.worst.share * point.scenarios.allowed
-    hit = Hit(ORIGIN, point.scenarios.directions[one.direction], share)
+    hit = Hit(ORIGIN, point.scenarios.directions[one.direction], share_of_limit(point))
     words = f"The worst scenario of the design {which}: {point.worst.force:.0f} N at {frame}."
     arm = arm_picture(
         study.robot, point.postures[one.pose], {frame: hit}, words, list(point.postures)
@@ -62,5 +61,5 @@ def write_trade_off_report(report: TradeOffReport, path: Path) -> Path:
             tables=[TableOfNumbers("By model", ("design", "optimiser N", "linearised N"), checks)],
         ),
     ]
-    good = any(p.worst.share * p.scenarios.allowed <= 1 + ROUNDING for p in report.points)
+    good = any(meets_limit(p) for p in report.points)
     return write_page(study_page(study, question, answer, good, sections), path)

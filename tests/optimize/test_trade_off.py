@@ -36,7 +36,7 @@ from softimpact.studio.report.trade_off_pages import write_trade_off_report
 from softimpact.studio.trade_off_record import trade_off_record, write_points
 from softimpact.studio.trade_off_report import TradeOffReport, trade_off_report
 from softimpact.studio.trade_off_schema import ObjectivesResults
-from softimpact.studio.trade_off_words import heading, in_words, markdown
+from softimpact.studio.trade_off_words import front_words, heading, in_words
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.record import plain
 from softimpact.symbolic.robot.rigid import Array
@@ -205,7 +205,7 @@ def test_words_and_figures(report: TradeOffReport, tmp_path: Path) -> None:
     said = "\n".join([heading(report), *in_words(report)])
     for piece in ("worst force, deflection and natural frequency", "Before", "SUNDIALS", "Hz"):
         assert piece in said
-    assert "# " in markdown(report, ["front.png"])
+    assert "# " in front_words(report).markdown(["front.png"])
     assert "front" in write_trade_off_report(report, tmp_path / "page.html").read_text("utf-8")
     for figure in (figure_of_front(report), figure_of_hardware(report)):
         figure.draw_without_rendering()

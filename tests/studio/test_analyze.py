@@ -305,6 +305,14 @@ def test_rigid_joints_do_not_sag() -> None:
     assert abs(sagged["q"][3] - PANDA_Q[3]) > 1e-3
 
 
+def test_a_servo_without_gains_is_refused() -> None:
+    where = ("analyze", "panda", "--q", PANDA_Q, "--direction", "[0, 1, 0]", "--motors", "servo")
+    outcome = run(*where)
+    assert outcome.code == 2
+    assert "'servo' needs position_gain: the file has no servo" in outcome.err
+    assert run(*where, "--position-gain", 1e3).code == 0
+
+
 def test_direction_needs_no_unit_length() -> None:
     where = ("analyze", "panda", "--q", PANDA_Q, "--joint-stiffness", 1e4)
     short = run_json(*where, "--direction", "[0, 1e-3, 0]")

@@ -13,7 +13,7 @@ import typer
 from command_line import refusal, run, run_json
 
 from softimpact.cli import app
-from softimpact.studio.output import print_table, say, shown, tables_as_csv
+from softimpact.studio.output import folded, print_table, say, shown, tables_as_csv
 from softimpact.studio.progress import working
 
 COMMANDS = {command.name or "": command for command in app.registered_commands}
@@ -49,6 +49,12 @@ def test_csv_is_quoted_and_one_line_a_row(capsys: pytest.CaptureFixture[str]) ->
     assert err == "done\n"
     say("done")
     assert capsys.readouterr().out == "done\n"
+
+
+def test_points_are_folded_for_people_alone() -> None:
+    assert folded("link@0,0,1") == "link\n@0,0,1"
+    with tables_as_csv(True):
+        assert folded("link@0,0,1") == "link@0,0,1"
 
 
 def test_csv_and_json_exclude_each_other() -> None:

@@ -27,9 +27,10 @@ from softimpact.studio.figures.pareto import (
     figure_of_speeds,
 )
 from softimpact.studio.figures.pareto_designs import figure_of_designs
+from softimpact.studio.pareto_record import pareto_record
 from softimpact.studio.pareto_report import ParetoReport, pareto_report
 from softimpact.studio.pareto_schema import ParetoResults
-from softimpact.studio.pareto_words import in_words, markdown, rows
+from softimpact.studio.pareto_words import front_words, in_words, rows
 from softimpact.studio.report.pareto_pages import write_pareto_report
 
 POSES = ("q9", "q18")
@@ -148,7 +149,17 @@ def test_words(report: ParetoReport) -> None:
     assert f"{report.pareto.reference.force:.1f} N" in said
     assert "Ipopt solved all" in said
     assert len(rows(report)) == report.pareto.levels.size
-    assert "# " in markdown(report, [])
+    assert "# " in front_words(report).markdown([])
+
+
+@pytest.mark.slow
+def test_simulation_that_finds_more_is_told(report: ParetoReport) -> None:
+    assert not any("simulation" in line for line in pareto_record(report)["warnings"])
+    first, *others = report.fronts["task"]
+    more = replace(first, check=replace(first.check, full=1.02 * first.point.force))
+    doubted = replace(report, fronts={**report.fronts, "task": (more, *others)})
+    (line,) = (w for w in pareto_record(doubted)["warnings"] if "simulation" in w)
+    assert f"finds {more.check.full:.1f} N for the design of" in line
 
 
 @pytest.mark.slow
