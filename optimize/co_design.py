@@ -15,16 +15,16 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price
 from .evaluation import largest_deflection, largest_share
-from .failure import SolverFailure
 from .impact.timing import Timing
-from .machine.branches import branches
 from .meaning import meaning
 from .running.workers import as_completed, awake, cores, workers, works_elsewhere
+from .search.accurate_springs import accurate_springs
+from .search.branches import branches
+from .search.failure import SolverFailure
 from .search.ipopt import IN_TURN, minimise
 from .search.optima import Optimum, distinct
 from .search.problem import Problem, felt_numbers, peak_force, prepare, study_impacts
 from .search.reach import infeasible, reach, reachable
-from .search.repair import accurate_springs
 from .search.solve import Mode, Outcome, Start, better, solve
 from .study.poses import Candidate, candidates, leaves_a_choice
 from .study.study import Study

@@ -13,9 +13,9 @@ from softimpact.optimize import Study
 from softimpact.optimize.answers import by_name
 from softimpact.optimize.evaluation import Kept, equipped
 from softimpact.optimize.impact.impact_program import hertz_in_series
+from softimpact.optimize.robust.catalogue import Bought
 from softimpact.optimize.robust.certificate import Worst
 from softimpact.optimize.robust.robust import RobustDesign
-from softimpact.optimize.search.catalogue import Bought
 from softimpact.optimize.study.scenarios import Scenarios
 from softimpact.optimize.units import figure_in_words
 from softimpact.simulate import Approach, simulate_impact

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 
-from ..failure import SolverFailure
 from ..robust.exchange import ExchangeState
+from ..search.failure import SolverFailure
 from .ranges import Levels
 from .trade import Trade
 

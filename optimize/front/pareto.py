@@ -19,20 +19,20 @@ from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from ..evaluation import largest_deflection
-from ..failure import SolverFailure
 from ..impact.timing import Timing
 from ..meaning import meaning
 from ..robust.exchange import search
 from ..running.workers import Progress, cores, workers, works_elsewhere
-from ..search.free_posture import first_forces, free_outcomes, softest_design
+from ..search.failure import SolverFailure
 from ..search.problem import Problem, prepare
-from ..search.searches import Searches
 from ..search.solve import Outcome, Start, better, preference, solve
 from ..search.stiffest import Stiffest, stiffest
-from ..search.sweep import Level, sweep
 from ..study.study import Study
+from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
 from .levels import LEAST_ROOM, even_bounds, level_range
+from .searches import Searches
+from .sweep import Level, sweep
 
 RIGID = 1e-12
 """Deflection [m] that counts as none."""

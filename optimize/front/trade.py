@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..failure import SolverFailure
 from ..robust.certificate import Hardening, Setting, Worst
 from ..robust.exchange import ExchangeState, exchange, worst_few
+from ..search.failure import SolverFailure
 from ..search.reach import ROW_TOLERANCE, Reach, reach
 from .axes import Axes
 

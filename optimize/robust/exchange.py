@@ -10,17 +10,17 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..failure import SolverFailure
-from ..machine.tip_pose import tip_pose
 from ..objectives import WorstForce
+from ..posture.tip_pose import tip_pose
 from ..running.workers import as_completed
+from ..search.failure import SolverFailure
 from ..search.ipopt import FEASIBLE, IN_TURN, Found, Instance, VariableBounds, minimise
 from ..search.minimax import least_worst
 from ..search.nlp import NlpShape, Program, task_numbers
-from ..search.samples import elsewhere, promising
 from ..search.solve import Outcome
 from ..study.study import Study
 from .certificate import KEEPS, Hardening, Setting, Worst
+from .samples import elsewhere, promising
 from .screening import Screened
 
 ROUNDS = 40

@@ -24,12 +24,12 @@ from ..evaluation import equipped, largest_share
 from ..impact.timing import Timing
 from ..machine.hardware import Hardware
 from ..running.workers import Progress, cores, workers, works_elsewhere
-from ..search.catalogue import Bought, bought
+from ..search.accurate_springs import accurate_springs
 from ..search.reach import require_reachable
-from ..search.repair import accurate_springs
 from ..study.scenarios import Scenarios
 from ..study.study import Study
 from ..variables.cover import Cover
+from .catalogue import Bought, bought
 from .certificate import KEEPS, Hardening, Setting, Worst
 from .exchange import ExchangeState, exchange, serves, worst_few
 from .screening import SCENARIOS_IN_A_JOB

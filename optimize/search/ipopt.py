@@ -16,9 +16,9 @@ from softimpact.symbolic.robot.rigid import Array
 from ..impact.peaks import WINDOWS, hides_a_peak, valley
 from ..machine.coordinates import posture_limits
 from ..objectives import Objective, WorstForce
+from ..solver_options import quiet
 from ..study.study import Study
 from .nlp import SPEED, NlpShape, Program, nlp_solver, peak_rows
-from .solver_options import quiet
 
 CURVATURE = 0.05
 """Of a share of the force over decades of stiffness and radians, where nothing is known yet: a

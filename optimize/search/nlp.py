@@ -25,8 +25,8 @@ from ..evaluation import equipped
 from ..impact.impact_program import NUMBERS, SIZES, ImpactProgram, Parts
 from ..impact.peaks import WINDOWS
 from ..machine.hardware import Hardware, Machine
-from ..machine.tip_pose import posture_error
 from ..objectives import Objective, WorstForce
+from ..posture.tip_pose import posture_error
 from ..study.study import Study
 
 

@@ -15,16 +15,15 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..answers import limit_name
 from ..bounds import Bound
 from ..evaluation import figures, largest_deflection, largest_share
-from ..failure import Infeasible
-from ..machine.tip_pose import posture_equations, tip_pose
+from ..posture.tip_pose import posture_equations, tip_pose
+from ..solver_options import quiet
 from ..study.poses import Candidate
-from ..study.study import Study
+from ..study.study import Study, limit_name
+from .failure import Infeasible
 from .ipopt import VariableBounds
 from .nlp import task_function, task_numbers
-from .solver_options import quiet
 from .stiffest import Stiffest
 
 Member = TypeVar("Member")

@@ -19,11 +19,11 @@ from softimpact.optimize import Design, Outcome, SolverFailure, Study, design, l
 from softimpact.optimize.co_design import MODES
 from softimpact.optimize.evaluation import largest_deflection
 from softimpact.optimize.impact.impact_program import impact_program
-from softimpact.optimize.machine.tip_pose import tip_pose, tip_pose_error
+from softimpact.optimize.posture.tip_pose import tip_pose, tip_pose_error
 from softimpact.optimize.search import ipopt as solving
 from softimpact.optimize.search import solve
+from softimpact.optimize.search.accurate_springs import accurate_springs
 from softimpact.optimize.search.problem import peak_force
-from softimpact.optimize.search.repair import accurate_springs
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic.robot.rigid import Array
 

@@ -10,7 +10,7 @@ import pytest
 from studies import InProcess, content, written
 
 from softimpact.optimize import Design, Study, design, load_study
-from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.posture.tip_pose import tip_pose
 from softimpact.symbolic import InvalidValue
 
 

@@ -26,13 +26,13 @@ from softimpact.optimize import (
 from softimpact.optimize.evaluation import largest_deflection
 from softimpact.optimize.front.front import LEAST_SAVING, ParetoPoint, knee, undominated
 from softimpact.optimize.front.levels import even_bounds
+from softimpact.optimize.front.sweep import sweep
 from softimpact.optimize.impact.impact_program import impact_program
-from softimpact.optimize.machine.self_motion import self_motion
-from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.posture.self_motion import self_motion
+from softimpact.optimize.posture.tip_pose import tip_pose
 from softimpact.optimize.search import ipopt as solving
 from softimpact.optimize.search.problem import peak_force
 from softimpact.optimize.search.stiffest import stiffest
-from softimpact.optimize.search.sweep import sweep
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array

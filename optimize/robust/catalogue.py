@@ -13,9 +13,9 @@ from softimpact.symbolic.robot.rigid import Array
 
 from ..evaluation import kept as kept_bounds
 from ..evaluation import largest_share
-from ..failure import Unavailable
-from ..robust.certificate import KEEPS, Hardening, Setting, Worst
+from ..search.failure import Unavailable
 from ..study.study import Study
+from .certificate import KEEPS, Hardening, Setting, Worst
 
 ROUNDS = 20
 """Most rounds of exchange of springs."""

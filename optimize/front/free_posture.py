@@ -9,12 +9,12 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..front.front import LEAST_SAVING
-from ..front.levels import NO_BOUND
-from ..machine.branches import branches
+from ..search.branches import branches
+from ..search.solve import Mode, Outcome, Start, better, preference, solve
+from ..search.stiffest import Stiffest
+from .front import LEAST_SAVING
+from .levels import NO_BOUND
 from .searches import Searches
-from .solve import Mode, Outcome, Start, better, preference, solve
-from .stiffest import Stiffest
 from .sweep import Level, rescaled
 
 POSTURES_TRIED_FIRST = 3
