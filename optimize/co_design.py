@@ -14,7 +14,7 @@ from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price
-from .evaluation import largest_deflection, largest_share
+from .evaluation import keeps_bounds, largest_deflection
 from .impact.timing import Timing
 from .meaning import meaning
 from .running.workers import as_completed, awake, cores, workers, works_elsewhere
@@ -30,9 +30,6 @@ from .study.poses import Candidate, candidates, leaves_a_choice
 from .study.study import Study
 
 MODES: tuple[Mode, ...] = ("table", "free")
-
-KEEPS = 1 + 1e-5
-"""Deflection over its bound up to which the bound counts as kept: Ipopt's tolerance."""
 
 LAGS_BEHIND = 1.003
 """Force over the best found from which on a free search is given another start."""
@@ -273,7 +270,7 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
 def _fair(problem: Problem, q: Array) -> float | None:
     """Return the force [N] of springs just stiff enough, None where the nominal ones are."""
     study = problem.study
-    if largest_share(study, q, study.nominal) <= KEEPS:
+    if keeps_bounds(study, q, study.nominal):
         return None
     springs = accurate_springs(study, q, study.nominal)
     return peak_force(study, problem.program.impacts[0], problem.timing, q, springs)

@@ -16,6 +16,7 @@ from softimpact.symbolic.robot.rigid import Array
 from .bounds import Bound
 from .machine.coordinates import sprung
 from .machine.hardware import Hardware, Machine, TaskMotion
+from .solver_options import FEASIBLE
 from .study.study import Study
 from .variables import Variable
 
@@ -118,6 +119,11 @@ def _kept(bound: Bound, found: Array) -> Kept:
 def largest_share(study: Study, q: Array, springs: Array, others: Array | None = None) -> float:
     """Return the largest share of a limit that any bound uses in a posture."""
     return max(each.share for each in kept(study, q, springs, others))
+
+
+def keeps_bounds(study: Study, q: Array, springs: Array, others: Array | None = None) -> bool:
+    """Return whether all bounds are kept in a posture, as nearly as searches keep them."""
+    return largest_share(study, q, springs, others) <= 1 + FEASIBLE
 
 
 def largest_deflection(

@@ -21,11 +21,10 @@ from softimpact.symbolic.robot.rigid import Array
 from ..evaluation import largest_deflection
 from ..impact.timing import Timing
 from ..meaning import meaning
-from ..robust.exchange import search
 from ..running.workers import Progress, cores, workers, works_elsewhere
 from ..search.failure import SolverFailure
 from ..search.problem import Problem, prepare
-from ..search.solve import Outcome, Start, better, preference, solve
+from ..search.solve import Outcome, Start, better, preference, search, solve
 from ..search.stiffest import Stiffest, stiffest
 from ..study.study import Study
 from .free_posture import first_forces, free_outcomes, softest_design

@@ -15,6 +15,7 @@ from ..impact.timing import Timing
 from ..running.workers import Progress, as_completed
 from ..search.ipopt import VariableBounds, felt
 from ..search.nlp import Program
+from ..solver_options import FEASIBLE
 from ..study.scenarios import Scenarios
 from ..study.study import Study
 from .screening import SCENARIOS_IN_A_JOB, Screened, Screening, forces_at, screen
@@ -69,11 +70,7 @@ class Worst:
     @property
     def keeps(self) -> bool:
         """Whether all bounds are kept."""
-        return all(each.share <= 1 + KEEPS for each in self.bounds)
-
-
-KEEPS = 1e-5
-"""Share of a limit by which a design may miss it: Ipopt's tolerance."""
+        return all(each.share <= 1 + FEASIBLE for each in self.bounds)
 
 
 @dataclass(frozen=True, eq=False)

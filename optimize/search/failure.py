@@ -10,9 +10,9 @@ import numpy as np
 from ..bounds import Bound
 from ..evaluation import kept
 from ..posture.tip_pose import tip_pose, tip_pose_error
+from ..solver_options import FEASIBLE
 from ..study.study import Study
 from ..units import figure_in_words
-from .ipopt import FEASIBLE
 from .solve import Outcome, preference
 from .stiffest import Stiffest
 
