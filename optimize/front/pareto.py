@@ -122,11 +122,17 @@ def pareto_fronts(
             number.
 
     Raises:
-        InvalidValue: the study asks for accuracies where there is nothing to find, or its forces
-            bend no spring.
+        InvalidValue: the study asks for accuracies where there is nothing to find, or for ends of
+            other objectives, or its forces bend no spring.
         SolverFailure: no search with a free posture was solved.
     """
     _require_deflection(study)
+    if study.levels.ends:
+        raise InvalidValue(
+            f"{study.source}: pareto.ends",
+            "is for fronts over objectives; a front of postures has pareto.lower and upper, or "
+            "name pareto.objectives",
+        )
     problem = prepare(study, elsewhere=works_elsewhere(executor))
     ends = {pose.pose.name: stiffest(study, pose.q, "table") for pose in problem.poses}
     accurate = _most_accurate(problem, ends)

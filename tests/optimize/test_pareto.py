@@ -268,10 +268,11 @@ def test_even_bounds_follow_the_front() -> None:
         ("lower", 1e-6, "give way by"),
         ("upper", 1e-6, "give way by"),
         ("lower", 1.0, "the force is least at"),
+        ("ends", {"deflection": [1e-3, 2e-3]}, "is for fronts over objectives"),
     ],
 )
 def test_levels_where_there_is_nothing(
-    tmp_path: Path, field: str, value: float, reason: str
+    tmp_path: Path, field: str, value: object, reason: str
 ) -> None:
     study = study_of(tmp_path, {"pareto": {field: value}}, ("q9",))
     with pytest.raises(InvalidValue) as caught:
