@@ -9,11 +9,9 @@ from itertools import product
 
 from ..robust.exchange import ExchangeState
 from ..search.failure import SolverFailure
+from .dominance import WORTH
 from .ranges import Levels
 from .trade import Trade
-
-WORTH = 1e-4
-"""Share of an objective that counts as a difference: what forces are known to."""
 
 GridNode = tuple[int, ...]
 """Places of levels, one of each objective that is held; 0 is the tightest."""

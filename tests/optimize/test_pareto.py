@@ -24,7 +24,8 @@ from softimpact.optimize import (
     pareto_fronts,
 )
 from softimpact.optimize.evaluation import largest_deflection
-from softimpact.optimize.front.front import LEAST_SAVING, ParetoPoint, knee, undominated
+from softimpact.optimize.front.dominance import WORTH
+from softimpact.optimize.front.front import ParetoPoint, knee, undominated
 from softimpact.optimize.front.levels import even_bounds
 from softimpact.optimize.front.sweep import sweep
 from softimpact.optimize.impact.impact_program import impact_program
@@ -116,9 +117,9 @@ def force_within(front: Front, deflection: float) -> float:
 def test_freedom_does_not_hurt(found: Pareto) -> None:
     for level in found.levels:
         free, given = (force_within(front, level) for front in (found.free, found.given))
-        assert free <= given * (1 + LEAST_SAVING)
+        assert free <= given * (1 + WORTH)
         for front in found.held.values():
-            assert given <= force_within(front, level) * (1 + LEAST_SAVING)
+            assert given <= force_within(front, level) * (1 + WORTH)
     assert found.free.points[0].deflection <= found.given.points[0].deflection
 
 
@@ -235,9 +236,7 @@ def point(deflection: float, force: float) -> ParetoPoint:
 
 
 def test_dominated_points_go() -> None:
-    points = [
-        point(*each) for each in ((3, 5), (1, 9), (2, 9.5), (2, 7), (4, 5 * (1 - LEAST_SAVING / 2)))
-    ]
+    points = [point(*each) for each in ((3, 5), (1, 9), (2, 9.5), (2, 7), (4, 5 * (1 - WORTH / 2)))]
     kept = [(p.deflection, p.force) for p in undominated(points)]
     assert kept == [(1, 9), (2, 7), (3, 5)]
 
@@ -323,7 +322,7 @@ def test_an_arm_without_a_choice_of_posture(tmp_path: Path) -> None:
     result = pareto_fronts(study, InProcess())
     assert len(result.free.points) >= 4
     for a, b in zip(result.free.points, result.task.points, strict=True):
-        assert a.force == pytest.approx(b.force, rel=LEAST_SAVING)
+        assert a.force == pytest.approx(b.force, rel=WORTH)
     axis = np.geomspace(500.0, 5e4, 25)
     springs = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
     grid = tried(study, result, [study.task_pose.q], springs)
