@@ -2,10 +2,10 @@
 """Design problems: which joint stiffness and which posture hurt least."""
 
 from .co_design import Design, Gains, PoseResult, design
-from .failure import Infeasible, SolverFailure, Unavailable
 from .front.front import Front, ParetoPoint
 from .front.pareto import Pareto, pareto_fronts
 from .front.trade_off import TradeOff, TradePoint, trade_off_front
+from .search.failure import Infeasible, SolverFailure, Unavailable
 from .search.solve import Mode, Outcome
 from .study.poses import Candidate, candidates
 from .study.study import Pose, Study, load_study

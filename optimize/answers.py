@@ -14,7 +14,7 @@ from softimpact.symbolic.robot.rigid import Array
 from .bounds import STEEPNESS, Bound
 from .search.ipopt import Found, Instance, VariableBounds
 from .search.nlp import Program
-from .study.study import Study
+from .study.study import Study, limit_name
 from .units import figure_in_words
 
 NO_LOSS = 0.005
@@ -77,21 +77,6 @@ def indifferent_ranges(
         for side, ends in enumerate((bounds.lower, bounds.upper)):
             ranges[i, side] = 10 ** _farthest(partial(good, i), float(own), float(ends[i]))
     return ranges
-
-
-def limit_name(study: Study, i: int, end: str) -> tuple[str, str]:
-    """Return the field of a study file that limits a value of the hardware, and whose value it is.
-
-    Args:
-        study: whose hardware it is.
-        i: number of the value in ``study.range``.
-        end: "lower" or "upper".
-    """
-    name = study.range.names[i]
-    if i <= max(study.groups):
-        return f"stiffness.{end}", name
-    kind, _, whose = name.partition(" of ")
-    return f"hardware.{kind}.{end}", whose or kind
 
 
 def by_name(study: Study, rows: Array) -> dict[str, list[float]]:

@@ -14,17 +14,17 @@ from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price
-from .evaluation import KEEPS, largest_deflection, largest_share
-from .failure import SolverFailure
+from .evaluation import keeps_bounds, largest_deflection
 from .impact.timing import Timing
-from .machine.branches import branches
 from .meaning import meaning
 from .running.workers import as_completed, awake, cores, workers, works_elsewhere
+from .search.accurate_springs import accurate_springs
+from .search.branches import branches
+from .search.failure import SolverFailure
 from .search.ipopt import IN_TURN, minimise
 from .search.optima import Optimum, distinct
 from .search.problem import Problem, felt_numbers, peak_force, prepare, study_impacts
 from .search.reach import infeasible, reach, reachable
-from .search.repair import accurate_springs
 from .search.solve import Mode, Outcome, Start, better, solve
 from .study.poses import Candidate, candidates, leaves_a_choice
 from .study.study import Study
@@ -270,7 +270,7 @@ def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -
 def _fair(problem: Problem, q: Array) -> float | None:
     """Return the force [N] of springs just stiff enough, None where the nominal ones are."""
     study = problem.study
-    if largest_share(study, q, study.nominal) <= 1 + KEEPS:
+    if keeps_bounds(study, q, study.nominal):
         return None
     springs = accurate_springs(study, q, study.nominal)
     return peak_force(study, problem.program.impacts[0], problem.timing, q, springs)

@@ -16,11 +16,9 @@ from softimpact.symbolic.robot.rigid import Array
 from .bounds import Bound
 from .machine.coordinates import sprung
 from .machine.hardware import Hardware, Machine, TaskMotion
+from .solver_options import FEASIBLE
 from .study.study import Study
 from .variables import Variable
-
-KEEPS = 1e-5
-"""Share of a limit by which a design may miss it: Ipopt's tolerance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +44,7 @@ class Kept:
     @property
     def broken(self) -> bool:
         """Whether it is missed by more than Ipopt's tolerance."""
-        return self.share > 1 + KEEPS
+        return self.share > 1 + FEASIBLE
 
 
 def equipped(study: Study, springs: Matrix, others: Matrix | None = None) -> Hardware:
@@ -126,6 +124,11 @@ def _kept(bound: Bound, found: Array) -> Kept:
 def largest_share(study: Study, q: Array, springs: Array, others: Array | None = None) -> float:
     """Return the largest share of a limit that any bound uses in a posture."""
     return max(each.share for each in kept(study, q, springs, others))
+
+
+def keeps_bounds(study: Study, q: Array, springs: Array, others: Array | None = None) -> bool:
+    """Return whether all bounds are kept in a posture, as nearly as searches keep them."""
+    return largest_share(study, q, springs, others) <= 1 + FEASIBLE
 
 
 def largest_deflection(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price, indifferent_ranges, prices_of, worth_of
-from .evaluation import KEEPS, largest_share
+from .evaluation import keeps_bounds
 from .search.ipopt import Found, Instance
 from .search.problem import Problem, peak_force
 from .search.solve import Outcome
@@ -53,7 +53,7 @@ def meaning(
         return peak_force(study, program.impacts[0], problem.timing, outcome.q, *parted)
 
     def keeps(v: Array) -> bool:
-        return largest_share(study, outcome.q, *limits.parted(v)) <= 1 + KEEPS
+        return keeps_bounds(study, outcome.q, *limits.parted(v))
 
     v = limits.vector(outcome.springs, outcome.others)
     worth = worth_of(study, float(instance.units[0]))

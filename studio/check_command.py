@@ -11,7 +11,7 @@ from . import options as o
 def check(study: o.StudyFileArgument, json: o.JsonOption = False) -> None:
     """Say everything that is wrong in a study file, with line numbers, without running it."""
     from softimpact.optimize.study.study import load_study
-    from softimpact.optimize.study.study_check import study_problems
+    from softimpact.optimize.study_check import study_problems
 
     from .output import print_json, print_warnings, say
 

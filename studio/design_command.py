@@ -49,6 +49,7 @@ def design(
     """Find the joint stiffness and the posture of least peak force with Ipopt."""
     from softimpact.optimize import load_study
     from softimpact.optimize.running.execution import Execution
+    from softimpact.symbolic import InvalidValue
 
     from .design_report import GENERATOR, design_record, design_report
     from .output import failures_as_json, print_json, print_warnings
@@ -70,6 +71,12 @@ def design(
     require_folder_of(page)
     how = Execution(workers, dask, resume)
     if problem.scenarios is not None:
+        if mode != "both":
+            raise InvalidValue(
+                "mode",
+                "is for poses by themselves; with [scenarios] the study's scenarios.posture says "
+                'whether postures are "given" or "free"',
+            )
         _robust(problem, folder, page, how, json)
         return
     modes = _modes(mode, problem)

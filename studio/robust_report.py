@@ -13,14 +13,15 @@ from softimpact.optimize import Study
 from softimpact.optimize.answers import by_name
 from softimpact.optimize.evaluation import Kept, equipped
 from softimpact.optimize.impact.impact_program import hertz_in_series
+from softimpact.optimize.machine.hardware import built
+from softimpact.optimize.robust.catalogue import Bought
 from softimpact.optimize.robust.certificate import Worst
 from softimpact.optimize.robust.robust import RobustDesign
-from softimpact.optimize.search.catalogue import Bought
 from softimpact.optimize.study.scenarios import Scenarios
 from softimpact.optimize.units import figure_in_words
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.symbolic import Contact, ImpactModel, Robot, impact_model, with_load
-from softimpact.symbolic.robot.rigid import Array, Inertia
+from softimpact.symbolic import Contact, ImpactModel, impact_model, with_load
+from softimpact.symbolic.robot.rigid import Array
 
 from .answers_in_words import answers_in_words
 from .cautions import study_warnings
@@ -73,22 +74,7 @@ def designed_model(design: Designed) -> ImpactModel:
     """Return the robot with the hardware that was found."""
     study = design.study
     hardware = equipped(study, ca.DM(design.springs), design.others)
-    model = study.with_springs(design.springs)
-    drives = replace(model.drives, rotors=ca.DM(hardware.reflected_rotors))
-    robot = model.robot
-    if hardware.masses is not None:
-        robot = _scaled(robot, np.array(ca.DM(hardware.masses)).ravel())
-    return impact_model(robot, model.tip, drives=drives)
-
-
-def _scaled(robot: Robot, masses: Array) -> Robot:
-    """Return the robot with each body's inertia times a factor."""
-    joints = []
-    for joint, factor in zip(robot.joints, masses, strict=True):
-        own = joint.inertia
-        scaled = Inertia(factor * own.mass, factor * own.first_moment, factor * own.about_origin)
-        joints.append(replace(joint, inertia=scaled))
-    return replace(robot, joints=tuple(joints))
+    return built(study.with_springs(design.springs), hardware)
 
 
 def _covered(design: Designed, contact: Contact) -> Contact:

@@ -10,8 +10,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from softimpact.optimize.machine.self_motion import self_motion
-from softimpact.optimize.machine.workspace import Hold, postures_in_plane
+from softimpact.optimize.posture.self_motion import self_motion
+from softimpact.optimize.posture.workspace import Hold, postures_in_plane
 from softimpact.simulate import HORIZON, bracket
 from softimpact.simulate.sampled import SampledImpacts, Samples
 from softimpact.simulate.sampled_speeds import safe_speeds

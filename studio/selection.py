@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.optimize import Candidate, Study, candidates
-from softimpact.optimize.impact.many_postures import peaks_of_postures
+from softimpact.optimize.search.many_postures import peaks_of_postures
 from softimpact.simulate import Fidelity
 from softimpact.symbolic import InvalidValue, analyse, directional_giaf, giaf
 from softimpact.symbolic.robot.rigid import Array

@@ -22,6 +22,8 @@ MAY_IMPORT = {
     "studio": {"robots", "symbolic", "codegen", "simulate", "optimize", "batch", "toolchain"},
     "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }
+OF_OPTIMIZE = ("machine", "posture", "search", "robust", "front")
+"""Folders of optimize, each of which may import those before it."""
 
 
 def tracked(*patterns: str) -> list[Path]:
@@ -54,6 +56,17 @@ def test_arrows_point_one_way(folder: str) -> None:
     assert modules
     for path in modules:
         assert set(imported_folders(path)) <= MAY_IMPORT[folder] | {folder}, path
+
+
+def test_folders_of_optimize_build_on_those_before() -> None:
+    for place, folder in enumerate(OF_OPTIMIZE):
+        modules = tracked(f"optimize/{folder}/*.py")
+        assert modules
+        for path in modules:
+            nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            found = [n.module or "" for n in nodes if isinstance(n, ast.ImportFrom) and n.level > 1]
+            later = {name.split(".")[0] for name in found} & set(OF_OPTIMIZE[place + 1 :])
+            assert not later, path
 
 
 def test_files_can_be_read_at_a_sitting() -> None:

@@ -7,6 +7,9 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+WORTH = 1e-4
+"""Share of an objective that counts as a difference: what forces are known to."""
+
 FLAT = 1e-6
 """Share of a front's height below the plane of its ends from which it counts as bent."""
 

@@ -12,10 +12,8 @@ from ..evaluation import largest_deflection
 from ..meaning import Meaning
 from ..search.solve import Outcome
 from ..study.study import Study
+from .dominance import WORTH
 from .dominance import knee as bend
-
-LEAST_SAVING = 1e-4
-"""Share of the force that a less accurate design must save to be kept: what forces are known to."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,11 +69,11 @@ def front(study: Study, levels: Sequence[float], outcomes: Sequence[Outcome | No
 def undominated(points: Iterable[ParetoPoint]) -> tuple[ParetoPoint, ...]:
     """Return the points that no other beats, the most accurate first.
 
-    A less accurate point must save ``LEAST_SAVING`` of the force.
+    A less accurate point must save ``WORTH`` of the force.
     """
     kept: list[ParetoPoint] = []
     for point in sorted(points, key=lambda point: (point.deflection, point.force)):
-        if not kept or point.force < kept[-1].force * (1 - LEAST_SAVING):
+        if not kept or point.force < kept[-1].force * (1 - WORTH):
             kept.append(point)
     return tuple(kept)
 

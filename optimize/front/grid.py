@@ -7,13 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 
-from ..failure import SolverFailure
 from ..robust.exchange import ExchangeState
+from ..search.failure import SolverFailure
+from .dominance import WORTH
 from .ranges import Levels
 from .trade import Trade
-
-WORTH = 1e-4
-"""Share of an objective that counts as a difference: what forces are known to."""
 
 GridNode = tuple[int, ...]
 """Places of levels, one of each objective that is held; 0 is the tightest."""

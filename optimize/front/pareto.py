@@ -19,20 +19,19 @@ from softimpact.symbolic.record import Record, Row
 from softimpact.symbolic.robot.rigid import Array
 
 from ..evaluation import largest_deflection
-from ..failure import SolverFailure
 from ..impact.timing import Timing
 from ..meaning import meaning
-from ..robust.exchange import search
 from ..running.workers import Progress, cores, workers, works_elsewhere
-from ..search.free_posture import first_forces, free_outcomes, softest_design
+from ..search.failure import SolverFailure
 from ..search.problem import Problem, prepare
-from ..search.searches import Searches
-from ..search.solve import Outcome, Start, better, preference, solve
+from ..search.solve import Outcome, Start, better, preference, search, solve
 from ..search.stiffest import Stiffest, stiffest
-from ..search.sweep import Level, sweep
 from ..study.study import Study
+from .free_posture import first_forces, free_outcomes, softest_design
 from .front import Front, front
 from .levels import LEAST_ROOM, even_bounds, level_range
+from .searches import Searches
+from .sweep import Level, sweep
 
 RIGID = 1e-12
 """Deflection [m] that counts as none."""
@@ -123,11 +122,17 @@ def pareto_fronts(
             number.
 
     Raises:
-        InvalidValue: the study asks for accuracies where there is nothing to find, or its forces
-            bend no spring.
+        InvalidValue: the study asks for accuracies where there is nothing to find, or for ends of
+            other objectives, or its forces bend no spring.
         SolverFailure: no search with a free posture was solved.
     """
     _require_deflection(study)
+    if study.levels.ends:
+        raise InvalidValue(
+            f"{study.source}: pareto.ends",
+            "is for fronts over objectives; a front of postures has pareto.lower and upper, or "
+            "name pareto.objectives",
+        )
     problem = prepare(study, elsewhere=works_elsewhere(executor))
     ends = {pose.pose.name: stiffest(study, pose.q, "table") for pose in problem.poses}
     accurate = _most_accurate(problem, ends)

@@ -11,8 +11,8 @@ from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
 from ..evaluation import figures
-from ..failure import SolverFailure
 from ..robust.exchange import ExchangeState
+from ..search.failure import SolverFailure
 from ..search.reach import reach
 from .axes import BoundAxis, ObjectiveAxis
 from .levels import LEAST_ROOM, SAME_FORCE_SHARE

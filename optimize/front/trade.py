@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..failure import SolverFailure
 from ..robust.certificate import Hardening, Setting, Worst
 from ..robust.exchange import ExchangeState, exchange, worst_few
-from ..search.reach import ROW_TOLERANCE, Reach, reach
+from ..search.failure import SolverFailure
+from ..search.reach import Reach, reach
+from ..solver_options import FEASIBLE
 from .axes import Axes
 
 TradeStart = tuple[Array, Array | None]
@@ -98,4 +99,4 @@ class Trade:
 
     def within_reach(self, values: Sequence[float]) -> bool:
         """Return whether some hardware keeps all bounds at some values."""
-        return self.reached(values).excess <= ROW_TOLERANCE
+        return self.reached(values).excess <= FEASIBLE

@@ -32,8 +32,8 @@ from ..study.study import Study
 from ..study.study_file import ScenariosSection
 from ..study.study_scenarios import scenarios_of
 from .axes import Axes, BoundAxis, ObjectiveAxis, asked_axes
-from .dominance import knee, undominated
-from .grid import WORTH, Grid, GridNode, fill, values_at
+from .dominance import WORTH, knee, undominated
+from .grid import Grid, GridNode, fill, values_at
 from .ranges import Levels, levels_of
 from .trade import Trade
 

@@ -12,7 +12,9 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
+from ..evaluation import equipped
 from ..machine.coordinates import sprung, with_springs
+from ..machine.hardware import built
 from ..study.scenarios import Scenarios
 from ..study.study import Study
 from .impact_program import forces_alone, impact_numbers, known_rotors
@@ -106,8 +108,9 @@ class Fastest:
 def _whole(study: Study, postures: Sequence[Array]) -> tuple[Fastest, Timing]:
     """Return the fastest motions, and the steps of an impact up to the horizon."""
     n = study.direction
-    lightest = min(float(study.model.reflected_mass(ca.DM(q), ca.DM(n))) for q in postures)
-    contact = np.sqrt(study.contact.region.stiffness / lightest)
+    model = lightest(study)
+    least = min(float(model.reflected_mass(ca.DM(q), ca.DM(n))) for q in postures)
+    contact = np.sqrt(study.contact.region.stiffness / least)
     fastest = Fastest(_of_study(study, postures, n), float(contact))
     return fastest, _timing(study, study.horizon, fastest)
 
@@ -138,14 +141,14 @@ def scenario_timing(study: Study, scenarios: Scenarios) -> Timing:
 def _of_contacts(study: Study, scenarios: Scenarios) -> float:
     """Return the largest frequency of a contact point on what it hits, of all scenarios [rad/s]."""
     q, n = ca.SX.sym("q", study.robot.n), ca.SX.sym("n", 3)
-    models = [replace(study.model, tip=point) for point in scenarios.points]
+    models = [replace(lightest(study), tip=point) for point in scenarios.points]
     masses = [ca.Function("m_c", [q, n], [model.reflected_mass(q, n)]) for model in models]
-    lightest = min(
+    least = min(
         float(masses[one.point](scenarios.poses[one.pose].q, scenarios.directions[one.direction]))
         for one in scenarios.groups()
     )
     hardest = max(contact.region.stiffness for contact in scenarios.contacts)
-    return float(np.sqrt(hardest / lightest))
+    return float(np.sqrt(hardest / least))
 
 
 def stiffest_in_time(model: ImpactModel, q: Array, direction: Array, horizon: float) -> float:
@@ -166,18 +169,28 @@ def _timing(study: Study, duration: float, fastest: Fastest) -> Timing:
     bounces = int(np.ceil(duration * fastest.contact / CONTACT_PHASE))
     steps = max(NODES, int(np.ceil(duration / INTERVAL)), needed, bounces)
     if steps > MOST_STEPS:
+        raised = "the lower ends of [hardware]" if study.other_variables else "robot.rotor_inertia"
         raise InvalidValue(
             f"{study.source}: stiffness.upper",
             f"joints that stiff vibrate so fast that {duration:g} s of impact need {steps} time "
             f"steps, more than {MOST_STEPS}; lower the bound or motors.horizon, or raise "
-            "robot.rotor_inertia",
+            f"{raised}",
         )
     substeps = max(1, int(steps / max(NODES, duration / INTERVAL)))
     return Timing(duration, int(np.ceil(steps / substeps)), substeps)
 
 
 def _of_study(study: Study, postures: Sequence[Array], direction: Array) -> float:
-    return max(_largest_frequency(study.model, study.upper, q, direction) for q in postures)
+    model = lightest(study)
+    return max(_largest_frequency(model, study.upper, q, direction) for q in postures)
+
+
+def lightest(study: Study) -> ImpactModel:
+    """Return a study's robot with the lightest links and rotors: none that is sought is faster."""
+    if not study.other_variables:
+        return study.model
+    least = np.concatenate([each.range(study.model).lower for each in study.other_variables])
+    return built(study.model, equipped(study, ca.DM(study.upper), least))
 
 
 def _largest_frequency(model: ImpactModel, springs: Array, q: Array, direction: Array) -> float:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The machine that a design may change, and where it can be."""
+"""The machine that a design may change."""

@@ -150,6 +150,25 @@ class Machine:
         )
 
 
+def built(model: ImpactModel, hardware: Hardware) -> ImpactModel:
+    """Return a robot with other links and rotors than its own, in numbers; springs stay."""
+    robot = model.robot
+    if hardware.masses is not None:
+        joints = zip(robot.joints, np.array(ca.DM(hardware.masses)).ravel(), strict=True)
+        robot = replace(
+            robot,
+            joints=tuple(replace(j, inertia=_times(j.inertia, factor)) for j, factor in joints),
+        )
+    drives = replace(model.drives, rotors=ca.DM(hardware.reflected_rotors))
+    return replace(model, robot=robot, drives=drives)
+
+
+def _times(inertia: Inertia, factor: float) -> Inertia:
+    return Inertia(
+        factor * inertia.mass, factor * inertia.first_moment, factor * inertia.about_origin
+    )
+
+
 IN_PLANE = 1e-12
 """Share of JJᵀ's trace that is added to its diagonal, for points that cannot leave a plane."""
 

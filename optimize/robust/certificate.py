@@ -139,14 +139,14 @@ class Setting:
         ends = self.study.objective.own(
             FIRST_SCENARIO, np.ones(1), np.array([max(self.scenarios.speeds)])
         )
-        factor = 1.0
+        nearest = 1.0
         for _ in range(SECANTS):
+            factor = nearest  # what is told was screened, also where the secants do not end
             at = replace(at, factors=np.array([factor]))
             found = self._screened(at)
             nearest = float(np.clip(factor / found[0].share, *10 ** np.r_[ends.lower, ends.upper]))
             if abs(found[0].share - 1) < SAFE_SPEED_ERROR or nearest == factor:
                 break
-            factor = nearest
         return self._as_worst(at, found[0], factor), found
 
     def _of_all(self, at: Hardening) -> tuple[Worst, list[Screened]]:
@@ -172,13 +172,14 @@ class Setting:
         factors, seek = at.factors, at.factors is None
         if factors is None:
             factors = 10 ** objective.own(numbers, np.ones(numbers.size), speeds).start
+        nearer = factors
         for _ in range(SECANTS if seek else 1):
+            factors = nearer
             shares = self._shares(replace(at, factors=factors))
             effective = shares / (factors if factors.size == 1 else factors[numbers])
             nearer = 10 ** objective.own(numbers, effective, speeds).start
             if not seek or np.allclose(nearer, factors, rtol=SAFE_SPEED_ERROR):
                 break
-            factors = nearer
         return objective.value(np.log10(factors), numbers, speeds), factors, shares
 
     def _shares(self, at: Hardening) -> Array:

@@ -10,18 +10,16 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..evaluation import KEEPS
-from ..failure import SolverFailure
-from ..machine.tip_pose import tip_pose
-from ..objectives import WorstForce
+from ..posture.tip_pose import tip_pose
 from ..running.workers import as_completed
-from ..search.ipopt import FEASIBLE, IN_TURN, Found, Instance, VariableBounds, minimise
-from ..search.minimax import least_worst
-from ..search.nlp import NlpShape, Program, task_numbers
-from ..search.samples import elsewhere, promising
-from ..search.solve import Outcome
-from ..study.study import Study
+from ..search.failure import SolverFailure
+from ..search.ipopt import Found, Instance
+from ..search.minimax import serves
+from ..search.nlp import NlpShape, task_numbers
+from ..search.solve import Outcome, search
+from ..solver_options import FEASIBLE
 from .certificate import Hardening, Setting, Worst
+from .samples import elsewhere, promising
 from .screening import Screened
 
 ROUNDS = 40
@@ -35,9 +33,6 @@ SAMPLED = 3
 
 ALIKE = 1e-3
 """Share of the cost within which optima over the first scenarios count as one."""
-
-MOST_EXCESS = 1e-5
-"""Share by which a scenario may exceed what the NLP says: Ipopt's tolerance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +98,10 @@ def exchange(
     study, given, limits = setting.study, setting.given, setting.limits
     if study.objective.scales_speed:
         unit = 1.0  # the limits themselves
-    everything, thorough = study.objective.all_scenarios, thorough and serves(study, free)
+    everything, thorough = (
+        study.objective.all_scenarios,
+        thorough and serves(study.objective, free=free),
+    )
     active = list(range(len(setting.scenarios))) if everything else list(first)
     bends = setting.shares_of_bounds(Hardening(limits.vector(study.nominal), given))
     poses = _poses(setting, [int(np.argmax(bends))], active)
@@ -127,14 +125,14 @@ def exchange(
         shares = setting.shares_of_bounds(at)
         too_far = int(np.argmax(shares))
         allowed = max(state.bound, 1.0) if factors is not None else state.bound
-        worse = [s for s in screened if s.share > allowed * (1 + MOST_EXCESS)]
+        worse = [s for s in screened if s.share > allowed * (1 + FEASIBLE)]
         fresh = [] if everything else worst_few(setting, worse, set(active))
-        if shares[too_far] > 1 + KEEPS and too_far not in poses:
+        if shares[too_far] > 1 + FEASIBLE and too_far not in poses:
             poses = [*poses, too_far]
         elif not fresh:
             more = [] if hopped else _hops(setting, instance, poses, best)
             found, hopped = [*found, *more], True
-            if min(each.found.cost for each in found) >= best.found.cost * (1 - MOST_EXCESS):
+            if min(each.found.cost for each in found) >= best.found.cost * (1 - FEASIBLE):
                 break
             continue
         active = [*active, *fresh]
@@ -149,11 +147,6 @@ def _hops(setting: Setting, instance: Instance, poses: list[int], best: _Optimum
     shared = setting.program, instance, setting.limits, setting.given[poses]
     starts = [_Start(*each, setting.given) for each in elsewhere(*shared, v)]
     return _feasible(setting, instance, poses, starts, free=False)[0]
-
-
-def serves(study: Study, free: bool) -> bool:
-    """Return whether ``least_worst`` solves a study's NLPs."""
-    return not free and study.objective.kind == WorstForce.kind
 
 
 def _apart(optima: Sequence[_Optimum]) -> list[_Optimum]:
@@ -193,12 +186,10 @@ def _instance(setting: Setting, active: list[int], poses: list[int], unit: float
     study, scenarios = setting.study, setting.scenarios
     places = [scenarios[i] for i in active]
     tasks = [task_numbers(study, *tip_pose(study.model, scenarios.poses[k].q)) for k in poses]
-    own = [i // len(scenarios.motors) for i in active]
-    numbered = {which: k for k, which in enumerate(dict.fromkeys(own))}
-    shape = NlpShape(
+    shape = NlpShape.of(
         len(poses),
-        tuple((poses.index(each.pose), each.point) for each in places),
-        tuple(numbered[which] for which in own),
+        [(poses.index(each.pose), each.point) for each in places],
+        [i // len(scenarios.motors) for i in active],
         study.objective,
     )
     return Instance(
@@ -244,24 +235,6 @@ def _feasible(
             postures[poses] = found.postures
         optima.append(_Optimum(found, instance, postures))
     return optima, missed
-
-
-def search(
-    program: Program,
-    instance: Instance,
-    limits: VariableBounds,
-    postures: Array,
-    springs: Array,
-    others: Array | None,
-    free: bool,
-) -> Found:
-    """Run ``least_worst`` or, where it does not serve, ``minimise`` in a worker process."""
-    with IN_TURN:
-        if not free and instance.shape.objective.kind == WorstForce.kind:
-            found = least_worst(program, instance, limits, postures, springs, others)
-            if found.success and found.violation <= FEASIBLE:
-                return found
-        return minimise(program, instance, limits, postures, springs, others, free=free)
 
 
 def _as_outcome(found: Found, instance: Instance, setting: Setting) -> Outcome:

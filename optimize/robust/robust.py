@@ -20,18 +20,19 @@ from softimpact.symbolic.record import Record
 from softimpact.symbolic.robot.rigid import Array
 
 from ..answers import Price, indifferent_ranges, prices_of, worth_of
-from ..evaluation import KEEPS, equipped, largest_share
+from ..evaluation import equipped, keeps_bounds
 from ..impact.timing import Timing
 from ..machine.hardware import Hardware
 from ..running.workers import Progress, cores, workers, works_elsewhere
-from ..search.catalogue import Bought, bought
+from ..search.accurate_springs import accurate_springs
+from ..search.minimax import serves
 from ..search.reach import require_reachable
-from ..search.repair import accurate_springs
 from ..study.scenarios import Scenarios
 from ..study.study import Study
 from ..variables.cover import Cover
+from .catalogue import Bought, bought
 from .certificate import Hardening, Setting, Worst
-from .exchange import ExchangeState, exchange, serves, worst_few
+from .exchange import ExchangeState, exchange, worst_few
 from .screening import SCENARIOS_IN_A_JOB
 from .setting import setting_of
 
@@ -136,7 +137,7 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     equal = equal_springs(setting, given)
     equal_worst, more = setting.worst(Hardening(limits.vector(equal), given))
     starts = [(equal, None)]
-    if not serves(study, free):
+    if not serves(study.objective, free=free):
         starts += [(each, None) for each in (study.upper, study.lower)]
     first = worst_few(setting, [*more[:1], *found], set())
     state = exchange(setting, first, starts, given, equal_worst.share, free=free, thorough=True)
@@ -209,7 +210,7 @@ def indifferent(setting: Setting, state: ExchangeState) -> Array:
 
     def keeps(v: Array) -> bool:
         parted = setting.limits.parted(v)
-        return all(largest_share(study, q, *parted) <= 1 + KEEPS for q in state.at.postures)
+        return all(keeps_bounds(study, q, *parted) for q in state.at.postures)
 
     return indifferent_ranges(setting.limits, state.at.v, cost, keeps)
 

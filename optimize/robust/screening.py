@@ -121,4 +121,5 @@ def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Ar
         np.array(peaks(x[i : i + chunk].T, numbers[i : i + chunk].T, np.zeros((1, chunk)))).max(0)
         for i in range(0, count + padding, chunk)
     ]
-    return np.concatenate(found)[:count]
+    forces = np.concatenate(found)[:count]
+    return np.where(np.isnan(forces), np.inf, forces)  # else sorting would take it for the least

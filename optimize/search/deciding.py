@@ -14,7 +14,7 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array, Indices
 
 from .ipopt import Found, Instance, VariableBounds, impact_forces, minimise
-from .nlp import Program
+from .nlp import NlpShape, Program
 
 CARRIED_FROM = 0.98
 """Share of the worst force from which on an impact is carried from the start."""
@@ -39,7 +39,7 @@ def minimise_deciding(
     be worse where it ends; from there it goes on.
     """
     v = bounds.vector(springs, others)
-    shares = _shares(program, instance, postures, v)
+    shares = instance.shares(impact_forces(program, instance, postures, v))
     carried = np.flatnonzero(shares >= CARRIED_FROM * shares.max())
     iterations = 0
     while True:
@@ -47,7 +47,7 @@ def minimise_deciding(
         found = minimise(program, some, bounds, postures, springs, others, free=free)
         iterations += found.iterations
         v = bounds.vector(found.springs, found.others)
-        shares = _shares(program, instance, found.postures, v)
+        shares = instance.shares(impact_forces(program, instance, found.postures, v))
         worse = np.flatnonzero(shares > found.worst * (1 + MOST_EXCESS))
         fresh = np.setdiff1d(worse, carried)
         shares[carried] = found.shares
@@ -58,21 +58,15 @@ def minimise_deciding(
         postures, springs, others = found.postures, found.springs, found.others
 
 
-def _shares(program: Program, instance: Instance, postures: Array, v: Array) -> Array:
-    forces = impact_forces(program, instance, postures, v)
-    return np.array([force.max() for force in forces]) / instance.units
-
-
 def _some(instance: Instance, carried: Indices) -> Instance:
     """Return the NLP with some of its impacts."""
     shape, places = instance.shape, [int(i) for i in carried]
-    own = [shape.scenarios[i] for i in places]
-    numbered = {which: k for k, which in enumerate(dict.fromkeys(own))}
     return Instance(
-        replace(
-            shape,
-            impacts=tuple(shape.impacts[i] for i in places),
-            scenarios=tuple(numbered[which] for which in own),
+        NlpShape.of(
+            shape.postures,
+            [shape.impacts[i] for i in places],
+            [shape.scenarios[i] for i in places],
+            shape.objective,
         ),
         instance.tasks,
         instance.impacts[places],

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -13,12 +14,12 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..impact.peaks import WINDOWS, hides_a_peak, valley
+from ..impact.peaks import NEARLY_AS_LARGE, WINDOWS, hides_a_peak, valley
 from ..machine.coordinates import posture_limits
 from ..objectives import Objective, WorstForce
+from ..solver_options import FEASIBLE, quiet
 from ..study.study import Study
 from .nlp import SPEED, NlpShape, Program, nlp_solver, peak_rows
-from .solver_options import quiet
 
 CURVATURE = 0.05
 """Of a share of the force over decades of stiffness and radians, where nothing is known yet: a
@@ -31,7 +32,7 @@ IPOPT: dict[str, Any] = {
     "limited_memory_initialization": "constant",
     "limited_memory_init_val": CURVATURE,
     "max_iter": 300,
-    "tol": 1e-5,
+    "tol": FEASIBLE,
     "acceptable_tol": 1e-4,
     "acceptable_iter": 8,
 }
@@ -59,6 +60,10 @@ class Instance:
     tasks: Array
     impacts: Array
     units: Array
+
+    def shares(self, forces: Sequence[Array]) -> Array:
+        """Return the largest force of each impact [N] over what counts as one there, C."""
+        return np.array([force.max() for force in forces]) / self.units
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,9 +157,25 @@ class Found:
         """The largest share."""
         return float(self.shares.max())
 
+    @property
+    def solved(self) -> bool:
+        """Whether it is a local optimum that keeps all bounds."""
+        return self.success and self.violation <= FEASIBLE
 
-FEASIBLE = 1e-5
-"""Violation up to which a point counts as feasible."""
+
+Rank = tuple[bool, bool, float]
+"""Not solved, not feasible, and what was made small; or the violation, where it is not."""
+
+
+def ranked(solved: bool, violation: float, cost: float) -> Rank:
+    """Sort key: solved before feasible before the rest; then by cost, or by violation."""
+    feasible = violation <= FEASIBLE
+    return not solved, not feasible, cost if feasible else violation
+
+
+def rank(found: Found) -> Rank:
+    """Return how good an end of a search is, less being better."""
+    return ranked(found.solved, found.violation, found.cost)
 
 
 IN_TURN = threading.Lock()
@@ -193,8 +214,8 @@ def minimise(
         found, boundaries = best
         v = bounds.vector(found.springs, found.others)
         forces = impact_forces(program, instance, found.postures, v, found.speeds)
-        shares = np.array([f.max() for f in forces]) / instance.units
-        active = shares > 0.98 * shares.max()
+        shares = instance.shares(forces)
+        active = shares > NEARLY_AS_LARGE * shares.max()
         hidden = [
             a and hides_a_peak(f, b) for a, f, b in zip(active, forces, boundaries, strict=True)
         ]
@@ -203,16 +224,11 @@ def minimise(
         again = _round(program, instance, bounds, found.postures, v, free)
         iterations += again[0].iterations
         gained = (found.cost - again[0].cost) / abs(found.cost)
-        if _order(again[0]) < _order(found):
+        if rank(again[0]) < rank(found):
             best = again
         if gained < LEAST_GAIN_OF_WINDOWS:
             break
     return replace(best[0], iterations=iterations)
-
-
-def _order(found: Found) -> tuple[bool, float]:
-    feasible = found.violation <= FEASIBLE
-    return not (found.success and feasible), found.cost if feasible else found.violation
 
 
 def impact_forces(
@@ -270,7 +286,7 @@ def _round(
         ]
     )
     scenarios = np.array(shape.scenarios)
-    shares = np.array([f.max() for f in forces]) / instance.units
+    shares = instance.shares(forces)
     own = shape.objective.own(scenarios, shares, instance.impacts[:, SPEED])
     held = postures.ravel(), postures.ravel()
     limits = np.tile(bounds.q_lower, K), np.tile(bounds.q_upper, K)

@@ -18,7 +18,9 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .ipopt import FEASIBLE, Found, Instance, VariableBounds
+from ..objectives import Objective, WorstForce
+from ..solver_options import FEASIBLE
+from .ipopt import Found, Instance, VariableBounds
 from .minimax_point import Held, Point
 from .nlp import Program, peak_rows
 
@@ -139,6 +141,11 @@ class _Search:
     def forgotten(self) -> _Search:
         """Return the same with nothing known of the curvature."""
         return replace(self, curvature=np.eye(self.at.v.size) * CURVATURE, trust=TRUST)
+
+
+def serves(objective: Objective, *, free: bool) -> bool:
+    """Return whether ``least_worst`` makes an objective small: it holds postures."""
+    return not free and objective.kind == WorstForce.kind
 
 
 def least_worst(

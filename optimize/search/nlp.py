@@ -11,6 +11,7 @@ Variables, bounds and objectives are stacked here and known nowhere else.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,8 +26,8 @@ from ..evaluation import equipped
 from ..impact.impact_program import NUMBERS, SIZES, ImpactProgram, Parts
 from ..impact.peaks import WINDOWS
 from ..machine.hardware import Hardware, Machine
-from ..machine.tip_pose import posture_error
 from ..objectives import Objective, WorstForce
+from ..posture.tip_pose import posture_error
 from ..study.study import Study
 
 
@@ -82,6 +83,18 @@ class NlpShape:
     impacts: tuple[tuple[int, int], ...]
     scenarios: tuple[int, ...]
     objective: Objective = field(default_factory=WorstForce)
+
+    @staticmethod
+    def of(
+        postures: int,
+        impacts: Sequence[tuple[int, int]],
+        scenarios: Sequence[int],
+        objective: Objective,
+    ) -> NlpShape:
+        """Return the shape with scenarios of any numbers, counted anew."""
+        numbered = {which: k for k, which in enumerate(dict.fromkeys(scenarios))}
+        own = tuple(numbered[which] for which in scenarios)
+        return NlpShape(postures, tuple(impacts), own, objective)
 
 
 def hardware_function(study: Study, parts: Parts) -> ca.Function:

@@ -11,7 +11,7 @@ import numpy as np
 from .solve import Outcome
 
 SAME_FORCE = 1e-3
-"""Share of the force within which two optima can be one: forces are no better known."""
+"""Share of the force within which two optima can be one: searches end no nearer to them."""
 
 SAME_POSTURE = 0.05
 """Angle [rad] of any joint within which their postures count as one."""

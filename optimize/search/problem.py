@@ -15,8 +15,8 @@ from ..evaluation import equipped
 from ..impact.impact_program import PARTS, ImpactProgram, Parts, impact_numbers, impact_program
 from ..impact.timing import Timing, impact_timing
 from ..machine.coordinates import side_function
-from ..machine.tip_pose import posture_equations, tip_pose
 from ..objectives import WorstForce
+from ..posture.tip_pose import posture_equations, tip_pose
 from ..study.poses import Candidate, candidates, leaves_a_choice
 from ..study.study import Study
 from .ipopt import Instance, VariableBounds, one_posture

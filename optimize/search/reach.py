@@ -15,22 +15,18 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..answers import limit_name
 from ..bounds import Bound
 from ..evaluation import figures, largest_deflection, largest_share
-from ..failure import Infeasible
-from ..machine.tip_pose import posture_equations, tip_pose
+from ..posture.tip_pose import posture_equations, tip_pose
+from ..solver_options import FEASIBLE, quiet
 from ..study.poses import Candidate
-from ..study.study import Study
+from ..study.study import Study, limit_name
+from .failure import Infeasible
 from .ipopt import VariableBounds
 from .nlp import task_function, task_numbers
-from .solver_options import quiet
 from .stiffest import Stiffest
 
 Member = TypeVar("Member")
-
-ROW_TOLERANCE = 1e-5
-"""Excess of a bound's row up to which it counts as kept: Ipopt's tolerance."""
 
 IPOPT = {"hessian_approximation": "limited-memory", "max_iter": 300, "tol": 1e-8}
 
@@ -117,7 +113,7 @@ def reach(
         if off < 1e-6 and (best is None or excess < best.excess):
             holding = np.array(solution["lam_x"]).ravel()[:-1]
             best = Reach(excess, end[:V], end[V:-1].reshape(K, n), holding)
-        if best is not None and best.excess <= ROW_TOLERANCE:
+        if best is not None and best.excess <= FEASIBLE:
             break
     return best or Reach(np.inf, limits.upper, np.array(postures), np.zeros(V + K * n))
 
@@ -126,14 +122,14 @@ def reachable(study: Study, q: Array, *, free: bool) -> bool:
     """Return whether some hardware keeps all bounds in one posture."""
     if largest_share(study, q, study.upper) <= 1:
         return True
-    return reach(study, [q], study.bounds, free=free).excess <= ROW_TOLERANCE
+    return reach(study, [q], study.bounds, free=free).excess <= FEASIBLE
 
 
 def require_reachable(study: Study, poses: Sequence[Candidate], *, free: bool) -> None:
     """Raise Infeasible if no hardware keeps all bounds in all poses at once."""
     if all(largest_share(study, pose.q, study.upper) <= 1 for pose in poses):
         return
-    if reach(study, [pose.q for pose in poses], study.bounds, free=free).excess <= ROW_TOLERANCE:
+    if reach(study, [pose.q for pose in poses], study.bounds, free=free).excess <= FEASIBLE:
         return
     raise infeasible(study, poses, free=free)
 
@@ -142,7 +138,7 @@ def infeasible(study: Study, poses: Sequence[Candidate], *, free: bool) -> Infea
     """Return why no hardware keeps all bounds: a set of them of which each is needed for that."""
 
     def broken(some: Sequence[Candidate], bounds: Sequence[Bound]) -> bool:
-        return reach(study, [p.q for p in some], bounds, free=free).excess > ROW_TOLERANCE
+        return reach(study, [p.q for p in some], bounds, free=free).excess > FEASIBLE
 
     alone = [pose for pose in poses if broken([pose], study.bounds)]
     some = _needed([alone[0]] if alone else poses, lambda left: broken(left, study.bounds))

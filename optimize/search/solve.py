@@ -9,10 +9,19 @@ from typing import Literal
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..objectives import WorstForce
 from .deciding import minimise_deciding
-from .ipopt import FEASIBLE, IN_TURN, NO_OTHERS, Found, Instance, VariableBounds
-from .minimax import least_worst
+from .ipopt import (
+    IN_TURN,
+    NO_OTHERS,
+    Found,
+    Instance,
+    Rank,
+    VariableBounds,
+    minimise,
+    rank,
+    ranked,
+)
+from .minimax import least_worst, serves
 from .nlp import Program
 
 Mode = Literal["table", "free"]
@@ -95,10 +104,9 @@ def _search(program: Program, start: Start, bounds: VariableBounds, instance: In
     )
 
 
-def preference(outcome: Outcome) -> tuple[bool, bool, float]:
+def preference(outcome: Outcome) -> Rank:
     """Sort key: solved before feasible before the rest; then by force, or by violation."""
-    feasible = outcome.violation <= FEASIBLE
-    return not outcome.solved, not feasible, outcome.force if feasible else outcome.violation
+    return ranked(outcome.solved, outcome.violation, outcome.force)
 
 
 def better(first: Outcome, second: Outcome) -> Outcome:
@@ -122,15 +130,17 @@ def _attempt(
 ) -> Outcome:
     free = start.mode == "free"
     found = minimise_deciding(program, instance, bounds, q[None, :], springs, free=free)
-    if not (free or _is_good(found)) and instance.shape.objective.kind == WorstForce.kind:
+    iterations = found.iterations
+    if not found.solved and serves(instance.shape.objective, free=free):
         again = least_worst(program, instance, bounds, q[None, :], found.springs, found.others)
-        found = again if _is_good(again) else found
+        found = min(found, again, key=rank)
+        iterations += again.iterations
     return Outcome(
         name=start.name,
         mode=start.mode,
         status=found.status,
-        solved=_is_good(found),
-        iterations=found.iterations,
+        solved=found.solved,
+        iterations=iterations,
         attempts=1,
         seconds=0.0,
         q=found.postures[0],
@@ -141,5 +151,19 @@ def _attempt(
     )
 
 
-def _is_good(found: Found) -> bool:
-    return found.success and found.violation <= FEASIBLE
+def search(
+    program: Program,
+    instance: Instance,
+    bounds: VariableBounds,
+    postures: Array,
+    springs: Array,
+    others: Array | None,
+    free: bool,
+) -> Found:
+    """Run ``least_worst`` or, where it does not serve or fails, ``minimise``, too."""
+    shared = program, instance, bounds, postures, springs, others
+    with IN_TURN:
+        if not serves(instance.shape.objective, free=free):
+            return minimise(*shared, free=free)
+        found = least_worst(*shared)
+        return found if found.solved else min(found, minimise(*shared, free=free), key=rank)

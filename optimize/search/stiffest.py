@@ -17,10 +17,10 @@ from ..bounds import Deflection
 from ..evaluation import largest_deflection
 from ..machine.coordinates import posture_limits, sprung
 from ..machine.hardware import Hardware, Machine
-from ..machine.tip_pose import posture_equations, posture_error, tip_pose
+from ..posture.tip_pose import posture_equations, posture_error, tip_pose
+from ..solver_options import quiet
 from ..study.study import Study
 from .solve import Mode
-from .solver_options import quiet
 
 
 @dataclass(frozen=True, eq=False)

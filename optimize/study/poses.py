@@ -12,8 +12,8 @@ from softimpact.symbolic import InvalidValue, Joint, JointKind
 from softimpact.symbolic.robot.rigid import Array
 
 from ..machine.coordinates import freedom, held, turns_with_first
-from ..machine.tip_pose import POSE, posture_error, tip_pose, tip_poses
-from ..search.repair import held_elsewhere, nearest_at_pose, posture_at_pose
+from ..posture.at_pose import held_elsewhere, nearest_at_pose, posture_at_pose
+from ..posture.tip_pose import POSE, posture_error, tip_pose, tip_poses
 from .study import Pose, Study
 
 LEAST_TURN = 0.1
@@ -79,8 +79,8 @@ def candidates(study: Study) -> list[Candidate]:
     ]
     served = back.copy()
     if study.exact:
-        elsewhere = held_elsewhere(study, back, *task)
-        nearest, right = nearest_at_pose(study, back[elsewhere], *task)
+        elsewhere = held_elsewhere(study.model, back, *task)
+        nearest, right = nearest_at_pose(study.model, back[elsewhere], *task)
         served[elsewhere[right]] = nearest[right]
         for i in elsewhere[~right]:
             served[i] = _moved(study, study.poses[i], back[i], task)
@@ -94,7 +94,7 @@ def candidates(study: Study) -> list[Candidate]:
 
 def _moved(study: Study, pose: Pose, back: Array, task: tuple[Array, Array]) -> Array:
     """Return the posture near a pose that serves the task."""
-    q = posture_at_pose(study, back, *task)
+    q = posture_at_pose(study.model, back, *task)
     if q is None:
         raise InvalidValue(
             f"{study.source}: poses.{pose.name}.q",

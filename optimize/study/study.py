@@ -227,6 +227,21 @@ def transient_limit(contact: Contact) -> float:
     return limits_of(contact.region, contact.clamped).transient.force
 
 
+def limit_name(study: Study, i: int, end: str) -> tuple[str, str]:
+    """Return the field of a study file that limits a value of the hardware, and whose value it is.
+
+    Args:
+        study: whose hardware it is.
+        i: number of the value in ``study.range``.
+        end: "lower" or "upper".
+    """
+    name = study.range.names[i]
+    if i <= max(study.groups):
+        return f"stiffness.{end}", name
+    kind, _, whose = name.partition(" of ")
+    return f"hardware.{kind}.{end}", whose or kind
+
+
 def load_study(path: str | Path, overrides: dict[str, dict[str, Any]] | None = None) -> Study:
     """Read and check a study file.
 

@@ -8,7 +8,7 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from softimpact.optimize.machine.best_posture import BestPosture
+from softimpact.optimize.search.best_posture import BestPosture
 from softimpact.papers.factor_study import FactorStudy
 from softimpact.studio.figures.style import (
     BLACK,

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from softimpact.optimize import Study
-from softimpact.optimize.machine.best_posture import (
+from softimpact.optimize.posture.self_motion import SelfMotion
+from softimpact.optimize.search.best_posture import (
     BestPosture,
     best_posture,
     posture_of_least_force,
 )
-from softimpact.optimize.machine.self_motion import SelfMotion
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import ImpactModel, Matrix, Motors, giaf
 from softimpact.symbolic.robot.rigid import Array

@@ -10,8 +10,8 @@ import casadi as ca
 import numpy as np
 
 from softimpact.optimize import Candidate, Study, candidates
-from softimpact.optimize.machine.self_motion import SelfMotion, self_motion
-from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.posture.self_motion import SelfMotion, self_motion
+from softimpact.optimize.posture.tip_pose import tip_pose
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 

@@ -9,8 +9,8 @@ import pytest
 
 from softimpact.optimize import load_study
 from softimpact.optimize.search.reach import require_reachable
-from softimpact.optimize.study.study_check import study_problems
 from softimpact.optimize.study.study_scenarios import scenarios_of
+from softimpact.optimize.study_check import study_problems
 from softimpact.robots import FOLDER
 
 STUDIES = sorted((FOLDER / "studies").glob("*.toml"))

@@ -19,11 +19,12 @@ from softimpact.optimize import Design, Outcome, SolverFailure, Study, design, l
 from softimpact.optimize.co_design import MODES
 from softimpact.optimize.evaluation import largest_deflection
 from softimpact.optimize.impact.impact_program import impact_program
-from softimpact.optimize.machine.tip_pose import tip_pose, tip_pose_error
+from softimpact.optimize.posture.tip_pose import tip_pose, tip_pose_error
 from softimpact.optimize.search import ipopt as solving
 from softimpact.optimize.search import solve
+from softimpact.optimize.search.accurate_springs import accurate_springs
 from softimpact.optimize.search.problem import peak_force
-from softimpact.optimize.search.repair import accurate_springs
+from softimpact.optimize.solver_options import FEASIBLE
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic.robot.rigid import Array
 
@@ -224,7 +225,7 @@ def test_nothing_solved(tmp_path: Path) -> None:
         assert outcome.attempts >= 2
         peak = simulated_peak(study, outcome.q, outcome.springs)
         assert outcome.force == pytest.approx(peak, rel=1e-3)
-    feasible = [outcome for outcome in failure.outcomes if outcome.violation <= solving.FEASIBLE]
+    feasible = [outcome for outcome in failure.outcomes if outcome.violation <= FEASIBLE]
     assert failure.best in feasible
     assert failure.best.force == min(outcome.force for outcome in feasible)
     assert "Maximum_Iterations_Exceeded" in str(failure)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from studies import study_of
 
 from softimpact.optimize.impact.peaks import peaks_in_windows, top_weights, tops
-from softimpact.optimize.search.ipopt import minimise
+from softimpact.optimize.search.ipopt import minimise, ranked
 from softimpact.optimize.search.minimax import least_worst
 from softimpact.optimize.search.minimax_point import Held
 from softimpact.optimize.search.problem import Problem, prepare
@@ -110,3 +110,13 @@ def test_weights_are_the_derivatives_of_a_top(forces: list[float]) -> None:
         curved = 2 * values[node] - values[[node - 1, node + 1 - len(values)]].sum()
         if node in after and node not in (0, len(values) - 1) and curved > 1e-2:
             assert weights[i] == pytest.approx((after[node] - height) / step, rel=1e-2, abs=1e-2)
+
+
+def test_what_breaks_a_bound_is_never_preferred() -> None:
+    """By however little, and however large the other's force."""
+    kept, broken, optimal = (
+        ranked(False, 0.0, 5.0),
+        ranked(False, 1e-3, 0.9),
+        ranked(True, 0.0, 9.0),
+    )
+    assert optimal < kept < broken

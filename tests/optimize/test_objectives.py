@@ -16,7 +16,10 @@ from softimpact.optimize import Infeasible, Study, design
 from softimpact.optimize import objectives as package
 from softimpact.optimize.members import kinds_in
 from softimpact.optimize.objectives import Objective
+from softimpact.optimize.robust import certificate
+from softimpact.optimize.robust.certificate import Hardening
 from softimpact.optimize.robust.robust import RobustDesign, robust_design
+from softimpact.optimize.robust.setting import setting_of
 from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.simulate import Approach, largest_safe_speed, simulate_impact
 from softimpact.simulate.safe_speed import ForceLimits
@@ -134,3 +137,17 @@ def test_poses_by_themselves_refuse_what_they_cannot_do(
     study = replace(small_study(tmp_path, tables), scenarios=None)
     with pytest.raises(InvalidValue, match=rf"{field}: needs 'softimpact design' and a table"):
         design(study, executor=InProcess())
+
+
+@pytest.mark.parametrize("objective", ["safe_speed", "task_time"])
+def test_what_is_told_was_looked_at(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, objective: str
+) -> None:
+    """Also where the search for a speed ends before it is found."""
+    monkeypatch.setattr(certificate, "SECANTS", 1)
+    study = study_of(tmp_path, objective)
+    setting = setting_of(study, scenarios_of(study), InProcess(), elsewhere=False)
+    at = Hardening(setting.limits.vector(study.nominal), setting.given)
+    worst, _ = setting.worst(at)
+    again, _ = setting.worst(replace(at, factors=worst.factors))
+    assert (worst.value, worst.share) == pytest.approx((again.value, again.share))

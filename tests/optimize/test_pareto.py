@@ -24,15 +24,16 @@ from softimpact.optimize import (
     pareto_fronts,
 )
 from softimpact.optimize.evaluation import largest_deflection
-from softimpact.optimize.front.front import LEAST_SAVING, ParetoPoint, knee, undominated
+from softimpact.optimize.front.dominance import WORTH
+from softimpact.optimize.front.front import ParetoPoint, knee, undominated
 from softimpact.optimize.front.levels import even_bounds
+from softimpact.optimize.front.sweep import sweep
 from softimpact.optimize.impact.impact_program import impact_program
-from softimpact.optimize.machine.self_motion import self_motion
-from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.posture.self_motion import self_motion
+from softimpact.optimize.posture.tip_pose import tip_pose
 from softimpact.optimize.search import ipopt as solving
 from softimpact.optimize.search.problem import peak_force
 from softimpact.optimize.search.stiffest import stiffest
-from softimpact.optimize.search.sweep import sweep
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
@@ -116,9 +117,9 @@ def force_within(front: Front, deflection: float) -> float:
 def test_freedom_does_not_hurt(found: Pareto) -> None:
     for level in found.levels:
         free, given = (force_within(front, level) for front in (found.free, found.given))
-        assert free <= given * (1 + LEAST_SAVING)
+        assert free <= given * (1 + WORTH)
         for front in found.held.values():
-            assert given <= force_within(front, level) * (1 + LEAST_SAVING)
+            assert given <= force_within(front, level) * (1 + WORTH)
     assert found.free.points[0].deflection <= found.given.points[0].deflection
 
 
@@ -235,9 +236,7 @@ def point(deflection: float, force: float) -> ParetoPoint:
 
 
 def test_dominated_points_go() -> None:
-    points = [
-        point(*each) for each in ((3, 5), (1, 9), (2, 9.5), (2, 7), (4, 5 * (1 - LEAST_SAVING / 2)))
-    ]
+    points = [point(*each) for each in ((3, 5), (1, 9), (2, 9.5), (2, 7), (4, 5 * (1 - WORTH / 2)))]
     kept = [(p.deflection, p.force) for p in undominated(points)]
     assert kept == [(1, 9), (2, 7), (3, 5)]
 
@@ -268,10 +267,11 @@ def test_even_bounds_follow_the_front() -> None:
         ("lower", 1e-6, "give way by"),
         ("upper", 1e-6, "give way by"),
         ("lower", 1.0, "the force is least at"),
+        ("ends", {"deflection": [1e-3, 2e-3]}, "is for fronts over objectives"),
     ],
 )
 def test_levels_where_there_is_nothing(
-    tmp_path: Path, field: str, value: float, reason: str
+    tmp_path: Path, field: str, value: object, reason: str
 ) -> None:
     study = study_of(tmp_path, {"pareto": {field: value}}, ("q9",))
     with pytest.raises(InvalidValue) as caught:
@@ -322,7 +322,7 @@ def test_an_arm_without_a_choice_of_posture(tmp_path: Path) -> None:
     result = pareto_fronts(study, InProcess())
     assert len(result.free.points) >= 4
     for a, b in zip(result.free.points, result.task.points, strict=True):
-        assert a.force == pytest.approx(b.force, rel=LEAST_SAVING)
+        assert a.force == pytest.approx(b.force, rel=WORTH)
     axis = np.geomspace(500.0, 5e4, 25)
     springs = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
     grid = tried(study, result, [study.task_pose.q], springs)

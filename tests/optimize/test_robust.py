@@ -15,7 +15,7 @@ from studies import InProcess, changed, study_of, written
 from softimpact.optimize import Infeasible, Study, design, load_study
 from softimpact.optimize.evaluation import largest_deflection
 from softimpact.optimize.impact.impact_program import impact_numbers, impact_program
-from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.posture.tip_pose import tip_pose
 from softimpact.optimize.robust.robust import RobustDesign, robust_design
 from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.simulate import Approach, simulate_impact

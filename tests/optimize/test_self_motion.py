@@ -12,9 +12,9 @@ from oracles import example_urdf
 from studies import PANDA_24
 
 from softimpact.optimize import Study, candidates, load_study
-from softimpact.optimize.machine.best_posture import best_posture, posture_of_least_force
-from softimpact.optimize.machine.self_motion import SelfMotion, self_motion
-from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.posture.self_motion import SelfMotion, self_motion
+from softimpact.optimize.posture.tip_pose import tip_pose
+from softimpact.optimize.search.best_posture import best_posture, posture_of_least_force
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import InvalidValue, giaf, impact_model, load_robot
 from softimpact.symbolic.matrices import Matrix

@@ -27,9 +27,9 @@ from softimpact.optimize.front.axes import asked_axes
 from softimpact.optimize.front.dominance import knee, undominated
 from softimpact.optimize.impact.impact_program import impact_program
 from softimpact.optimize.robust.robust import robust_design
-from softimpact.optimize.study.study_check import study_problems
 from softimpact.optimize.study.study_file import ParetoSection
 from softimpact.optimize.study.study_scenarios import scenarios_of
+from softimpact.optimize.study_check import study_problems
 from softimpact.studio.figures.trade_off import figure_of_front
 from softimpact.studio.figures.trade_off_hardware import figure_of_hardware
 from softimpact.studio.report.trade_off_pages import write_trade_off_report

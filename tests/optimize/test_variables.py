@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 from small_arm import small_study
@@ -13,8 +14,10 @@ from studies import InProcess
 
 from softimpact.optimize import Study, load_study
 from softimpact.optimize import variables as package
-from softimpact.optimize.evaluation import largest_share
+from softimpact.optimize.evaluation import equipped, largest_share
 from softimpact.optimize.impact.impact_program import impact_program
+from softimpact.optimize.impact.timing import impact_timing, scenario_timing
+from softimpact.optimize.machine.hardware import built
 from softimpact.optimize.members import kinds_in
 from softimpact.optimize.robust.robust import RobustDesign, robust_design
 from softimpact.optimize.search.problem import felt_numbers, sought_parts, study_impacts
@@ -83,6 +86,30 @@ def test_link_masses(tmp_path: Path) -> None:
         np.abs(np.array(mass_matrix(robot, Q)) - np.array(mass_matrix(study.robot, Q))).max() > 0.1
     )
     assert peak(study, masses) == pytest.approx(simulated(study, robot=robot), rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["rotor_inertia", "link_mass"])
+def test_time_steps_follow_the_lightest_machine(tmp_path: Path, kind: str) -> None:
+    """What is far lighter than the machine as it is moves faster; a leapfrog would blow up."""
+    study = small_study(tmp_path, f"[hardware.{kind}]\nlower = 1e-3\nupper = 1.0", motors="free")
+    others, springs = np.full(3, 1e-3), study.upper
+    for timing in (scenario_timing(study, scenarios_of(study)), impact_timing(study, [Q])):
+        parts = sought_parts(study)
+        program = impact_program(
+            study.model, timing.nodes, timing.substeps, parts=parts, compiled=False
+        )
+        x = np.r_[Q, felt_numbers(study, parts, springs, others)]
+        (row,) = study_impacts(study, timing.step)
+        found = float(np.array(program["peaks"](x, row, 0)).max())
+        model = built(study.with_springs(springs), equipped(study, ca.DM(springs), others))
+        expected = simulate_impact(
+            model,
+            Approach(Q, study.direction, study.speed),
+            study.contact,
+            motors=study.motors[0],
+            horizon=timing.duration,
+        ).peak
+        assert found == pytest.approx(expected, rel=1e-2)
 
 
 def test_cover(tmp_path: Path) -> None:

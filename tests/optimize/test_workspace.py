@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from softimpact.optimize.machine.tip_pose import tip_pose
-from softimpact.optimize.machine.workspace import Hold, postures_in_plane
+from softimpact.optimize.posture.tip_pose import tip_pose
+from softimpact.optimize.posture.workspace import Hold, postures_in_plane
 from softimpact.symbolic import ImpactModel, InvalidValue, drives, load_robot
 
 PANDA = load_robot("panda")

@@ -15,7 +15,7 @@ import pytest
 from studies import PANDA_24
 
 from softimpact.optimize import Study, candidates, load_study
-from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.posture.tip_pose import tip_pose
 from softimpact.papers.factor_study.agreement import spearman
 from softimpact.papers.factor_study.functions import factor_functions
 from softimpact.papers.factor_study.heavy_base import MASSES, on_heavy_base

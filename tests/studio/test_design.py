@@ -204,6 +204,9 @@ def test_bad_input_is_refused_before_the_search(tmp_path: Path) -> None:
         "design", study, "--out", blocked / "out"
     )
     assert "table, free, both" in refusal("design", study, "--mode", "quick")
+    everybody = small_study(tmp_path, ("[task]", "[scenarios]\n[task]"))
+    assert "scenarios.posture says" in refusal("design", everybody, "--mode", "table")
+    study = small_study(tmp_path)
     assert "chest" in refusal("design", study, "--region", "elbow")
     assert "speed" in refusal("design", study, "--speed", "-1")
     assert "no such" in refusal("design", tmp_path / "absent.toml")

@@ -16,7 +16,7 @@ from matplotlib.text import Annotation, Text
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from pages import well_formed
 
-from softimpact.optimize.machine.tip_pose import tip_pose
+from softimpact.optimize.posture.tip_pose import tip_pose
 from softimpact.studio.design_report import DesignReport, gains_in_words
 from softimpact.studio.figures import (
     draw_figures,

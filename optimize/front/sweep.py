@@ -10,10 +10,10 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .ipopt import Instance, VariableBounds
-from .nlp import Program
-from .solve import Outcome, Start, better, preference, solve
-from .stiffest import Stiffest
+from ..search.ipopt import Instance, VariableBounds
+from ..search.nlp import Program
+from ..search.solve import Outcome, Start, better, preference, solve
+from ..search.stiffest import Stiffest
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,10 +7,10 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..robust.screening import largest_forces
-from .ipopt import Instance, VariableBounds, felt
-from .minimax_point import bound_rows
-from .nlp import Program
+from ..search.ipopt import Instance, VariableBounds, felt
+from ..search.minimax_point import bound_rows
+from ..search.nlp import Program
+from .screening import largest_forces
 
 SAMPLES = 128
 """Hardware that is looked at. Optima of springs are many; the worst force of a sample tells which

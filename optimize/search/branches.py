@@ -12,12 +12,12 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
-from ..search.problem import Problem, felt_numbers, study_impacts
-from ..search.repair import accurate_springs
+from ..machine.coordinates import is_plain
+from ..posture.self_motion import SelfMotion, self_motion
+from ..posture.tip_pose import POSE, tip_pose, tip_pose_error
 from ..study.study import Study
-from .coordinates import is_plain
-from .self_motion import SelfMotion, self_motion
-from .tip_pose import POSE, tip_pose, tip_pose_error
+from .accurate_springs import accurate_springs
+from .problem import Problem, felt_numbers, study_impacts
 
 SEEDS = 200
 """Random postures from which branches are sought; one that a hundredth of them leads to is missed

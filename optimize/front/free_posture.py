@@ -9,12 +9,12 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..front.front import LEAST_SAVING
-from ..front.levels import NO_BOUND
-from ..machine.branches import branches
+from ..search.branches import branches
+from ..search.solve import Mode, Outcome, Start, better, preference, solve
+from ..search.stiffest import Stiffest
+from .dominance import WORTH
+from .levels import NO_BOUND
 from .searches import Searches
-from .solve import Mode, Outcome, Start, better, preference, solve
-from .stiffest import Stiffest
 from .sweep import Level, rescaled
 
 POSTURES_TRIED_FIRST = 3
@@ -153,4 +153,4 @@ def _improve(
 def _gained(before: Outcome, after: Outcome) -> bool:
     if not (before.solved and after.solved):
         return after.solved and not before.solved
-    return after.force < before.force * (1 - LEAST_SAVING)
+    return after.force < before.force * (1 - WORTH)

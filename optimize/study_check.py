@@ -15,12 +15,12 @@ from pydantic import ValidationError
 from softimpact.robots import study_path
 from softimpact.symbolic import InvalidValue
 
-from ..front.axes import asked_axes
-from ..impact.timing import require_time_steps
-from .poses import candidates
-from .study import build_study, robot_of_study
-from .study_file import Fault, RobotSection, StudyFile, faults_of, read_toml
-from .study_scenarios import scenarios_of
+from .front.axes import asked_axes
+from .impact.timing import require_time_steps
+from .study.poses import candidates
+from .study.study import build_study, robot_of_study
+from .study.study_file import Fault, RobotSection, StudyFile, faults_of, read_toml
+from .study.study_scenarios import scenarios_of
 
 ROUNDS = 100
 """Most problems that are looked for one behind the other."""

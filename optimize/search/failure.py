@@ -7,14 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .bounds import Bound
-from .evaluation import kept
-from .machine.tip_pose import tip_pose, tip_pose_error
-from .search.ipopt import FEASIBLE
-from .search.solve import Outcome, preference
-from .search.stiffest import Stiffest
-from .study.study import Study
-from .units import figure_in_words
+from ..bounds import Bound
+from ..evaluation import kept
+from ..posture.tip_pose import tip_pose, tip_pose_error
+from ..solver_options import FEASIBLE
+from ..study.study import Study
+from ..units import figure_in_words
+from .solve import Outcome, preference
+from .stiffest import Stiffest
 
 
 class SolverFailure(Exception):

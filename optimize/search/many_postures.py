@@ -7,11 +7,11 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
+from ..impact.impact_program import impact_program
+from ..impact.timing import impact_timing
 from ..running.workers import cores
-from ..search.problem import study_impacts
 from ..study.study import Study
-from .impact_program import impact_program
-from .timing import impact_timing
+from .problem import study_impacts
 
 IMPACTS_IN_A_CALL = 200
 """Impacts simulated in one call."""

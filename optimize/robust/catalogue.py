@@ -11,11 +11,11 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..evaluation import KEEPS, largest_share
+from ..evaluation import keeps_bounds
 from ..evaluation import kept as kept_bounds
-from ..failure import Unavailable
-from ..robust.certificate import Hardening, Setting, Worst
+from ..search.failure import Unavailable
 from ..study.study import Study
+from .certificate import Hardening, Setting, Worst
 
 ROUNDS = 20
 """Most rounds of exchange of springs."""
@@ -109,7 +109,7 @@ def _cost(decisive: Setting, at: Hardening) -> float:
     """Return what is made small; infinite where a bound is broken."""
     parted = decisive.limits.parted(at.v)
     for q in at.postures:
-        if largest_share(decisive.study, q, *parted) > 1 + KEEPS:
+        if not keeps_bounds(decisive.study, q, *parted):
             return np.inf
     value = decisive.value(at)[0]
     return 1 / value if decisive.study.objective.more_is_better else value

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Make a poor start feasible: first the posture, then the stiffness."""
+"""The posture nearest to a given one that holds the tip at a pose."""
 
 from __future__ import annotations
 
@@ -13,11 +13,9 @@ from numpy.typing import NDArray
 from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
 
-from ..evaluation import KEEPS, largest_deflection, largest_share
 from ..machine.coordinates import freedom, posture_limits
-from ..machine.tip_pose import POSE, posture_error
-from ..study.study import Study
-from .solver_options import quiet
+from ..solver_options import quiet
+from .tip_pose import POSE, posture_error
 
 HELD = 1e-9
 """Pose error [m, rad] up to which a posture holds the tip as it is."""
@@ -29,44 +27,40 @@ STILL = 1e-8
 """Length of a step [rad] at which a posture is where it will be."""
 
 
-ENOUGH = 1e-3
-"""Share of a bound that springs in proportion may leave free."""
-
-
-def posture_at_pose(study: Study, q: Array, position: Array, rotation: Array) -> Array | None:
+def posture_at_pose(model: ImpactModel, q: Array, position: Array, rotation: Array) -> Array | None:
     """Return the posture nearest to q that holds the tip at a pose; None if none was found.
 
     Args:
-        study: whose robot, tip and joint limits count.
+        model: robot and tip.
         q: posture to start from, length n [rad].
         position: of the tip, length 3 [m].
         rotation: of the tip, 3×3.
     """
     pose = np.concatenate([position, rotation.ravel(order="F")])
-    if abs(np.array(_pose_error(study.model)(q, pose))).max() < HELD:
+    if abs(np.array(_pose_error(model)(q, pose))).max() < HELD:
         return q
-    if freedom(study.model) < POSE:  # Ipopt refuses what has more equations than unknowns
+    if freedom(model) < POSE:  # Ipopt refuses what has more equations than unknowns
         return None
-    solver = _posture_solver(study.model)
-    lower, upper = posture_limits(study.model)
+    solver = _posture_solver(model)
+    lower, upper = posture_limits(model)
     p = np.concatenate([q, pose])
     found = solver(x0=q, p=p, lbx=lower, ubx=upper, lbg=0, ubg=0)
     return np.array(found["x"]).ravel() if solver.stats()["success"] else None
 
 
 def nearest_at_pose(
-    study: Study, postures: Array, position: Array, rotation: Array
+    model: ImpactModel, postures: Array, position: Array, rotation: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Return what ``posture_at_pose`` does for many postures, m×n, and for which it is right.
 
     Each step takes the posture nearest to the given one that holds the tip to first order. Where
     that does not end soon or leaves the joints' limits, Ipopt must say.
     """
-    wanted, lower, upper = postures, *posture_limits(study.model)
-    if freedom(study.model) < POSE:
+    wanted, lower, upper = postures, *posture_limits(model)
+    if freedom(model) < POSE:
         return wanted, np.zeros(len(wanted), dtype=bool)
     pose = np.concatenate([position, rotation.ravel(order="F")])
-    slope, q = _pose_slope(study.model), wanted.copy()
+    slope, q = _pose_slope(model), wanted.copy()
     held, moving = np.zeros(len(q), dtype=bool), np.arange(len(q))
     for _ in range(FIRST_ORDER_STEPS):
         if not moving.size:
@@ -84,11 +78,11 @@ def nearest_at_pose(
 
 
 def held_elsewhere(
-    study: Study, postures: Array, position: Array, rotation: Array
+    model: ImpactModel, postures: Array, position: Array, rotation: Array
 ) -> NDArray[np.int64]:
     """Return the numbers of postures, m×n, that do not hold the tip at a pose."""
     pose = np.concatenate([position, rotation.ravel(order="F")])
-    errors = np.array(_pose_error(study.model)(postures.T, np.tile(pose[:, None], len(postures))))
+    errors = np.array(_pose_error(model)(postures.T, np.tile(pose[:, None], len(postures))))
     return np.flatnonzero(abs(errors).max(axis=0) >= HELD)
 
 
@@ -119,42 +113,3 @@ def _posture_solver(model: ImpactModel) -> ca.Function:
         "g": posture_error(model, q, position, rotation),
     }
     return ca.nlpsol("posture", "ipopt", problem, quiet({"tol": 1e-9}))
-
-
-def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
-    """Return the softest springs, in the given proportions, that meet the deflection bound.
-
-    Where they break another bound that stiffer ones keep, such as one on a frequency, they are just
-    stiff enough for that. Joints that reach a bound of their stiffness stay there; if the upper
-    bounds are too soft, the springs come as near as they can.
-
-    Args:
-        study: whose forces and bounds count.
-        q: posture, length n [rad].
-        springs: proportions of the stiffness, one for each spring [N·m/rad].
-    """
-    scaled = np.clip(springs, study.lower, study.upper)
-    for _ in range(4 * len(study.groups)):
-        share = largest_deflection(study, q, scaled) / study.max_deflection
-        if 1 - ENOUGH < share <= 1 + KEEPS:
-            break
-        scaled = np.clip(scaled * share, study.lower, study.upper)
-    return _stiffened(study, q, scaled) if study.other_bounds else scaled
-
-
-def _stiffened(study: Study, q: Array, springs: Array) -> Array:
-    """Return springs times the least factor with which they keep all bounds; as given if none."""
-
-    def times(logarithm: float) -> Array:
-        return np.asarray(np.clip(springs * np.exp(logarithm), study.lower, study.upper))
-
-    def keeps(logarithm: float) -> bool:
-        return largest_share(study, q, times(logarithm)) <= 1 + KEEPS
-
-    low, high = 0.0, float(np.log(np.max(study.upper / springs)))
-    if keeps(low) or not keeps(high):
-        return springs
-    while high - low > ENOUGH:
-        middle = (low + high) / 2
-        low, high = (low, middle) if keeps(middle) else (middle, high)
-    return times(high)

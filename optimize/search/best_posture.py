@@ -15,14 +15,14 @@ from softimpact.symbolic.robot.rigid import Array
 
 from ..impact.impact_program import impact_program
 from ..impact.timing import impact_timing
-from ..search.ipopt import Instance, VariableBounds, one_posture
-from ..search.nlp import task_numbers
-from ..search.problem import study_impacts, study_program
-from ..search.solve import Start, solve
-from ..search.solver_options import quiet
+from ..machine.coordinates import posture_limits
+from ..posture.tip_pose import posture_error, tip_pose
+from ..solver_options import quiet
 from ..study.study import Study
-from .coordinates import posture_limits
-from .tip_pose import posture_error, tip_pose
+from .ipopt import Instance, VariableBounds, one_posture
+from .nlp import task_numbers
+from .problem import study_impacts, study_program
+from .solve import Start, solve
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from ..running.workers import Progress, as_completed
-from .problem import Problem
+from ..search.problem import Problem
 
 Key = TypeVar("Key")
 Result = TypeVar("Result")
