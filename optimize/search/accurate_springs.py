@@ -8,10 +8,11 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array
 
 from ..evaluation import largest_deflection, largest_share
+from ..solver_options import FEASIBLE
 from ..study.study import Study
 
 ENOUGH = 1e-3
-"""Share by which springs in proportion may miss a bound, or be stiffer than need be."""
+"""Share of a bound that springs in proportion may leave free."""
 
 
 def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
@@ -29,7 +30,7 @@ def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
     scaled = np.clip(springs, study.lower, study.upper)
     for _ in range(4 * len(study.groups)):
         share = largest_deflection(study, q, scaled) / study.max_deflection
-        if abs(share - 1.0) < ENOUGH:
+        if 1 - ENOUGH < share <= 1 + FEASIBLE:
             break
         scaled = np.clip(scaled * share, study.lower, study.upper)
     return _stiffened(study, q, scaled) if study.other_bounds else scaled
@@ -42,7 +43,7 @@ def _stiffened(study: Study, q: Array, springs: Array) -> Array:
         return np.asarray(np.clip(springs * np.exp(logarithm), study.lower, study.upper))
 
     def keeps(logarithm: float) -> bool:
-        return largest_share(study, q, times(logarithm)) <= 1 + ENOUGH
+        return largest_share(study, q, times(logarithm)) <= 1 + FEASIBLE
 
     low, high = 0.0, float(np.log(np.max(study.upper / springs)))
     if keeps(low) or not keeps(high):
