@@ -10,6 +10,7 @@ from softimpact.optimize import ParetoPoint
 from softimpact.optimize.study.poses import leaves_a_choice
 
 from .answers_in_words import answers_in_words
+from .checks import checks_in_words
 from .design_report import limit_kind, peak_in_words
 from .front_words import FrontWords
 from .output import Cell
@@ -223,12 +224,7 @@ def _limit(report: ParetoReport) -> list[str]:
 
 def _check(report: ParetoReport) -> str:
     checks = [checked.check for points in report.fronts.values() for checked in points]
-    same = max(abs(check.linearised / check.nlp - 1) for check in checks)
-    above = max((check.full / check.nlp - 1 for check in checks), key=abs)
-    return (
-        f"Check of all {len(checks)} points: linearised by SUNDIALS within {100 * same:.3f} % of "
-        f"the optimum, nonlinear at most {100 * above:+.2f} % from it."
-    )
+    return checks_in_words("", checks)
 
 
 def _unsolved(report: ParetoReport) -> list[str]:

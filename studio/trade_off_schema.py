@@ -50,6 +50,7 @@ class CheckRecord(Part):
 
     nlp: float
     linearised: float
+    full: float = Field(description="of the nonlinear robot")
 
 
 class TradePointRecord(Part):

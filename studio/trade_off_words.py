@@ -10,10 +10,12 @@ import numpy as np
 from softimpact.optimize.front.axes import BoundAxis
 
 from .answers_in_words import answers_in_words
+from .checks import checks_in_words
 from .design_report import peak_in_words
 from .front_words import FrontWords
 from .output import Cell
-from .robust_report import others_in_words, place_in_words
+from .robust_report import others_in_words
+from .scenario_checks import place_in_words
 from .trade_off_report import TradeOffReport, View, broken_before
 
 TABLE = "front.csv"
@@ -130,7 +132,7 @@ def _knee(report: TradeOffReport) -> Iterator[str]:
     yield f"The knee, beyond which all costs more: {values_in_words(report.views, point.values)}."
     springs = ", ".join(f"{k:.0f}" for k in point.springs)
     yield f"There: k_s = [{springs}] N·m/rad{'; ' if others else ''}{', '.join(others)}."
-    yield f"There at worst {point.worst.force:.1f} N: {place_in_words(point, point.worst)}."
+    yield f"There at worst {point.worst.force:.1f} N: {place_in_words(point, point.worst.index)}."
     yield from answers_in_words(point.study, point.indifferent, point.prices)
 
 
@@ -148,12 +150,7 @@ def _before(report: TradeOffReport) -> Iterator[str]:
 
 
 def _check(report: TradeOffReport) -> str:
-    pairs = zip(report.points, report.checks, strict=True)
-    off = max(abs(check / point.worst.force - 1) for point, check in pairs)
-    return (
-        f"Check of all {len(report.points)} points: the worst scenario by SUNDIALS within "
-        f"{100 * off:.3f} % of the optimiser's force."
-    )
+    return checks_in_words("the worst scenario of", report.checks)
 
 
 def _levels(report: TradeOffReport) -> Iterator[str]:

@@ -23,7 +23,7 @@ from ..answers import Price, indifferent_ranges, prices_of, worth_of
 from ..evaluation import equipped, keeps_bounds
 from ..impact.timing import Timing
 from ..machine.hardware import Hardware
-from ..running.workers import Progress, cores, workers, works_elsewhere
+from ..running.workers import Progress, awake, cores, workers, works_elsewhere
 from ..search.accurate_springs import accurate_springs
 from ..search.minimax import serves
 from ..search.reach import require_reachable
@@ -56,6 +56,7 @@ class RobustDesign(Record):
             the deflection allows; with these springs.
         bound: share of the limit that the NLP says is the least, over its own scenarios.
         active: scenarios that the NLP held in the end.
+        shares: of its limit that the force of each of them is, as the NLP has it.
         rounds: exchanges.
         indifferent: range of each value of the hardware that costs less than 0.5 % over the active
             scenarios, the others held.
@@ -78,6 +79,7 @@ class RobustDesign(Record):
     equal: tuple[Worst, Array]
     bound: float
     active: tuple[int, ...]
+    shares: tuple[float, ...]
     rounds: int
     indifferent: Array
     prices: tuple[Price, ...]
@@ -116,7 +118,9 @@ def robust_design(
         )
     require_lengths(study, scenarios)
     require_reachable(study, scenarios.poses, free=free)
-    with workers(min(max(2, len(scenarios) // SCENARIOS_IN_A_JOB), cores()), executor) as pool:
+    processes = min(max(2, len(scenarios) // SCENARIOS_IN_A_JOB), cores())
+    with workers(processes, executor) as pool:
+        awake(pool, processes)
         elsewhere = works_elsewhere(executor)
         setting = setting_of(study, scenarios, pool, on_progress, elsewhere=elsewhere)
         return _exchanged(setting, free)
@@ -160,6 +164,7 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
         equal=(equal_worst, equal),
         bound=state.bound,
         active=state.active,
+        shares=tuple((state.best.shares * state.unit).tolist()),
         rounds=state.rounds,
         indifferent=indifferent(setting, state),
         prices=prices_of(study, state.instance, state.best, worth, setting.program),
