@@ -74,7 +74,7 @@ def robust_record(design: RobustDesign, checks: Sequence[CheckedScenario]) -> di
         "bounds": worst.bounds,
         "before": _other(design, design.before, study.nominal),
         "equal": _other(design, equal, equal_springs),
-        "catalogue": _catalogue(design.bought),
+        "catalogue": catalogue_record(design.bought),
         "indifferent": by_name(study, design.indifferent),
         "prices": design.prices,
         "conflicts": [],
@@ -93,7 +93,8 @@ def robust_record(design: RobustDesign, checks: Sequence[CheckedScenario]) -> di
     }
 
 
-def _catalogue(bought: Bought | None) -> dict[str, Any] | None:
+def catalogue_record(bought: Bought | None) -> dict[str, Any] | None:
+    """Return what springs of a catalogue cost, as plain data; None without one."""
     if bought is None:
         return None
     return {"ideal_springs": bought.ideal, "loss": bought.loss, "tried": bought.tried}

@@ -14,7 +14,7 @@ from .cautions import study_warnings
 from .checks import Check, doubts
 from .design_report import inputs, versions
 from .pareto_record import GENERATOR
-from .robust_report import meets_limit, share_of_limit
+from .robust_report import catalogue_record, meets_limit, share_of_limit
 from .scenario_checks import scenario_record
 from .trade_off_report import TradeOffReport, broken_before
 
@@ -57,6 +57,7 @@ def trade_off_record(report: TradeOffReport) -> dict[str, Any]:
         },
         "levels_searched": found.searched,
         "levels_out_of_reach": found.out_of_reach,
+        "levels_not_sold": found.not_sold,
         "levels_unsolved": found.unsolved,
         "solver": {
             "compiled": found.compiled,
@@ -98,6 +99,7 @@ def _point(report: TradeOffReport, point: TradePoint, check: Check, knee: bool) 
         "bounds": worst.bounds,
         "indifferent": by_name(study, point.indifferent),
         "prices": point.prices,
+        "catalogue": catalogue_record(point.bought),
         "bound": point.bound * point.scenarios.allowed,
         "status": point.status,
     }

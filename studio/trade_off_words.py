@@ -153,10 +153,23 @@ def _check(report: TradeOffReport) -> str:
     return checks_in_words("the worst scenario of", report.checks)
 
 
+def _percent(share: float) -> str:
+    return f"{100 * max(share, 0.0):.2g} %"
+
+
 def _levels(report: TradeOffReport) -> Iterator[str]:
     found = report.found
     if found.out_of_reach:
         yield f"{found.out_of_reach} combinations of levels are beyond what any hardware reaches."
+    losses = [point.bought.loss for point in found.points if point.bought is not None]
+    if losses:
+        yield (
+            f"All springs are of the catalogue, which costs {_percent(min(losses))} to "
+            f"{_percent(max(losses))} of the {report.view_of(0)[1].label} against springs of any "
+            "stiffness."
+        )
+    if found.not_sold:
+        yield f"{found.not_sold} combinations of levels are kept by no springs of the catalogue."
     if found.unsolved:
         kinds = ", ".join(sorted(set(found.unsolved)))
         yield f"Ipopt failed at {len(found.unsolved)} combinations within reach ({kinds})."

@@ -147,7 +147,7 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     state = exchange(setting, first, starts, given, equal_worst.share, free=free, thorough=True)
     choice = None
     if study.catalogue:
-        choice, state = _bought(setting, state)
+        choice, state = with_catalogue(setting, state)
     springs, others = limits.parted(state.at.v)
     if choice is not None:  # their logarithms lose a digit
         springs = choice.springs
@@ -219,7 +219,11 @@ def indifferent(setting: Setting, state: ExchangeState) -> Array:
     return indifferent_ranges(setting.limits, state.at.v, cost, keeps)
 
 
-def _bought(setting: Setting, state: ExchangeState) -> tuple[Bought, ExchangeState]:
-    """Take springs of the catalogue instead; the postures stay."""
+def with_catalogue(setting: Setting, state: ExchangeState) -> tuple[Bought, ExchangeState]:
+    """Take springs of the catalogue instead, and return these; the postures stay.
+
+    Raises:
+        Unavailable: no combination was found that keeps all bounds.
+    """
     choice = bought(setting, _decisive(setting, state), state.at, state.worst)
     return choice, replace(state, at=choice.at, worst=choice.worst)
