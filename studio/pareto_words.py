@@ -8,6 +8,7 @@ from math import log
 
 from softimpact.optimize import ParetoPoint
 from softimpact.optimize.study.poses import leaves_a_choice
+from softimpact.optimize.units import ratio_in_words
 
 from .answers_in_words import answers_in_words
 from .checks import checks_in_words
@@ -135,10 +136,10 @@ def _trade_off(report: ParetoReport) -> list[str]:
     ]
     if len(points) > 1:
         a, b = max(pairwise(points), key=lambda pair: _slope(*pair))
+        of = "deflection"
         lines.append(
             f"It pays most from {MM * a.deflection:.3g} to {MM * b.deflection:.3g} mm: "
-            f"{a.force - b.force:.1f} N for {100 * (b.deflection / a.deflection - 1):.0f} % more "
-            "deflection."
+            f"{a.force - b.force:.1f} N for {ratio_in_words(b.deflection / a.deflection, of)}."
         )
     bend = report.knee("free")
     if bend is not None:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from softimpact.optimize.front.axes import BoundAxis
+from softimpact.optimize.units import ratio_in_words
 
 from .answers_in_words import answers_in_words
 from .checks import checks_in_words
@@ -88,11 +89,10 @@ def _ends(report: TradeOffReport) -> Iterator[str]:
             continue
         best, loose = ends
         a, b = (report.points[i].values for i in (loose, best))
-        change = 100 * (b[column] / a[column] - 1)
         yield (
             f"{view.label.capitalize()}: {view.words(a[own])} → {view.words(b[own])} takes the "
-            f"{sought.label} from {sought.words(a[column])} to {sought.words(b[column])} "
-            f"({change:+.1f} %)."
+            f"{sought.label} from {sought.words(a[column])} to {sought.words(b[column])}, "
+            f"{ratio_in_words(b[column] / a[column], sought.label)}."
         )
 
 
@@ -153,10 +153,6 @@ def _check(report: TradeOffReport) -> str:
     return checks_in_words("the worst scenario of", report.checks)
 
 
-def _percent(share: float) -> str:
-    return f"{100 * max(share, 0.0):.2g} %"
-
-
 def _levels(report: TradeOffReport) -> Iterator[str]:
     found = report.found
     if found.out_of_reach:
@@ -164,9 +160,8 @@ def _levels(report: TradeOffReport) -> Iterator[str]:
     losses = [point.bought.loss for point in found.points if point.bought is not None]
     if losses:
         yield (
-            f"All springs are of the catalogue, which costs {_percent(min(losses))} to "
-            f"{_percent(max(losses))} of the {report.view_of(0)[1].label} against springs of any "
-            "stiffness."
+            f"All springs are of the catalogue, which costs {100 * max(0.0, *losses):.2g} % of the "
+            f"{report.view_of(0)[1].label} at most against springs of any stiffness."
         )
     if found.not_sold:
         yield f"{found.not_sold} combinations of levels are kept by no springs of the catalogue."
