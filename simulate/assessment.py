@@ -159,10 +159,7 @@ def assess_impact(
     formula = two_body(contact.region, contact.clamped, moving_mass(model.robot) - payload, payload)
     speeds = None
     if safe_speed:
-        allowed = force_limits(limits)
-        speeds, lines = safe_speeds(
-            model, approach, contact, allowed, ends, run, is_checked=not_trusted(error)
-        )
+        speeds, lines = safe_speeds(model, approach, contact, force_limits(limits), ends, run)
         warnings += lines
     return Assessment(
         ends=found,
