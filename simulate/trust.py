@@ -8,10 +8,13 @@ from dataclasses import replace
 from math import inf
 from typing import Any, TypeGuard
 
+import numpy as np
+
 from softimpact.symbolic import Contact, ImpactModel, Motors
 
 from .arrival import Approach
 from .controller import Controller
+from .full import holding_torques
 from .history import ImpactHistory
 from .impact import simulate_impact
 from .linear_error import linear_error
@@ -35,10 +38,16 @@ def not_trusted(error: float | None) -> TypeGuard[float]:
 def largest_linear_error(
     model: ImpactModel, approach: Approach, found: Mapping[str, ImpactHistory]
 ) -> float | None:
-    """Return the share by which a linear model may be off; None where that is not known."""
+    """Return the share by which a linear model may be off; None where that is not known.
+
+    It is not of closed chains, nor of joints without a motor that are not at rest, which the
+    nonlinear robot would leave.
+    """
+    if model.robot.loops or holding_torques(model, np.asarray(approach.q, dtype=float))[1]:
+        return None
     errors = []
     for history in found.values():
-        if history.fidelity not in ("chain", "linearised") or model.robot.loops:
+        if history.fidelity not in ("chain", "linearised"):
             return None
         reaction = 0.0 if history.motors is None else history.motors.reaction_time
         late = max(history.time_of_peak, reaction if reaction < inf else 0.0)
