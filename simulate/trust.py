@@ -21,18 +21,26 @@ from .linear_error import linear_error
 from .safe_speed import ACCURACY, ForceLimits, largest_safe_speed, share_of_limit
 
 TRUSTED = 0.1
-"""Error that a linear model may have before the nonlinear one is asked, too: what is not known of
+"""Error that a linear force may have before the nonlinear robot is asked, too: what is not known of
 robots and people makes for more (see ``Tolerances``)."""
 
 EXACT = 0.01
-"""Error up to which a linear model's safe speed counts as exact: what the design asks of it."""
+"""Error up to which a linear model's verdict or safe speed counts as exact."""
 
 CHECKED = "the nonlinear robot was simulated, too, and the worse of both counts"
 
 
-def not_trusted(error: float | None) -> TypeGuard[float]:
-    """Whether a linear model may be off by so much that the nonlinear robot is asked, too."""
-    return error is not None and error > TRUSTED
+def not_trusted(error: float | None, share: float = 0.0) -> TypeGuard[float]:
+    """Whether a linear model may be off by so much that the nonlinear robot is asked, too.
+
+    Args:
+        error: of the force, as a share; None where it is not known.
+        share: of the limits that is used: energy, at most, goes with the force's square.
+    """
+    if error is None:
+        return False
+    may_flip = error > EXACT and share <= 1 < share * (1 + error) ** 2
+    return error > TRUSTED or may_flip
 
 
 def largest_linear_error(
