@@ -34,14 +34,13 @@ from .cautions import not_permitted
 from .first_study import first_posture
 from .map_speeds import lowered_slowest, map_samples, map_speeds
 from .situation import (
-    TypedArm,
-    TypedDrives,
     beyond_limits,
     drives_of,
     gravity_of,
     loaded_arm,
 )
-from .typed_motors import TypedMotors, motors_meant
+from .typed import TypedArm, TypedDrives
+from .typed_motors import motors_meant
 from .worst_directions import worst_directions
 
 Over = Literal["plane", "self-motion"]
@@ -54,7 +53,6 @@ class TypedMap:
 
     arm: TypedArm
     drives: TypedDrives
-    motors: TypedMotors
     q: str | None = None
     over: str = "plane"
     plane: str = "xz"
@@ -150,7 +148,7 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         seen: called with the number of impacts that were looked at.
     """
     over: Over = values.one_of("map's ground", how.over, Over)
-    motors, reaction = motors_meant(how.motors, how.drives)
+    motors, reaction = motors_meant(how.drives)
     if motors is not None:
         refuse_held(motors, "a map of safe speeds")
     if not 0 < how.speed < np.inf:

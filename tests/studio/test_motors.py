@@ -128,7 +128,7 @@ def test_some_regions_must_not_be_hit(region: str) -> None:
     slow = run_json("simulate", *WHERE, "--region", region, "--speed", 0.01)
     assert slow["verdict"] == "not permitted"
     assert not slow["within_limit"]
-    assert "not to be designed for" in slow["warnings"][0]
+    assert "is not permitted, whatever the force" in slow["warnings"][0]
 
 
 def test_two_body_formula_stands_beside() -> None:
