@@ -193,7 +193,7 @@ def bias_torques(
 
 
 @dataclass(frozen=True)
-class _Motion:
+class _CoastingFrames:
     """How joints' frames move in their own axes while no joint accelerates, by joint."""
 
     spin: dict[int, Matrix]
@@ -203,7 +203,7 @@ class _Motion:
 
 def _coasting(
     robot: Robot, moves: list[JointMotion], velocity: Matrix, gravity: FixedGravity
-) -> _Motion:
+) -> _CoastingFrames:
     """Return how all frames move; gravity counts as an acceleration of the base against it."""
     spin = {BASE: ca.SX.zeros(3)}
     spin_rate = {BASE: ca.SX.zeros(3)}
@@ -220,7 +220,7 @@ def _coasting(
             spin_rate[i], spin[i] = move.to_child(spin_rate[p]), w
             a = a + 2 * cross(w, along)
         acceleration[i] = a
-    return _Motion(spin, spin_rate, acceleration)
+    return _CoastingFrames(spin, spin_rate, acceleration)
 
 
 @overload
