@@ -54,8 +54,14 @@ class Fault:
     """A mutant of a file, and the tests that may notice it, closest first."""
 
     file: str
+    code: str
     mutant: Mutant
     tests: tuple[str, ...]
+
+    @property
+    def place(self) -> tuple[str, str, str]:
+        """What stays when lines move."""
+        return self.file, self.code, self.mutant.what
 
 
 def faults(folders: Sequence[str], data: coverage.CoverageData) -> Iterator[Fault]:
@@ -78,9 +84,12 @@ def faults(folders: Sequence[str], data: coverage.CoverageData) -> Iterator[Faul
             through = closest(set().union(*by_line.values()))
             # what a module or a cache holds was made while another test ran, or none
             beside = closest(test for test in lines_of if test.startswith(tests_of(file)))
-            for mutant in mutants(path.read_text(encoding="utf-8")) if by_line else ():
+            source = path.read_text(encoding="utf-8")
+            lines = source.splitlines()
+            for mutant in mutants(source) if by_line else ():
                 tests = dict.fromkeys([*closest(by_line.get(mutant.line, ())), *through, *beside])
-                yield Fault(file.as_posix(), mutant, tuple(tests)[:MANY])
+                code = lines[mutant.line - 1].strip()
+                yield Fault(file.as_posix(), code, mutant, tuple(tests)[:MANY])
 
 
 def tests_of(file: Path) -> str:
@@ -152,20 +161,15 @@ def end_soon() -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
 
 
-def known_as_harmless() -> set[tuple[str, str]]:
-    """Return file and change of the faults that were judged."""
+def known_as_harmless() -> set[tuple[str, str, str]]:
+    """Return the places of the faults that were judged."""
     with HARMLESS.open(encoding="utf-8", newline="") as lines:
-        return {(row["file"], row["change"]) for row in csv.DictReader(lines)}
-
-
-def place(fault: Fault) -> tuple[str, str]:
-    """Return what stays when lines move: file and change."""
-    return fault.file, fault.mutant.what
+        return {(row["file"], row["code"], row["change"]) for row in csv.DictReader(lines)}
 
 
 def drawn(fault: Fault, seed: int) -> str:
-    """Return a fault's place in a sample: another edit of its file does not change it."""
-    return hashlib.sha256(f"{seed} {fault.file} {fault.mutant.what}".encode()).hexdigest()
+    """Return by what a sample is drawn: other lines of a file do not change it."""
+    return hashlib.sha256(f"{seed} {fault.place}".encode()).hexdigest()
 
 
 def main() -> int:
@@ -180,7 +184,7 @@ def main() -> int:
     data = coverage.CoverageData(str(ROOT / ".coverage"))
     data.read()
     harmless = known_as_harmless()
-    known = [each for each in faults(given.folders, data) if place(each) not in harmless]
+    known = [each for each in faults(given.folders, data) if each.place not in harmless]
     chosen = sorted(
         sorted(known, key=lambda fault: drawn(fault, given.seed))[: given.sample],
         key=lambda fault: (fault.file, fault.mutant),
