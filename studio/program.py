@@ -34,9 +34,9 @@ from .cautions import not_permitted
 from .motion_file import limits_left
 from .motion_source import MotionSource, Survey, motion_source, require_all_move, survey
 from .program_engine import Engine
+from .program_moments import Question
 from .program_record import ProgramResult, program_record
-from .program_run import Question, slowed_program
-from .program_trust import doubts
+from .program_run import slowed_program
 from .progress import progress_bar
 from .situation import (
     counted_as_rigid,
@@ -99,8 +99,6 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     rigid = counted_as_rigid(model, how.drives)
     cautions = _cautions(robot, bodies, seen)
     warnings = [*arm.warnings, *rigid, *told, *limits, *assumed, *cautions]
-    worst, doubtful = doubts(question, answer.worst)
-    answer = replace(answer, worst=worst, warnings=[*answer.warnings, *doubtful])
     warnings += answer.warnings
     record = program_record(path, question, answer, warnings)
     return ProgramResult(question, answer, record)
