@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from oracles import assert_near
 
 from softimpact.symbolic import Robot, arm_of, frame_pose, load_robot
 
@@ -16,8 +17,8 @@ def test_the_end_is_the_robots_own_where_the_contact_lies_on_the_way(
     arm = arm_of(panda, point)
     assert (arm.end, arm.robot.tip, arm.robot.n, arm.warnings) == ("hand_tcp", point, 7, ())
     q = np.linspace(-1, 0.5, 7)
-    there = [np.array(frame_pose(robot, point, q).position) for robot in (panda, arm.robot)]
-    np.testing.assert_allclose(*there, atol=1e-12)
+    there, expected = (frame_pose(robot, point, q).position for robot in (arm.robot, panda))
+    assert_near(there, expected)
 
 
 def test_elsewhere_the_contact_is_the_end_and_what_is_beyond_is_welded_with_a_word() -> None:
