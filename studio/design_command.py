@@ -58,7 +58,7 @@ def design(
     folder = out or Path("results") / problem.source.stem
     require_replaceable_results(folder, GENERATOR)
     require_folder_of(page)
-    how = Execution(**vars(execution))
+    how = Execution(execution.workers, execution.dask, execution.resume)
     if problem.scenarios is not None:
         if mode != "both":
             raise InvalidValue(

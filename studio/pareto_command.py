@@ -70,7 +70,7 @@ def pareto(
     folder = out or Path("results") / f"{problem.source.stem}_pareto"
     require_replaceable_results(folder, GENERATOR)
     require_folder_of(page)
-    how = Execution(**vars(execution))
+    how = Execution(execution.workers, execution.dask, execution.resume)
     search = _trade_off if asks_for_trade_off(problem) else _of_postures
     with failures_as_json(json), running(how, folder) as pool, optimiser_stages() as advance:
         found = search(problem, pool, advance)
