@@ -49,7 +49,7 @@ def test_any_robot(robot: Robot, seed: int, mass: float) -> None:
     )
 
 
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(robots(max_joints=5), seeds)
 def test_any_tool(robot: Robot, seed: int) -> None:
     """As an inertia that some body has: of three point masses at least."""
