@@ -43,7 +43,7 @@ mutants: $(VENV)/installed-test
 # some where the limits that protect people are, each of which must be noticed; half a minute
 mutants-sample: $(VENV)/installed-test
 	$(BIN)/pytest -q tests/symbolic/body --cov --cov-context=test --cov-report=
-	$(BIN)/python tests/mutation/run.py symbolic/body --sample 24 --seed $(SEED) --strict
+	$(BIN)/python tests/mutation/run.py symbolic/body --sample 32 --seed $(SEED) --strict
 
 lint: $(VENV)/installed-test
 	$(BIN)/ruff check .

@@ -39,7 +39,7 @@ FEW = 25
 """Tests that a fault meets first: those that pass through the fewest lines, so the closest ones."""
 MANY = 200
 """Tests that a fault meets at most."""
-TEST_SECONDS = 20
+TEST_SECONDS = 10
 """Processor time after which a test counts as endless: fast ones take two. The fault is noticed."""
 RUN_SECONDS = 300
 """Time after which a run that waits counts as endless."""
