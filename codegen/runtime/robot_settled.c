@@ -27,7 +27,7 @@ bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, 
         r += modes->row[i]*s->amplitude[i];
         away += modes->row[i]*s->rate[i];
     }
-    if (impact->gives_way) {
+    if (impact->gives_way && body >= 0) { /* it always is */
         r += modes->row[body]*s->amplitude[body];
         away += modes->row[body]*s->rate[body];
     }
