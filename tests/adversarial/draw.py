@@ -17,10 +17,16 @@ from softimpact.symbolic import REGIONS
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 from softimpact.symbolic.robot.rigid import Array
 
-from .impacts import Cases, Robot
+from .cases import Cases
+from .impacts import Robot
+from .laws import laws
+from .questions import QUESTIONS, Question
 
 POOL = 400
 """Configurations of a closed chain from which one is chosen."""
+
+AT_REST = 1e-3
+"""Speed of a contact point that is not looked at [m/s]."""
 
 SPRINGS, ROTORS, GAINS = (300.0, 1e5), (0.05, 2.0), (10.0, 1e5)
 """What arms have: springs and gains [N·m/rad], reflected inertias [kg·m²]."""
@@ -36,17 +42,24 @@ class Draw:
         robot: the package.
         random: source of all that is drawn.
         wide: numbers of drives and bodies over many decades, not those that there are.
+        question: what is asked.
     """
 
-    def __init__(self, robot: Robot, random: np.random.Generator, *, wide: bool) -> None:
-        self.robot, self.random, self.wide = robot, random, wide
+    def __init__(
+        self,
+        robot: Robot,
+        random: np.random.Generator,
+        *,
+        wide: bool,
+        question: Question = QUESTIONS["limit"],
+    ) -> None:
+        self.robot, self.random, self.wide, self.question = robot, random, wide, question
 
     @cached_property
     def plane(self) -> Array:
         """Projector on the directions in which motors move the contact point."""
         robot, count = self.robot, 8
-        q = self.poses(count)
-        J = robot.links_at(q, np.ones((count, robot.joints)))[2]
+        J = robot.jacobians(self.poses(count))
         moved = np.hstack(list(J * robot.actuated))
         U, sizes, _ = np.linalg.svd(moved)
         basis = U[:, : int((sizes > 1e-9 * sizes[0]).sum())]
@@ -104,14 +117,18 @@ class Draw:
         q = np.where((how > 0.7) & some, np.clip(near, robot.lower, robot.upper), q)
         return np.asarray(q)
 
-    def directions(self, q: Array) -> Array:
-        """Return directions: any, along axes, or where the contact point hardly moves."""
-        random, count = self.random, len(q)
+    def directions(self, J: Array) -> Array:
+        """Return directions: any, along axes, or where the contact point hardly moves.
+
+        Args:
+            J: Jacobians of contact points.
+        """
+        random, count = self.random, len(J)
         n = random.normal(size=(count, 3))
         how = random.random((count, 1))
         axes = np.eye(3)[random.integers(0, 3, count)]
-        J = self.robot.links_at(q, np.ones(q.shape))[2] * self.robot.actuated
-        weakest = np.linalg.svd(self.plane @ J)[0][:, :, self.reach - 1]
+        moved = self.plane @ (J * self.robot.actuated)
+        weakest = np.linalg.svd(moved)[0][:, :, self.reach - 1]
         tilted = weakest + n * 10 ** random.uniform(-4, 0, (count, 1))
         n = np.where(how < 0.2, axes, np.where(how > 0.85, tilted, n)) @ self.plane
         lost = np.linalg.norm(n, axis=1) < 1e-6
@@ -153,10 +170,22 @@ class Draw:
         ratio = 10 ** random.uniform(-1, 1, (count, 1)) if wide else random.random((count, 1))
         horizon = one_of((0.75, 0.1), (0.05, 0.5), (0.2, lambda: decades(1e-3, 0.2, count)))
         times = np.array([0.0, 0.005, 0.02, 0.05, 10.0])[random.integers(0, 5, count)]
-        q = self.poses(count)
-        return Cases(
+        q, asked = self.poses(count), self.question
+        frame, place = np.full(count, -1, np.int32), np.zeros((count, 3))
+        if asked.elsewhere:
+            frame = random.integers(0, len(self.robot.frames), count).astype(np.int32)
+            place = random.normal(size=(count, 3)) * one_of((1, 0.0), (3, 0.15))[:, None]
+        J = self.robot.jacobians(q, frame, place)
+        dq = np.zeros(q.shape)
+        if asked.moves:
+            dq = random.normal(size=q.shape) * decades(0.1, 10, count)[:, None]
+            dq[:] *= random.random(q.shape) < random.random((count, 1)) + 0.2
+        bodies = self.bodies()
+        numbers = random.integers(1, len(laws()) + 1, count) * (random.random(count) < asked.laws)
+        return self.consistent(Cases(
             q=q,
-            n=self.directions(q),
+            n=self.directions(J),
+            dq=dq,
             springs=self.spread(*(WIDE_SPRINGS if wide else SPRINGS)),
             rotors=rotors,
             gains=gains,
@@ -167,8 +196,23 @@ class Draw:
             reaction=one_of((6, times), (3, horizon * random.random(count)), (0.5, horizon),
                             (0.5, 1e-5)),
             horizon=horizon,
-            **self.bodies(),
-        ).rounded()  # fmt: skip
+            law=numbers.astype(np.int32),
+            pressing=bodies["limit"] * one_of((2, 0.5), (1, lambda: decades(0.01, 2, count))),
+            speed=decades(0.02, 4, count),
+            frame=frame,
+            place=place,
+            **bodies,
+        ))  # fmt: skip
+
+    def consistent(self, cases: Cases) -> Cases:
+        """Return inputs exact in float, and whose directions are those of their velocities."""
+        cases = cases.rounded()
+        if not self.question.moves:
+            return cases
+        moved = self.robot.moved(cases)
+        still = np.linalg.norm(moved, axis=1) < AT_REST
+        dq = np.where(still[:, None], 0.0, cases.dq)
+        return replace(cases, n=np.where(still[:, None], cases.n, moved), dq=dq)
 
     def changed(self, cases: Cases) -> Cases:
         """Return a neighbour of each input."""
@@ -192,7 +236,7 @@ class Draw:
         body: dict[str, Any] = {
             name: turned_one(getattr(cases, name)) for name in ("stiffness", "mass", "skin")
         }
-        return replace(
+        return self.consistent(replace(
             cases,
             q=q,
             n=n,
@@ -202,6 +246,10 @@ class Draw:
             damping_gains=turned(cases.damping_gains, 0, 1e9),
             reaction=turned_one(cases.reaction),
             limit=turned_one(cases.limit),
+            pressing=turned_one(cases.pressing),
+            speed=turned_one(cases.speed),
+            dq=cases.dq * np.exp(scale) + scale * some(cases.dq.shape) * (cases.dq != 0),
+            place=cases.place + 0.1 * scale * some(cases.place.shape),
             damping=turned_one(cases.damping),
             **(body if wide else {}),
-        ).rounded()
+        ))  # fmt: skip

@@ -51,6 +51,10 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
 """By name: elastic arms, a leg, two links in a plane, passive joints, closed loops."""
 
 
+CLOSED = ("rmin",)
+"""Robots whose links' frames packages do not know."""
+
+
 def package_of(name: str, folder: Path) -> Generated:
     """Return the package of a robot by name, generated anew."""
     robot = ROBOTS[name]()
