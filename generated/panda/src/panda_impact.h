@@ -238,11 +238,8 @@ bool panda_cholesky(int size, panda_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void panda_forward(int size, panda_matrix L, panda_real *x);
 void panda_backward(int size, panda_matrix L, panda_real *x);
-/*
- * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
- * below `noise` count as none. False if that does not end.
- */
-bool panda_diagonalise(int size, panda_matrix A, panda_matrix X, panda_real noise);
+/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+bool panda_diagonalise(int size, panda_matrix A, panda_matrix X);
 /* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
 bool panda_spectrum(int size, panda_matrix A, panda_real *values, panda_matrix vectors);
 

@@ -174,8 +174,8 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     if (!unit_motions(size, mass, X)) {
         return PANDA_SINGULAR;
     }
-    const panda_real noise = congruent(size, K, X, A);
-    if (!panda_diagonalise(size, A, X, noise)) {
+    (void)congruent(size, K, X, A);
+    if (!panda_diagonalise(size, A, X)) {
         return PANDA_SINGULAR;
     }
     take_over(size, places, A, X, row, modes);
@@ -208,7 +208,7 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
         return PANDA_SINGULAR;
     }
     const panda_real noise = congruent(PANDA_SYSTEM, K, X, A);
-    if (!panda_diagonalise(PANDA_SYSTEM, A, X, noise)) {
+    if (!panda_diagonalise(PANDA_SYSTEM, A, X)) {
         return PANDA_SINGULAR;
     }
     take_over(PANDA_SYSTEM, places, A, X, row, modes);
@@ -246,8 +246,8 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     if (!unit_motions(PANDA_SYSTEM, mass, X)) {
         return PANDA_SINGULAR;
     }
-    const panda_real noise = congruent(PANDA_SYSTEM, K, X, A);
-    if (!panda_diagonalise(PANDA_SYSTEM, A, X, noise)) {
+    (void)congruent(PANDA_SYSTEM, K, X, A);
+    if (!panda_diagonalise(PANDA_SYSTEM, A, X)) {
         return PANDA_SINGULAR;
     }
     take_over(PANDA_SYSTEM, places, A, X, row, modes);

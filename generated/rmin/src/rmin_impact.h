@@ -238,11 +238,8 @@ bool rmin_cholesky(int size, rmin_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void rmin_forward(int size, rmin_matrix L, rmin_real *x);
 void rmin_backward(int size, rmin_matrix L, rmin_real *x);
-/*
- * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
- * below `noise` count as none. False if that does not end.
- */
-bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X, rmin_real noise);
+/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X);
 /* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
 bool rmin_spectrum(int size, rmin_matrix A, rmin_real *values, rmin_matrix vectors);
 

@@ -174,8 +174,8 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     if (!unit_motions(size, mass, X)) {
         return RMIN_SINGULAR;
     }
-    const rmin_real noise = congruent(size, K, X, A);
-    if (!rmin_diagonalise(size, A, X, noise)) {
+    (void)congruent(size, K, X, A);
+    if (!rmin_diagonalise(size, A, X)) {
         return RMIN_SINGULAR;
     }
     take_over(size, places, A, X, row, modes);
@@ -208,7 +208,7 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
         return RMIN_SINGULAR;
     }
     const rmin_real noise = congruent(RMIN_SYSTEM, K, X, A);
-    if (!rmin_diagonalise(RMIN_SYSTEM, A, X, noise)) {
+    if (!rmin_diagonalise(RMIN_SYSTEM, A, X)) {
         return RMIN_SINGULAR;
     }
     take_over(RMIN_SYSTEM, places, A, X, row, modes);
@@ -246,8 +246,8 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     if (!unit_motions(RMIN_SYSTEM, mass, X)) {
         return RMIN_SINGULAR;
     }
-    const rmin_real noise = congruent(RMIN_SYSTEM, K, X, A);
-    if (!rmin_diagonalise(RMIN_SYSTEM, A, X, noise)) {
+    (void)congruent(RMIN_SYSTEM, K, X, A);
+    if (!rmin_diagonalise(RMIN_SYSTEM, A, X)) {
         return RMIN_SINGULAR;
     }
     take_over(RMIN_SYSTEM, places, A, X, row, modes);

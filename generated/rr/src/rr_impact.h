@@ -238,11 +238,8 @@ bool rr_cholesky(int size, rr_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void rr_forward(int size, rr_matrix L, rr_real *x);
 void rr_backward(int size, rr_matrix L, rr_real *x);
-/*
- * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
- * below `noise` count as none. False if that does not end.
- */
-bool rr_diagonalise(int size, rr_matrix A, rr_matrix X, rr_real noise);
+/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+bool rr_diagonalise(int size, rr_matrix A, rr_matrix X);
 /* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
 bool rr_spectrum(int size, rr_matrix A, rr_real *values, rr_matrix vectors);
 

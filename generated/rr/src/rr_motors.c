@@ -174,8 +174,8 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     if (!unit_motions(size, mass, X)) {
         return RR_SINGULAR;
     }
-    const rr_real noise = congruent(size, K, X, A);
-    if (!rr_diagonalise(size, A, X, noise)) {
+    (void)congruent(size, K, X, A);
+    if (!rr_diagonalise(size, A, X)) {
         return RR_SINGULAR;
     }
     take_over(size, places, A, X, row, modes);
@@ -208,7 +208,7 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
         return RR_SINGULAR;
     }
     const rr_real noise = congruent(RR_SYSTEM, K, X, A);
-    if (!rr_diagonalise(RR_SYSTEM, A, X, noise)) {
+    if (!rr_diagonalise(RR_SYSTEM, A, X)) {
         return RR_SINGULAR;
     }
     take_over(RR_SYSTEM, places, A, X, row, modes);
@@ -246,8 +246,8 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     if (!unit_motions(RR_SYSTEM, mass, X)) {
         return RR_SINGULAR;
     }
-    const rr_real noise = congruent(RR_SYSTEM, K, X, A);
-    if (!rr_diagonalise(RR_SYSTEM, A, X, noise)) {
+    (void)congruent(RR_SYSTEM, K, X, A);
+    if (!rr_diagonalise(RR_SYSTEM, A, X)) {
         return RR_SINGULAR;
     }
     take_over(RR_SYSTEM, places, A, X, row, modes);

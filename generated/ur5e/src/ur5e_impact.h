@@ -238,11 +238,8 @@ bool ur5e_cholesky(int size, ur5e_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void ur5e_forward(int size, ur5e_matrix L, ur5e_real *x);
 void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x);
-/*
- * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
- * below `noise` count as none. False if that does not end.
- */
-bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X, ur5e_real noise);
+/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X);
 /* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
 bool ur5e_spectrum(int size, ur5e_matrix A, ur5e_real *values, ur5e_matrix vectors);
 

@@ -174,8 +174,8 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     if (!unit_motions(size, mass, X)) {
         return UR5E_SINGULAR;
     }
-    const ur5e_real noise = congruent(size, K, X, A);
-    if (!ur5e_diagonalise(size, A, X, noise)) {
+    (void)congruent(size, K, X, A);
+    if (!ur5e_diagonalise(size, A, X)) {
         return UR5E_SINGULAR;
     }
     take_over(size, places, A, X, row, modes);
@@ -208,7 +208,7 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
         return UR5E_SINGULAR;
     }
     const ur5e_real noise = congruent(UR5E_SYSTEM, K, X, A);
-    if (!ur5e_diagonalise(UR5E_SYSTEM, A, X, noise)) {
+    if (!ur5e_diagonalise(UR5E_SYSTEM, A, X)) {
         return UR5E_SINGULAR;
     }
     take_over(UR5E_SYSTEM, places, A, X, row, modes);
@@ -246,8 +246,8 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     if (!unit_motions(UR5E_SYSTEM, mass, X)) {
         return UR5E_SINGULAR;
     }
-    const ur5e_real noise = congruent(UR5E_SYSTEM, K, X, A);
-    if (!ur5e_diagonalise(UR5E_SYSTEM, A, X, noise)) {
+    (void)congruent(UR5E_SYSTEM, K, X, A);
+    if (!ur5e_diagonalise(UR5E_SYSTEM, A, X)) {
         return UR5E_SINGULAR;
     }
     take_over(UR5E_SYSTEM, places, A, X, row, modes);
