@@ -19,6 +19,7 @@ from .body.shapes import Edge, Flat, Sphere
 from .body.verdict import Limits, Verdict, judge, limits_of
 from .dynamics.equations_of_motion import (
     STANDARD_GRAVITY,
+    bias_acceleration,
     bias_torques,
     gravity_torques,
     mass_matrix,
@@ -166,6 +167,7 @@ __all__ = [
     "analyse",
     "approach_velocity",
     "arm_of",
+    "bias_acceleration",
     "bias_torques",
     "body_region",
     "chain",

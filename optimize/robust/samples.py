@@ -31,7 +31,7 @@ HARDLY = 0.01
 SEED = 13
 """Of the random numbers: the same study has the same answer."""
 
-Hardware = tuple[Array, Array]
+SampledHardware = tuple[Array, Array]
 """Springs and other values."""
 
 
@@ -42,7 +42,7 @@ def promising(
     postures: Array,
     known: Sequence[Array],
     count: int,
-) -> list[Hardware]:
+) -> list[SampledHardware]:
     """Return the best of what is known and of samples, best first.
 
     Args:
@@ -72,7 +72,7 @@ def elsewhere(
     postures: Array,
     v: Array,
     values: Sequence[int],
-) -> list[Hardware]:
+) -> list[SampledHardware]:
     """Return for each of some values the best of what differs from v, V, in it alone, and far.
 
     Other optima are seldom reached by small changes. What impacts hardly feel has optima of its
