@@ -9,6 +9,7 @@ from typing import Literal
 
 from softimpact.symbolic.robot.rigid import Array
 
+from ..solver_options import FEASIBLE
 from .deciding import minimise_deciding
 from .ipopt import (
     IN_TURN,
@@ -21,7 +22,7 @@ from .ipopt import (
     rank,
     ranked,
 )
-from .minimax import WHOLE, Effort, least_worst, serves
+from .minimax import ROUGH, WHOLE, Effort, least_worst, serves
 from .nlp import Program
 
 Mode = Literal["table", "free"]
@@ -91,7 +92,9 @@ def solve(program: Program, start: Start, bounds: VariableBounds, instance: Inst
 
 def _search(program: Program, start: Start, bounds: VariableBounds, instance: Instance) -> Outcome:
     begin = time.perf_counter()
-    found = [_attempt(program, start, *point, bounds, instance) for point in start.points]
+    found = _held(program, start, bounds, instance)
+    if not any(outcome.solved for outcome in found):
+        found += [_attempt(program, start, *point, bounds, instance) for point in start.points]
     for point in start.fallbacks:
         if any(outcome.solved for outcome in found):
             break
@@ -99,9 +102,30 @@ def _search(program: Program, start: Start, bounds: VariableBounds, instance: In
     return replace(
         min(found, key=preference),
         iterations=sum(outcome.iterations for outcome in found),
-        attempts=len(found),
+        attempts=len(start.points) if len(found) == 1 else len(found),
         seconds=time.perf_counter() - begin,
     )
+
+
+def _held(
+    program: Program, start: Start, bounds: VariableBounds, instance: Instance
+) -> list[Outcome]:
+    """Search a held posture roughly from each point, and from the best end of these to the end.
+
+    Nothing where ``least_worst`` does not serve.
+    """
+    if start.mode == "free" or not serves(instance.shape.objective, free=False):
+        return []
+    shared = program, instance, bounds
+    if len(start.points) == 1:
+        ((q, springs),) = start.points
+        found = least_worst(*shared, q[None, :], springs)
+        return [_outcome(start, instance, found, found.iterations)]
+    rough = [least_worst(*shared, q[None, :], k, None, ROUGH) for q, k in start.points]
+    best = min(rough, key=lambda end: (end.violation > FEASIBLE, end.cost))
+    found = least_worst(*shared, best.postures, best.springs, best.others)
+    iterations = found.iterations + sum(end.iterations for end in rough)
+    return [_outcome(start, instance, found, iterations)]
 
 
 def preference(outcome: Outcome) -> Rank:
@@ -135,6 +159,10 @@ def _attempt(
         again = least_worst(program, instance, bounds, q[None, :], found.springs, found.others)
         found = min(found, again, key=rank)
         iterations += again.iterations
+    return _outcome(start, instance, found, iterations)
+
+
+def _outcome(start: Start, instance: Instance, found: Found, iterations: int) -> Outcome:
     return Outcome(
         name=start.name,
         mode=start.mode,
