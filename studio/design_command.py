@@ -98,13 +98,15 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
     from .output import failures_as_json, print_json, print_warnings, say, write_json
     from .progress import optimiser_stages
     from .results_folder import RESULTS, replaced_folder, running
-    from .robust_report import designed_model, robust_in_words, robust_record
+    from .robust_report import robust_in_words, robust_record
+    from .scenario_checks import checked_scenarios, designed_model
 
     asked, scenarios = study.scenarios, scenarios_of(study)
     free = isinstance(asked, ScenariosSection) and asked.posture == "free"
     with failures_as_json(json), running(how, folder) as pool, optimiser_stages() as advance:
         found = robust_design(study, scenarios, pool, advance, free=free)
-        record = robust_record(found)
+        checks = checked_scenarios(found)
+        record = robust_record(found, checks)
         with replaced_folder(folder, GENERATOR) as fresh:
             write_json(fresh / RESULTS, record)
             save(figure_of_robust_design(found), fresh / "design.png")
@@ -112,7 +114,7 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
     if page is not None:
         from .report.design_pages import write_robust_report
 
-        write_robust_report(found, page)
+        write_robust_report(found, checks, page)
     print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})

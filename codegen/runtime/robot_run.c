@@ -9,6 +9,10 @@
 #define STRAIGHT ROBOT_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS ROBOT_R(4.0)
+/* Share of that by which the force may be larger within a step than at its ends. */
+#define LEAPS ROBOT_R(0.5)
+/* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
+#define BEYOND 2
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (ROBOT_LEVELS - 1)
 #define SHORTEST_ROUGH 2
@@ -84,12 +88,19 @@ static bool step_pressed(robot_state *s, robot_trial *t, robot_real bends, int s
     const robot_real allowed = bends*ROBOT_FMAX(s->scale, peak->force);
     const robot_real bent = ROBOT_R(6.0)*ROBOT_FABS(t->bump);
     const bool parts = !(t->f > ROBOT_R(0.0));
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+    const bool jagged = s->impact->region->law != NULL;
+    const robot_real between = jagged ? robot_force_between(s, t) : ROBOT_R(0.0);
+    const bool leaps = between > ROBOT_FMAX(s->f, t->f) + LEAPS*allowed;
+    const bool slips = jagged && robot_slip_off(s, t) > LEAPS*allowed;
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || leaps || slips)) {
         change_level(s, s->level + 1);
         return false;
     }
     robot_take(t, s);
     see(s, t, peak);
+    if (leaps && between + s->swings > peak->force) {
+        peak->force = between + s->swings;
+    }
     if (parts) {
         s->touching = false;
         s->rest = ROBOT_FMAX(t->x, (s->x - s->u)*s->phase->level[s->level].relax);
@@ -252,6 +263,11 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
             return;
         }
         robot_release(&s);
+        goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && impact->region->law != NULL) {
+        s.ticks = BEYOND;
+        change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
     }
     peak->ended = goes_on;

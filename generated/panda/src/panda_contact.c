@@ -14,6 +14,8 @@
 #define CLOSE PANDA_R(0.01)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
+/* Parts of a step between which a law through points is looked at. */
+#define PLACES 4
 
 void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, panda_real *rate)
 {
@@ -179,4 +181,43 @@ void panda_take(const panda_trial *t, panda_state *s)
         s->amplitude[i] = t->amplitude[i] - step->push[0]*first - step->push[1]*last;
         s->rate[i] = t->rate[i] - step->kick[0]*first - step->kick[1]*last;
     }
+}
+
+panda_real panda_force_between(const panda_state *s, const panda_trial *t)
+{
+    const panda_region *const region = s->impact->region;
+    const panda_phase *const phase = s->phase;
+    const panda_level *const level = &phase->level[s->level];
+    const panda_real h = level->h;
+    const panda_real first = s->f + t->base - t->share*t->f;
+    const panda_real last = t->base + (PANDA_R(1.0) - t->share)*t->f;
+    const panda_real after = h*(t->v - level->kick[0]*first - level->kick[1]*last);
+    panda_real before = phase->drift*s->speed;
+    for (int i = 0; i < phase->active; ++i) {
+        before += phase->modes.row[i]*s->rate[i];
+    }
+    before *= h;
+    panda_real most = PANDA_R(0.0);
+    for (int k = 1; k < PLACES; ++k) { /* x is a cubic, the body's own deflection followed at once */
+        const panda_real share = (panda_real)k/(panda_real)PLACES;
+        const panda_real left = PANDA_R(1.0) - share;
+        const panda_real even = s->x + share*share*(PANDA_R(3.0) - share - share)*(t->x - s->x);
+        const panda_real x = even + share*left*(left*before - share*after);
+        const panda_real damper = region->damping/(share*h);
+        const panda_real hold = region->stiffness + damper;
+        const panda_real pressed = hold*x - damper*(s->x - s->u);
+        const panda_real soft = PANDA_R(1.0) + hold*phase->compliance;
+        panda_real depth;
+        if (pressed > PANDA_R(0.0)) {
+            most = PANDA_FMAX(most, panda_law_press(region, hold, soft, pressed, &depth));
+        }
+    }
+    return most;
+}
+
+panda_real panda_slip_off(const panda_state *s, const panda_trial *t)
+{
+    const panda_real rate = (t->u - s->u)/s->phase->level[s->level].h;
+    const panda_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
+    return s->impact->region->damping*PANDA_FABS(rate - before);
 }

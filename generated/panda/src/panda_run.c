@@ -9,6 +9,10 @@
 #define STRAIGHT PANDA_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS PANDA_R(4.0)
+/* Share of that by which the force may be larger within a step than at its ends. */
+#define LEAPS PANDA_R(0.5)
+/* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
+#define BEYOND 2
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (PANDA_LEVELS - 1)
 #define SHORTEST_ROUGH 2
@@ -84,12 +88,19 @@ static bool step_pressed(panda_state *s, panda_trial *t, panda_real bends, int s
     const panda_real allowed = bends*PANDA_FMAX(s->scale, peak->force);
     const panda_real bent = PANDA_R(6.0)*PANDA_FABS(t->bump);
     const bool parts = !(t->f > PANDA_R(0.0));
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+    const bool jagged = s->impact->region->law != NULL;
+    const panda_real between = jagged ? panda_force_between(s, t) : PANDA_R(0.0);
+    const bool leaps = between > PANDA_FMAX(s->f, t->f) + LEAPS*allowed;
+    const bool slips = jagged && panda_slip_off(s, t) > LEAPS*allowed;
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || leaps || slips)) {
         change_level(s, s->level + 1);
         return false;
     }
     panda_take(t, s);
     see(s, t, peak);
+    if (leaps && between + s->swings > peak->force) {
+        peak->force = between + s->swings;
+    }
     if (parts) {
         s->touching = false;
         s->rest = PANDA_FMAX(t->x, (s->x - s->u)*s->phase->level[s->level].relax);
@@ -252,6 +263,11 @@ void panda_impact_run(panda_impact *impact, panda_real speed, panda_budget *budg
             return;
         }
         panda_release(&s);
+        goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && impact->region->law != NULL) {
+        s.ticks = BEYOND;
+        change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
     }
     peak->ended = goes_on;

@@ -14,6 +14,8 @@
 #define CLOSE RMIN_R(0.01)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
+/* Parts of a step between which a law through points is looked at. */
+#define PLACES 4
 
 void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate)
 {
@@ -179,4 +181,43 @@ void rmin_take(const rmin_trial *t, rmin_state *s)
         s->amplitude[i] = t->amplitude[i] - step->push[0]*first - step->push[1]*last;
         s->rate[i] = t->rate[i] - step->kick[0]*first - step->kick[1]*last;
     }
+}
+
+rmin_real rmin_force_between(const rmin_state *s, const rmin_trial *t)
+{
+    const rmin_region *const region = s->impact->region;
+    const rmin_phase *const phase = s->phase;
+    const rmin_level *const level = &phase->level[s->level];
+    const rmin_real h = level->h;
+    const rmin_real first = s->f + t->base - t->share*t->f;
+    const rmin_real last = t->base + (RMIN_R(1.0) - t->share)*t->f;
+    const rmin_real after = h*(t->v - level->kick[0]*first - level->kick[1]*last);
+    rmin_real before = phase->drift*s->speed;
+    for (int i = 0; i < phase->active; ++i) {
+        before += phase->modes.row[i]*s->rate[i];
+    }
+    before *= h;
+    rmin_real most = RMIN_R(0.0);
+    for (int k = 1; k < PLACES; ++k) { /* x is a cubic, the body's own deflection followed at once */
+        const rmin_real share = (rmin_real)k/(rmin_real)PLACES;
+        const rmin_real left = RMIN_R(1.0) - share;
+        const rmin_real even = s->x + share*share*(RMIN_R(3.0) - share - share)*(t->x - s->x);
+        const rmin_real x = even + share*left*(left*before - share*after);
+        const rmin_real damper = region->damping/(share*h);
+        const rmin_real hold = region->stiffness + damper;
+        const rmin_real pressed = hold*x - damper*(s->x - s->u);
+        const rmin_real soft = RMIN_R(1.0) + hold*phase->compliance;
+        rmin_real depth;
+        if (pressed > RMIN_R(0.0)) {
+            most = RMIN_FMAX(most, rmin_law_press(region, hold, soft, pressed, &depth));
+        }
+    }
+    return most;
+}
+
+rmin_real rmin_slip_off(const rmin_state *s, const rmin_trial *t)
+{
+    const rmin_real rate = (t->u - s->u)/s->phase->level[s->level].h;
+    const rmin_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
+    return s->impact->region->damping*RMIN_FABS(rate - before);
 }

@@ -14,6 +14,8 @@
 #define CLOSE RR_R(0.01)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
+/* Parts of a step between which a law through points is looked at. */
+#define PLACES 4
 
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate)
 {
@@ -179,4 +181,43 @@ void rr_take(const rr_trial *t, rr_state *s)
         s->amplitude[i] = t->amplitude[i] - step->push[0]*first - step->push[1]*last;
         s->rate[i] = t->rate[i] - step->kick[0]*first - step->kick[1]*last;
     }
+}
+
+rr_real rr_force_between(const rr_state *s, const rr_trial *t)
+{
+    const rr_region *const region = s->impact->region;
+    const rr_phase *const phase = s->phase;
+    const rr_level *const level = &phase->level[s->level];
+    const rr_real h = level->h;
+    const rr_real first = s->f + t->base - t->share*t->f;
+    const rr_real last = t->base + (RR_R(1.0) - t->share)*t->f;
+    const rr_real after = h*(t->v - level->kick[0]*first - level->kick[1]*last);
+    rr_real before = phase->drift*s->speed;
+    for (int i = 0; i < phase->active; ++i) {
+        before += phase->modes.row[i]*s->rate[i];
+    }
+    before *= h;
+    rr_real most = RR_R(0.0);
+    for (int k = 1; k < PLACES; ++k) { /* x is a cubic, the body's own deflection followed at once */
+        const rr_real share = (rr_real)k/(rr_real)PLACES;
+        const rr_real left = RR_R(1.0) - share;
+        const rr_real even = s->x + share*share*(RR_R(3.0) - share - share)*(t->x - s->x);
+        const rr_real x = even + share*left*(left*before - share*after);
+        const rr_real damper = region->damping/(share*h);
+        const rr_real hold = region->stiffness + damper;
+        const rr_real pressed = hold*x - damper*(s->x - s->u);
+        const rr_real soft = RR_R(1.0) + hold*phase->compliance;
+        rr_real depth;
+        if (pressed > RR_R(0.0)) {
+            most = RR_FMAX(most, rr_law_press(region, hold, soft, pressed, &depth));
+        }
+    }
+    return most;
+}
+
+rr_real rr_slip_off(const rr_state *s, const rr_trial *t)
+{
+    const rr_real rate = (t->u - s->u)/s->phase->level[s->level].h;
+    const rr_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
+    return s->impact->region->damping*RR_FABS(rate - before);
 }

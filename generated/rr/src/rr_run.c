@@ -9,6 +9,10 @@
 #define STRAIGHT RR_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS RR_R(4.0)
+/* Share of that by which the force may be larger within a step than at its ends. */
+#define LEAPS RR_R(0.5)
+/* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
+#define BEYOND 2
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (RR_LEVELS - 1)
 #define SHORTEST_ROUGH 2
@@ -84,12 +88,19 @@ static bool step_pressed(rr_state *s, rr_trial *t, rr_real bends, int shortest, 
     const rr_real allowed = bends*RR_FMAX(s->scale, peak->force);
     const rr_real bent = RR_R(6.0)*RR_FABS(t->bump);
     const bool parts = !(t->f > RR_R(0.0));
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+    const bool jagged = s->impact->region->law != NULL;
+    const rr_real between = jagged ? rr_force_between(s, t) : RR_R(0.0);
+    const bool leaps = between > RR_FMAX(s->f, t->f) + LEAPS*allowed;
+    const bool slips = jagged && rr_slip_off(s, t) > LEAPS*allowed;
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || leaps || slips)) {
         change_level(s, s->level + 1);
         return false;
     }
     rr_take(t, s);
     see(s, t, peak);
+    if (leaps && between + s->swings > peak->force) {
+        peak->force = between + s->swings;
+    }
     if (parts) {
         s->touching = false;
         s->rest = RR_FMAX(t->x, (s->x - s->u)*s->phase->level[s->level].relax);
@@ -252,6 +263,11 @@ void rr_impact_run(rr_impact *impact, rr_real speed, rr_budget *budget, rr_peak 
             return;
         }
         rr_release(&s);
+        goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && impact->region->law != NULL) {
+        s.ticks = BEYOND;
+        change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
     }
     peak->ended = goes_on;

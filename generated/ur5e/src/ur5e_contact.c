@@ -14,6 +14,8 @@
 #define CLOSE UR5E_R(0.01)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
+/* Parts of a step between which a law through points is looked at. */
+#define PLACES 4
 
 void ur5e_damp(const ur5e_phase *phase, ur5e_real speed, ur5e_real time, ur5e_real *rate)
 {
@@ -179,4 +181,43 @@ void ur5e_take(const ur5e_trial *t, ur5e_state *s)
         s->amplitude[i] = t->amplitude[i] - step->push[0]*first - step->push[1]*last;
         s->rate[i] = t->rate[i] - step->kick[0]*first - step->kick[1]*last;
     }
+}
+
+ur5e_real ur5e_force_between(const ur5e_state *s, const ur5e_trial *t)
+{
+    const ur5e_region *const region = s->impact->region;
+    const ur5e_phase *const phase = s->phase;
+    const ur5e_level *const level = &phase->level[s->level];
+    const ur5e_real h = level->h;
+    const ur5e_real first = s->f + t->base - t->share*t->f;
+    const ur5e_real last = t->base + (UR5E_R(1.0) - t->share)*t->f;
+    const ur5e_real after = h*(t->v - level->kick[0]*first - level->kick[1]*last);
+    ur5e_real before = phase->drift*s->speed;
+    for (int i = 0; i < phase->active; ++i) {
+        before += phase->modes.row[i]*s->rate[i];
+    }
+    before *= h;
+    ur5e_real most = UR5E_R(0.0);
+    for (int k = 1; k < PLACES; ++k) { /* x is a cubic, the body's own deflection followed at once */
+        const ur5e_real share = (ur5e_real)k/(ur5e_real)PLACES;
+        const ur5e_real left = UR5E_R(1.0) - share;
+        const ur5e_real even = s->x + share*share*(UR5E_R(3.0) - share - share)*(t->x - s->x);
+        const ur5e_real x = even + share*left*(left*before - share*after);
+        const ur5e_real damper = region->damping/(share*h);
+        const ur5e_real hold = region->stiffness + damper;
+        const ur5e_real pressed = hold*x - damper*(s->x - s->u);
+        const ur5e_real soft = UR5E_R(1.0) + hold*phase->compliance;
+        ur5e_real depth;
+        if (pressed > UR5E_R(0.0)) {
+            most = UR5E_FMAX(most, ur5e_law_press(region, hold, soft, pressed, &depth));
+        }
+    }
+    return most;
+}
+
+ur5e_real ur5e_slip_off(const ur5e_state *s, const ur5e_trial *t)
+{
+    const ur5e_real rate = (t->u - s->u)/s->phase->level[s->level].h;
+    const ur5e_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
+    return s->impact->region->damping*UR5E_FABS(rate - before);
 }

@@ -9,6 +9,10 @@
 #define STRAIGHT UR5E_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS UR5E_R(4.0)
+/* Share of that by which the force may be larger within a step than at its ends. */
+#define LEAPS UR5E_R(0.5)
+/* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
+#define BEYOND 2
 /* Level of the shortest step, in rough runs. */
 #define SHORTEST (UR5E_LEVELS - 1)
 #define SHORTEST_ROUGH 2
@@ -84,12 +88,19 @@ static bool step_pressed(ur5e_state *s, ur5e_trial *t, ur5e_real bends, int shor
     const ur5e_real allowed = bends*UR5E_FMAX(s->scale, peak->force);
     const ur5e_real bent = UR5E_R(6.0)*UR5E_FABS(t->bump);
     const bool parts = !(t->f > UR5E_R(0.0));
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+    const bool jagged = s->impact->region->law != NULL;
+    const ur5e_real between = jagged ? ur5e_force_between(s, t) : UR5E_R(0.0);
+    const bool leaps = between > UR5E_FMAX(s->f, t->f) + LEAPS*allowed;
+    const bool slips = jagged && ur5e_slip_off(s, t) > LEAPS*allowed;
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || leaps || slips)) {
         change_level(s, s->level + 1);
         return false;
     }
     ur5e_take(t, s);
     see(s, t, peak);
+    if (leaps && between + s->swings > peak->force) {
+        peak->force = between + s->swings;
+    }
     if (parts) {
         s->touching = false;
         s->rest = UR5E_FMAX(t->x, (s->x - s->u)*s->phase->level[s->level].relax);
@@ -252,6 +263,11 @@ void ur5e_impact_run(ur5e_impact *impact, ur5e_real speed, ur5e_budget *budget, 
             return;
         }
         ur5e_release(&s);
+        goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && impact->region->law != NULL) {
+        s.ticks = BEYOND;
+        change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
     }
     peak->ended = goes_on;
