@@ -9,57 +9,65 @@
  */
 #include "robot_state.h"
 
-/* Halley's iterations, and the relative change after which the next would be nothing. */
+/* Halley's iterations, and the relative change after which the next, a fourth of its cube, is nothing. */
 #define ITERATIONS 8
-#define CLOSE ROBOT_R(0.01)
+#define CLOSE ROBOT_R(0.03)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
 
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate)
 {
-    robot_real halfway[ROBOT_MODES];
-    for (int round = 0; round < 2; ++round) {
-        const robot_real span = round == 0 ? ROBOT_R(0.5)*time : time;
-        const robot_real *const from = round == 0 ? rate : halfway;
-        robot_real torque[ROBOT_DAMPERS];
+    const robot_modes *const modes = &phase->modes;
+    robot_real turned[ROBOT_DAMPERS];
+    robot_real impulse[ROBOT_DAMPERS]; /* of each damper, to first and then to second order */
+    for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+        turned[j] = ROBOT_R(0.0);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const robot_real *const shape = &modes->shape[i][ROBOT_SYSTEM - ROBOT_DAMPERS];
+        const robot_real led = rate[i] - speed*modes->start[i];
         for (int j = 0; j < ROBOT_DAMPERS; ++j) {
-            const int place = ROBOT_SYSTEM - ROBOT_DAMPERS + j;
-            robot_real turned = ROBOT_R(0.0);
-            for (int i = 0; i < phase->active; ++i) {
-                turned += phase->modes.shape[i][place]*(from[i] - speed*phase->modes.start[i]);
-            }
-            torque[j] = span*phase->damping[j]*turned;
+            turned[j] += shape[j]*led;
         }
-        for (int i = 0; i < phase->active; ++i) {
-            robot_real change = ROBOT_R(0.0);
-            for (int j = 0; j < ROBOT_DAMPERS; ++j) {
-                change += phase->modes.shape[i][ROBOT_SYSTEM - ROBOT_DAMPERS + j]*torque[j];
-            }
-            if (round == 0) {
-                halfway[i] = rate[i] - change;
-            } else {
-                rate[i] -= change;
-            }
+    }
+    for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+        robot_real slowed = ROBOT_R(0.0);
+        for (int k = 0; k < ROBOT_DAMPERS; ++k) {
+            slowed += phase->together[j][k]*impulse[k];
         }
+        turned[j] -= ROBOT_R(0.5)*slowed;
+    }
+    for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const robot_real *const shape = &modes->shape[i][ROBOT_SYSTEM - ROBOT_DAMPERS];
+        robot_real change = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+            change += shape[j]*impulse[j];
+        }
+        rate[i] -= change;
     }
 }
 
 void robot_glide(const robot_state *s, robot_trial *t)
 {
     const robot_phase *const phase = s->phase;
-    const robot_level *const level = &phase->level[s->level];
+    const robot_level *const level = s->step;
     const robot_real *rate = s->rate;
     robot_real damped[ROBOT_MODES];
     if (phase->damped) {
         for (int i = 0; i < phase->active; ++i) {
             damped[i] = s->rate[i];
         }
-        robot_damp(phase, s->speed, ROBOT_R(0.5)*level->h, damped);
+        robot_damp(phase, s->speed, s->owed + ROBOT_R(0.5)*level->h, damped);
         rate = damped;
     }
-    const robot_real drift = phase->drift*s->speed;
-    robot_real x = s->drifted + drift*level->h;
-    robot_real v = drift;
+    robot_real x = s->drifted + s->drift*level->h;
+    robot_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
         const robot_mode_step *const step = &level->mode[i];
         const robot_real a = s->amplitude[i];
@@ -98,7 +106,7 @@ static robot_real root_of(robot_real depth, robot_real cubic, robot_real guess)
 static void set_pace(robot_state *s)
 {
     const robot_region *const region = s->impact->region;
-    const robot_level *const level = &s->phase->level[s->level];
+    const robot_level *const level = s->step;
     const robot_real one = ROBOT_R(1.0);
     robot_pace *const pace = &s->pace;
     robot_real ratio = ROBOT_R(0.0);
@@ -131,7 +139,7 @@ void robot_press(robot_state *s, robot_trial *t)
 {
     const robot_region *const region = s->impact->region;
     const robot_phase *const phase = s->phase;
-    const robot_level *const level = &phase->level[s->level];
+    const robot_level *const level = s->step;
     const robot_pace *const pace = &s->pace;
     if (s->even < LIKE) {
         set_pace(s);
@@ -144,16 +152,15 @@ void robot_press(robot_state *s, robot_trial *t)
     const robot_real v = t->v - level->kick[0]*first - level->kick[1]*t->base;
     const robot_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
     const robot_real pressed = region->stiffness*x + region->damping*slip;
-    t->f = ROBOT_R(0.0);
-    t->u = ROBOT_R(0.0);
-    t->root = ROBOT_R(0.0);
-    t->depth = ROBOT_R(0.0);
     if (pressed > ROBOT_R(0.0)) {
         if (region->law == NULL) {
-            t->root = root_of(pressed/pace->hold, region->hertz_stiffness*pace->soft/pace->hold, s->root);
+            const robot_real per = ROBOT_R(1.0)/pace->hold;
+            const robot_real guess = s->root + pace->ratio*(s->root - s->root_before);
+            t->root = root_of(pressed*per, region->hertz_stiffness*pace->soft*per, guess);
             t->depth = t->root*t->root;
             t->f = region->hertz_stiffness*t->root*t->depth;
         } else {
+            t->root = ROBOT_R(0.0);
             t->f = robot_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
         }
         t->u = t->depth + phase->compliance*t->f;
@@ -165,13 +172,17 @@ void robot_press(robot_state *s, robot_trial *t)
         t->share = ROBOT_R(0.0);
         t->x -= level->push[0]*(s->f + t->base) + level->push[1]*t->base;
         t->bump = ROBOT_R(0.0);
+        t->f = ROBOT_R(0.0);
+        t->u = ROBOT_R(0.0);
+        t->root = ROBOT_R(0.0);
+        t->depth = ROBOT_R(0.0);
     }
 }
 
 void robot_take(const robot_trial *t, robot_state *s)
 {
     const robot_phase *const phase = s->phase;
-    const robot_level *const level = &phase->level[s->level];
+    const robot_level *const level = s->step;
     const robot_real first = s->f + t->base - t->share*t->f;
     const robot_real last = t->base + (ROBOT_R(1.0) - t->share)*t->f;
     for (int i = 0; i < phase->active; ++i) {

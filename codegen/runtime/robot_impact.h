@@ -78,6 +78,7 @@ typedef struct {
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     robot_real damping[ROBOT_DAMPERS];
+    robot_real together[ROBOT_DAMPERS][ROBOT_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     robot_level level[ROBOT_LEVELS];
 } robot_phase;
@@ -121,7 +122,6 @@ typedef struct {
 typedef struct {
     robot_real force; /* largest, N */
     robot_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } robot_peak;
@@ -243,7 +243,10 @@ void robot_backward(int size, robot_matrix L, robot_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool robot_diagonalise(int size, robot_matrix A, robot_matrix X, robot_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool robot_spectrum(int size, robot_matrix A, robot_real *values, robot_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool robot_spectrum(int size, robot_real small, robot_matrix A, robot_real *values, robot_matrix vectors);
 
 #endif

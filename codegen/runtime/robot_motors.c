@@ -11,7 +11,7 @@
 /* Share of the largest entry that rounding leaves of one that should be none. */
 #define NOISE (ROBOT_R(8.0)*ROBOT_EPSILON)
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
 {
     if (!robot_cholesky(size, mass)) {
@@ -22,7 +22,7 @@ static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? ROBOT_R(1.0) : ROBOT_R(0.0);
         }
-        robot_backward(size, mass, column);
+        robot_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -30,21 +30,21 @@ static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
     return true;
 }
 
-/* A = X'KX; returns the noise in its entries. */
+/* A = X'KX of such an X; returns the noise in its entries. */
 static robot_real congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
 {
     robot_real largest = ROBOT_R(0.0);
     for (int i = 0; i < size; ++i) {
         robot_real pulled[ROBOT_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = ROBOT_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             robot_real sum = ROBOT_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -55,6 +55,7 @@ static robot_real congruent(int size, robot_matrix K, robot_matrix X, robot_matr
     return NOISE*largest;
 }
 
+#if !ROBOT_STRUCTURED
 /* Takes over the eigenvectors X, over the coordinates `places`. */
 static void take_over(int size, const int *places, robot_matrix A, robot_matrix X, const robot_real *row,
     robot_modes *modes)
@@ -76,6 +77,7 @@ static void take_over(int size, const int *places, robot_matrix A, robot_matrix 
     modes->rigid = 0;
     modes->fastest = ROBOT_REAL_MAX;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const robot_arrival *arrival, robot_real pull[ROBOT_SYSTEM])
@@ -188,31 +190,38 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
 int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real *drift)
 {
-    robot_matrix mass;
-    robot_matrix K;
+    robot_matrix mass; /* and then X'KX */
+    robot_matrix K; /* and then eigenvectors of that, its rows */
     robot_matrix X;
-    robot_matrix A;
-    int places[ROBOT_SYSTEM];
-    robot_real row[ROBOT_SYSTEM];
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < ROBOT_N ? arrival->row[i] : ROBOT_R(0.0);
-    }
     for (int i = 0; i < ROBOT_N; ++i) {
         const int motor = ROBOT_SYSTEM - ROBOT_N + i;
         K[motor][motor] += ROBOT_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(ROBOT_SYSTEM, mass, X)) {
         return ROBOT_SINGULAR;
     }
-    const robot_real noise = congruent(ROBOT_SYSTEM, K, X, A);
-    if (!robot_diagonalise(ROBOT_SYSTEM, A, X, noise)) {
+    modes->noise = congruent(ROBOT_SYSTEM, K, X, mass);
+    if (!robot_spectrum(ROBOT_SYSTEM, ROBOT_EPSILON*ROBOT_EPSILON, mass, modes->squared, K)) {
         return ROBOT_SINGULAR;
     }
-    take_over(ROBOT_SYSTEM, places, A, X, row, modes);
-    modes->noise = noise;
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        robot_real row = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            robot_real shape = ROBOT_R(0.0);
+            for (int k = j; k < ROBOT_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape;
+            row += j < ROBOT_N ? arrival->row[j]*shape : ROBOT_R(0.0);
+        }
+        modes->row[i] = row;
+        modes->start[i] = ROBOT_R(0.0);
+    }
+    modes->count = ROBOT_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = ROBOT_REAL_MAX;
     *drift = ROBOT_R(1.0);
     robot_real pull[ROBOT_SYSTEM];
     pulled_on(arrival, pull);

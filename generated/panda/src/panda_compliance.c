@@ -16,6 +16,9 @@
 /* A mode of less than this share of all squared periods has no digits left. */
 #define NOISE (PANDA_R(8.0)*PANDA_EPSILON)
 
+/* Square of what may be left beside the diagonal of a compliance: energies change by less than its root. */
+#define SMALL PANDA_R(1e-8)
+
 #if PANDA_STRUCTURED
 /* S, R and b. */
 typedef struct {
@@ -48,7 +51,7 @@ static int spring_modes(panda_matrix C, const panda_real b[PANDA_N], panda_modes
     for (int i = 0; i < PANDA_N; ++i) {
         all += C[i][i];
     }
-    if (!panda_spectrum(PANDA_N, C, squares, vectors)) {
+    if (!panda_spectrum(PANDA_N, SMALL, C, squares, vectors)) {
         return PANDA_SINGULAR;
     }
     const panda_real least = NOISE*all;
@@ -61,9 +64,6 @@ static int spring_modes(panda_matrix C, const panda_real b[PANDA_N], panda_modes
         for (int j = 0; j < PANDA_N; ++j) {
             row += vectors[i][j]*b[j];
             modes->shape[at][j] = vectors[i][j]*rate;
-        }
-        for (int j = PANDA_N; j < PANDA_SYSTEM; ++j) {
-            modes->shape[at][j] = PANDA_R(0.0);
         }
         modes->squared[at] = squared;
         modes->row[at] = row*rate;
@@ -94,9 +94,10 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
 int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real carried[PANDA_N])
 {
+    const int end = PANDA_N - 1;
     spring_scaled s;
-    panda_matrix G;
-    panda_matrix Y; /* columns of L_G^-1 L' */
+    panda_matrix G; /* from its end to its start: so Cholesky's factors are upper ones, G = U U' */
+    panda_matrix Y; /* columns of U^-1 L', upper triangular as both are */
     panda_matrix C;
     panda_real z[PANDA_N];
     scale_by_springs(arrival, p, &s);
@@ -105,7 +106,7 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     }
     for (int i = 0; i < PANDA_N; ++i) {
         z[i] = s.b[i];
-        panda_real stiff[PANDA_N] = {0};
+        panda_real stiff[PANDA_N];
         for (int l = i; l < PANDA_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }
@@ -114,30 +115,36 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
             for (int l = i; l < PANDA_N; ++l) {
                 sum += stiff[l]*s.S[l][j];
             }
-            G[i][j] = sum;
+            G[end - j][end - i] = sum;
         }
     }
     if (!panda_cholesky(PANDA_N, G)) {
         return PANDA_SINGULAR;
     }
     panda_forward(PANDA_N, s.S, z);
-    panda_forward(PANDA_N, G, z);
+    for (int i = end; i >= 0; --i) {
+        for (int m = i + 1; m < PANDA_N; ++m) {
+            z[i] -= G[end - i][end - m]*z[m];
+        }
+        z[i] /= G[end - i][end - i];
+    }
     panda_real together = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) { /* column i of L' ends at its row i */
         panda_real sum = PANDA_R(0.0);
-        for (int l = 0; l < PANDA_N; ++l) {
-            panda_real rest = l <= i ? s.S[i][l] : PANDA_R(0.0);
-            for (int m = 0; m < l; ++m) {
-                rest -= G[l][m]*Y[i][m];
+        for (int l = i; l >= 0; --l) {
+            const panda_real *const U = G[end - l];
+            panda_real rest = s.S[i][l];
+            for (int m = l + 1; m <= i; ++m) {
+                rest -= U[end - m]*Y[i][m];
             }
-            Y[i][l] = rest/G[l][l];
+            Y[i][l] = rest/U[end - l];
             sum += Y[i][l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
         for (int j = 0; j <= i; ++j) {
             panda_real entry = PANDA_R(0.0);
-            for (int l = 0; l < PANDA_N; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 entry += Y[i][l]*Y[j][l];
             }
             C[i][j] = entry;

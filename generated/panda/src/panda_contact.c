@@ -9,57 +9,65 @@
  */
 #include "panda_state.h"
 
-/* Halley's iterations, and the relative change after which the next would be nothing. */
+/* Halley's iterations, and the relative change after which the next, a fourth of its cube, is nothing. */
 #define ITERATIONS 8
-#define CLOSE PANDA_R(0.01)
+#define CLOSE PANDA_R(0.03)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
 
 void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, panda_real *rate)
 {
-    panda_real halfway[PANDA_MODES];
-    for (int round = 0; round < 2; ++round) {
-        const panda_real span = round == 0 ? PANDA_R(0.5)*time : time;
-        const panda_real *const from = round == 0 ? rate : halfway;
-        panda_real torque[PANDA_DAMPERS];
+    const panda_modes *const modes = &phase->modes;
+    panda_real turned[PANDA_DAMPERS];
+    panda_real impulse[PANDA_DAMPERS]; /* of each damper, to first and then to second order */
+    for (int j = 0; j < PANDA_DAMPERS; ++j) {
+        turned[j] = PANDA_R(0.0);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const panda_real *const shape = &modes->shape[i][PANDA_SYSTEM - PANDA_DAMPERS];
+        const panda_real led = rate[i] - speed*modes->start[i];
         for (int j = 0; j < PANDA_DAMPERS; ++j) {
-            const int place = PANDA_SYSTEM - PANDA_DAMPERS + j;
-            panda_real turned = PANDA_R(0.0);
-            for (int i = 0; i < phase->active; ++i) {
-                turned += phase->modes.shape[i][place]*(from[i] - speed*phase->modes.start[i]);
-            }
-            torque[j] = span*phase->damping[j]*turned;
+            turned[j] += shape[j]*led;
         }
-        for (int i = 0; i < phase->active; ++i) {
-            panda_real change = PANDA_R(0.0);
-            for (int j = 0; j < PANDA_DAMPERS; ++j) {
-                change += phase->modes.shape[i][PANDA_SYSTEM - PANDA_DAMPERS + j]*torque[j];
-            }
-            if (round == 0) {
-                halfway[i] = rate[i] - change;
-            } else {
-                rate[i] -= change;
-            }
+    }
+    for (int j = 0; j < PANDA_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int j = 0; j < PANDA_DAMPERS; ++j) {
+        panda_real slowed = PANDA_R(0.0);
+        for (int k = 0; k < PANDA_DAMPERS; ++k) {
+            slowed += phase->together[j][k]*impulse[k];
         }
+        turned[j] -= PANDA_R(0.5)*slowed;
+    }
+    for (int j = 0; j < PANDA_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const panda_real *const shape = &modes->shape[i][PANDA_SYSTEM - PANDA_DAMPERS];
+        panda_real change = PANDA_R(0.0);
+        for (int j = 0; j < PANDA_DAMPERS; ++j) {
+            change += shape[j]*impulse[j];
+        }
+        rate[i] -= change;
     }
 }
 
 void panda_glide(const panda_state *s, panda_trial *t)
 {
     const panda_phase *const phase = s->phase;
-    const panda_level *const level = &phase->level[s->level];
+    const panda_level *const level = s->step;
     const panda_real *rate = s->rate;
     panda_real damped[PANDA_MODES];
     if (phase->damped) {
         for (int i = 0; i < phase->active; ++i) {
             damped[i] = s->rate[i];
         }
-        panda_damp(phase, s->speed, PANDA_R(0.5)*level->h, damped);
+        panda_damp(phase, s->speed, s->owed + PANDA_R(0.5)*level->h, damped);
         rate = damped;
     }
-    const panda_real drift = phase->drift*s->speed;
-    panda_real x = s->drifted + drift*level->h;
-    panda_real v = drift;
+    panda_real x = s->drifted + s->drift*level->h;
+    panda_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
         const panda_mode_step *const step = &level->mode[i];
         const panda_real a = s->amplitude[i];
@@ -98,7 +106,7 @@ static panda_real root_of(panda_real depth, panda_real cubic, panda_real guess)
 static void set_pace(panda_state *s)
 {
     const panda_region *const region = s->impact->region;
-    const panda_level *const level = &s->phase->level[s->level];
+    const panda_level *const level = s->step;
     const panda_real one = PANDA_R(1.0);
     panda_pace *const pace = &s->pace;
     panda_real ratio = PANDA_R(0.0);
@@ -131,7 +139,7 @@ void panda_press(panda_state *s, panda_trial *t)
 {
     const panda_region *const region = s->impact->region;
     const panda_phase *const phase = s->phase;
-    const panda_level *const level = &phase->level[s->level];
+    const panda_level *const level = s->step;
     const panda_pace *const pace = &s->pace;
     if (s->even < LIKE) {
         set_pace(s);
@@ -144,16 +152,15 @@ void panda_press(panda_state *s, panda_trial *t)
     const panda_real v = t->v - level->kick[0]*first - level->kick[1]*t->base;
     const panda_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
     const panda_real pressed = region->stiffness*x + region->damping*slip;
-    t->f = PANDA_R(0.0);
-    t->u = PANDA_R(0.0);
-    t->root = PANDA_R(0.0);
-    t->depth = PANDA_R(0.0);
     if (pressed > PANDA_R(0.0)) {
         if (region->law == NULL) {
-            t->root = root_of(pressed/pace->hold, region->hertz_stiffness*pace->soft/pace->hold, s->root);
+            const panda_real per = PANDA_R(1.0)/pace->hold;
+            const panda_real guess = s->root + pace->ratio*(s->root - s->root_before);
+            t->root = root_of(pressed*per, region->hertz_stiffness*pace->soft*per, guess);
             t->depth = t->root*t->root;
             t->f = region->hertz_stiffness*t->root*t->depth;
         } else {
+            t->root = PANDA_R(0.0);
             t->f = panda_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
         }
         t->u = t->depth + phase->compliance*t->f;
@@ -165,13 +172,17 @@ void panda_press(panda_state *s, panda_trial *t)
         t->share = PANDA_R(0.0);
         t->x -= level->push[0]*(s->f + t->base) + level->push[1]*t->base;
         t->bump = PANDA_R(0.0);
+        t->f = PANDA_R(0.0);
+        t->u = PANDA_R(0.0);
+        t->root = PANDA_R(0.0);
+        t->depth = PANDA_R(0.0);
     }
 }
 
 void panda_take(const panda_trial *t, panda_state *s)
 {
     const panda_phase *const phase = s->phase;
-    const panda_level *const level = &phase->level[s->level];
+    const panda_level *const level = s->step;
     const panda_real first = s->f + t->base - t->share*t->f;
     const panda_real last = t->base + (PANDA_R(1.0) - t->share)*t->f;
     for (int i = 0; i < phase->active; ++i) {

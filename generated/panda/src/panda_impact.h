@@ -78,6 +78,7 @@ typedef struct {
     panda_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     panda_real damping[PANDA_DAMPERS];
+    panda_real together[PANDA_DAMPERS][PANDA_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     panda_level level[PANDA_LEVELS];
 } panda_phase;
@@ -121,7 +122,6 @@ typedef struct {
 typedef struct {
     panda_real force; /* largest, N */
     panda_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } panda_peak;
@@ -243,7 +243,10 @@ void panda_backward(int size, panda_matrix L, panda_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool panda_diagonalise(int size, panda_matrix A, panda_matrix X, panda_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool panda_spectrum(int size, panda_matrix A, panda_real *values, panda_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *values, panda_matrix vectors);
 
 #endif

@@ -11,7 +11,7 @@
 /* Share of the largest entry that rounding leaves of one that should be none. */
 #define NOISE (PANDA_R(8.0)*PANDA_EPSILON)
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
 {
     if (!panda_cholesky(size, mass)) {
@@ -22,7 +22,7 @@ static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? PANDA_R(1.0) : PANDA_R(0.0);
         }
-        panda_backward(size, mass, column);
+        panda_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -30,21 +30,21 @@ static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
     return true;
 }
 
-/* A = X'KX; returns the noise in its entries. */
+/* A = X'KX of such an X; returns the noise in its entries. */
 static panda_real congruent(int size, panda_matrix K, panda_matrix X, panda_matrix A)
 {
     panda_real largest = PANDA_R(0.0);
     for (int i = 0; i < size; ++i) {
         panda_real pulled[PANDA_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = PANDA_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             panda_real sum = PANDA_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -55,6 +55,7 @@ static panda_real congruent(int size, panda_matrix K, panda_matrix X, panda_matr
     return NOISE*largest;
 }
 
+#if !PANDA_STRUCTURED
 /* Takes over the eigenvectors X, over the coordinates `places`. */
 static void take_over(int size, const int *places, panda_matrix A, panda_matrix X, const panda_real *row,
     panda_modes *modes)
@@ -76,6 +77,7 @@ static void take_over(int size, const int *places, panda_matrix A, panda_matrix 
     modes->rigid = 0;
     modes->fastest = PANDA_REAL_MAX;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const panda_arrival *arrival, panda_real pull[PANDA_SYSTEM])
@@ -188,31 +190,38 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
 int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift)
 {
-    panda_matrix mass;
-    panda_matrix K;
+    panda_matrix mass; /* and then X'KX */
+    panda_matrix K; /* and then eigenvectors of that, its rows */
     panda_matrix X;
-    panda_matrix A;
-    int places[PANDA_SYSTEM];
-    panda_real row[PANDA_SYSTEM];
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < PANDA_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < PANDA_N ? arrival->row[i] : PANDA_R(0.0);
-    }
     for (int i = 0; i < PANDA_N; ++i) {
         const int motor = PANDA_SYSTEM - PANDA_N + i;
         K[motor][motor] += PANDA_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(PANDA_SYSTEM, mass, X)) {
         return PANDA_SINGULAR;
     }
-    const panda_real noise = congruent(PANDA_SYSTEM, K, X, A);
-    if (!panda_diagonalise(PANDA_SYSTEM, A, X, noise)) {
+    modes->noise = congruent(PANDA_SYSTEM, K, X, mass);
+    if (!panda_spectrum(PANDA_SYSTEM, PANDA_EPSILON*PANDA_EPSILON, mass, modes->squared, K)) {
         return PANDA_SINGULAR;
     }
-    take_over(PANDA_SYSTEM, places, A, X, row, modes);
-    modes->noise = noise;
+    for (int i = 0; i < PANDA_SYSTEM; ++i) {
+        panda_real row = PANDA_R(0.0);
+        for (int j = 0; j < PANDA_SYSTEM; ++j) {
+            panda_real shape = PANDA_R(0.0);
+            for (int k = j; k < PANDA_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape;
+            row += j < PANDA_N ? arrival->row[j]*shape : PANDA_R(0.0);
+        }
+        modes->row[i] = row;
+        modes->start[i] = PANDA_R(0.0);
+    }
+    modes->count = PANDA_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = PANDA_REAL_MAX;
     *drift = PANDA_R(1.0);
     panda_real pull[PANDA_SYSTEM];
     pulled_on(arrival, pull);

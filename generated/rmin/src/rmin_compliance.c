@@ -16,6 +16,9 @@
 /* A mode of less than this share of all squared periods has no digits left. */
 #define NOISE (RMIN_R(8.0)*RMIN_EPSILON)
 
+/* Square of what may be left beside the diagonal of a compliance: energies change by less than its root. */
+#define SMALL RMIN_R(1e-8)
+
 #if RMIN_STRUCTURED
 /* S, R and b. */
 typedef struct {
@@ -48,7 +51,7 @@ static int spring_modes(rmin_matrix C, const rmin_real b[RMIN_N], rmin_modes *mo
     for (int i = 0; i < RMIN_N; ++i) {
         all += C[i][i];
     }
-    if (!rmin_spectrum(RMIN_N, C, squares, vectors)) {
+    if (!rmin_spectrum(RMIN_N, SMALL, C, squares, vectors)) {
         return RMIN_SINGULAR;
     }
     const rmin_real least = NOISE*all;
@@ -61,9 +64,6 @@ static int spring_modes(rmin_matrix C, const rmin_real b[RMIN_N], rmin_modes *mo
         for (int j = 0; j < RMIN_N; ++j) {
             row += vectors[i][j]*b[j];
             modes->shape[at][j] = vectors[i][j]*rate;
-        }
-        for (int j = RMIN_N; j < RMIN_SYSTEM; ++j) {
-            modes->shape[at][j] = RMIN_R(0.0);
         }
         modes->squared[at] = squared;
         modes->row[at] = row*rate;
@@ -94,9 +94,10 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
 int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real carried[RMIN_N])
 {
+    const int end = RMIN_N - 1;
     spring_scaled s;
-    rmin_matrix G;
-    rmin_matrix Y; /* columns of L_G^-1 L' */
+    rmin_matrix G; /* from its end to its start: so Cholesky's factors are upper ones, G = U U' */
+    rmin_matrix Y; /* columns of U^-1 L', upper triangular as both are */
     rmin_matrix C;
     rmin_real z[RMIN_N];
     scale_by_springs(arrival, p, &s);
@@ -105,7 +106,7 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     }
     for (int i = 0; i < RMIN_N; ++i) {
         z[i] = s.b[i];
-        rmin_real stiff[RMIN_N] = {0};
+        rmin_real stiff[RMIN_N];
         for (int l = i; l < RMIN_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }
@@ -114,30 +115,36 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
             for (int l = i; l < RMIN_N; ++l) {
                 sum += stiff[l]*s.S[l][j];
             }
-            G[i][j] = sum;
+            G[end - j][end - i] = sum;
         }
     }
     if (!rmin_cholesky(RMIN_N, G)) {
         return RMIN_SINGULAR;
     }
     rmin_forward(RMIN_N, s.S, z);
-    rmin_forward(RMIN_N, G, z);
+    for (int i = end; i >= 0; --i) {
+        for (int m = i + 1; m < RMIN_N; ++m) {
+            z[i] -= G[end - i][end - m]*z[m];
+        }
+        z[i] /= G[end - i][end - i];
+    }
     rmin_real together = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) { /* column i of L' ends at its row i */
         rmin_real sum = RMIN_R(0.0);
-        for (int l = 0; l < RMIN_N; ++l) {
-            rmin_real rest = l <= i ? s.S[i][l] : RMIN_R(0.0);
-            for (int m = 0; m < l; ++m) {
-                rest -= G[l][m]*Y[i][m];
+        for (int l = i; l >= 0; --l) {
+            const rmin_real *const U = G[end - l];
+            rmin_real rest = s.S[i][l];
+            for (int m = l + 1; m <= i; ++m) {
+                rest -= U[end - m]*Y[i][m];
             }
-            Y[i][l] = rest/G[l][l];
+            Y[i][l] = rest/U[end - l];
             sum += Y[i][l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
         for (int j = 0; j <= i; ++j) {
             rmin_real entry = RMIN_R(0.0);
-            for (int l = 0; l < RMIN_N; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 entry += Y[i][l]*Y[j][l];
             }
             C[i][j] = entry;

@@ -9,57 +9,65 @@
  */
 #include "rmin_state.h"
 
-/* Halley's iterations, and the relative change after which the next would be nothing. */
+/* Halley's iterations, and the relative change after which the next, a fourth of its cube, is nothing. */
 #define ITERATIONS 8
-#define CLOSE RMIN_R(0.01)
+#define CLOSE RMIN_R(0.03)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
 
 void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate)
 {
-    rmin_real halfway[RMIN_MODES];
-    for (int round = 0; round < 2; ++round) {
-        const rmin_real span = round == 0 ? RMIN_R(0.5)*time : time;
-        const rmin_real *const from = round == 0 ? rate : halfway;
-        rmin_real torque[RMIN_DAMPERS];
+    const rmin_modes *const modes = &phase->modes;
+    rmin_real turned[RMIN_DAMPERS];
+    rmin_real impulse[RMIN_DAMPERS]; /* of each damper, to first and then to second order */
+    for (int j = 0; j < RMIN_DAMPERS; ++j) {
+        turned[j] = RMIN_R(0.0);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const rmin_real *const shape = &modes->shape[i][RMIN_SYSTEM - RMIN_DAMPERS];
+        const rmin_real led = rate[i] - speed*modes->start[i];
         for (int j = 0; j < RMIN_DAMPERS; ++j) {
-            const int place = RMIN_SYSTEM - RMIN_DAMPERS + j;
-            rmin_real turned = RMIN_R(0.0);
-            for (int i = 0; i < phase->active; ++i) {
-                turned += phase->modes.shape[i][place]*(from[i] - speed*phase->modes.start[i]);
-            }
-            torque[j] = span*phase->damping[j]*turned;
+            turned[j] += shape[j]*led;
         }
-        for (int i = 0; i < phase->active; ++i) {
-            rmin_real change = RMIN_R(0.0);
-            for (int j = 0; j < RMIN_DAMPERS; ++j) {
-                change += phase->modes.shape[i][RMIN_SYSTEM - RMIN_DAMPERS + j]*torque[j];
-            }
-            if (round == 0) {
-                halfway[i] = rate[i] - change;
-            } else {
-                rate[i] -= change;
-            }
+    }
+    for (int j = 0; j < RMIN_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int j = 0; j < RMIN_DAMPERS; ++j) {
+        rmin_real slowed = RMIN_R(0.0);
+        for (int k = 0; k < RMIN_DAMPERS; ++k) {
+            slowed += phase->together[j][k]*impulse[k];
         }
+        turned[j] -= RMIN_R(0.5)*slowed;
+    }
+    for (int j = 0; j < RMIN_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const rmin_real *const shape = &modes->shape[i][RMIN_SYSTEM - RMIN_DAMPERS];
+        rmin_real change = RMIN_R(0.0);
+        for (int j = 0; j < RMIN_DAMPERS; ++j) {
+            change += shape[j]*impulse[j];
+        }
+        rate[i] -= change;
     }
 }
 
 void rmin_glide(const rmin_state *s, rmin_trial *t)
 {
     const rmin_phase *const phase = s->phase;
-    const rmin_level *const level = &phase->level[s->level];
+    const rmin_level *const level = s->step;
     const rmin_real *rate = s->rate;
     rmin_real damped[RMIN_MODES];
     if (phase->damped) {
         for (int i = 0; i < phase->active; ++i) {
             damped[i] = s->rate[i];
         }
-        rmin_damp(phase, s->speed, RMIN_R(0.5)*level->h, damped);
+        rmin_damp(phase, s->speed, s->owed + RMIN_R(0.5)*level->h, damped);
         rate = damped;
     }
-    const rmin_real drift = phase->drift*s->speed;
-    rmin_real x = s->drifted + drift*level->h;
-    rmin_real v = drift;
+    rmin_real x = s->drifted + s->drift*level->h;
+    rmin_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
         const rmin_mode_step *const step = &level->mode[i];
         const rmin_real a = s->amplitude[i];
@@ -98,7 +106,7 @@ static rmin_real root_of(rmin_real depth, rmin_real cubic, rmin_real guess)
 static void set_pace(rmin_state *s)
 {
     const rmin_region *const region = s->impact->region;
-    const rmin_level *const level = &s->phase->level[s->level];
+    const rmin_level *const level = s->step;
     const rmin_real one = RMIN_R(1.0);
     rmin_pace *const pace = &s->pace;
     rmin_real ratio = RMIN_R(0.0);
@@ -131,7 +139,7 @@ void rmin_press(rmin_state *s, rmin_trial *t)
 {
     const rmin_region *const region = s->impact->region;
     const rmin_phase *const phase = s->phase;
-    const rmin_level *const level = &phase->level[s->level];
+    const rmin_level *const level = s->step;
     const rmin_pace *const pace = &s->pace;
     if (s->even < LIKE) {
         set_pace(s);
@@ -144,16 +152,15 @@ void rmin_press(rmin_state *s, rmin_trial *t)
     const rmin_real v = t->v - level->kick[0]*first - level->kick[1]*t->base;
     const rmin_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
     const rmin_real pressed = region->stiffness*x + region->damping*slip;
-    t->f = RMIN_R(0.0);
-    t->u = RMIN_R(0.0);
-    t->root = RMIN_R(0.0);
-    t->depth = RMIN_R(0.0);
     if (pressed > RMIN_R(0.0)) {
         if (region->law == NULL) {
-            t->root = root_of(pressed/pace->hold, region->hertz_stiffness*pace->soft/pace->hold, s->root);
+            const rmin_real per = RMIN_R(1.0)/pace->hold;
+            const rmin_real guess = s->root + pace->ratio*(s->root - s->root_before);
+            t->root = root_of(pressed*per, region->hertz_stiffness*pace->soft*per, guess);
             t->depth = t->root*t->root;
             t->f = region->hertz_stiffness*t->root*t->depth;
         } else {
+            t->root = RMIN_R(0.0);
             t->f = rmin_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
         }
         t->u = t->depth + phase->compliance*t->f;
@@ -165,13 +172,17 @@ void rmin_press(rmin_state *s, rmin_trial *t)
         t->share = RMIN_R(0.0);
         t->x -= level->push[0]*(s->f + t->base) + level->push[1]*t->base;
         t->bump = RMIN_R(0.0);
+        t->f = RMIN_R(0.0);
+        t->u = RMIN_R(0.0);
+        t->root = RMIN_R(0.0);
+        t->depth = RMIN_R(0.0);
     }
 }
 
 void rmin_take(const rmin_trial *t, rmin_state *s)
 {
     const rmin_phase *const phase = s->phase;
-    const rmin_level *const level = &phase->level[s->level];
+    const rmin_level *const level = s->step;
     const rmin_real first = s->f + t->base - t->share*t->f;
     const rmin_real last = t->base + (RMIN_R(1.0) - t->share)*t->f;
     for (int i = 0; i < phase->active; ++i) {

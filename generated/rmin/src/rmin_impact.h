@@ -78,6 +78,7 @@ typedef struct {
     rmin_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     rmin_real damping[RMIN_DAMPERS];
+    rmin_real together[RMIN_DAMPERS][RMIN_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     rmin_level level[RMIN_LEVELS];
 } rmin_phase;
@@ -121,7 +122,6 @@ typedef struct {
 typedef struct {
     rmin_real force; /* largest, N */
     rmin_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } rmin_peak;
@@ -243,7 +243,10 @@ void rmin_backward(int size, rmin_matrix L, rmin_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X, rmin_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool rmin_spectrum(int size, rmin_matrix A, rmin_real *values, rmin_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, rmin_matrix vectors);
 
 #endif

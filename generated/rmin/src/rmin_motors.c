@@ -11,7 +11,7 @@
 /* Share of the largest entry that rounding leaves of one that should be none. */
 #define NOISE (RMIN_R(8.0)*RMIN_EPSILON)
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
 {
     if (!rmin_cholesky(size, mass)) {
@@ -22,7 +22,7 @@ static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? RMIN_R(1.0) : RMIN_R(0.0);
         }
-        rmin_backward(size, mass, column);
+        rmin_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -30,21 +30,21 @@ static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
     return true;
 }
 
-/* A = X'KX; returns the noise in its entries. */
+/* A = X'KX of such an X; returns the noise in its entries. */
 static rmin_real congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A)
 {
     rmin_real largest = RMIN_R(0.0);
     for (int i = 0; i < size; ++i) {
         rmin_real pulled[RMIN_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = RMIN_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             rmin_real sum = RMIN_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -55,6 +55,7 @@ static rmin_real congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A
     return NOISE*largest;
 }
 
+#if !RMIN_STRUCTURED
 /* Takes over the eigenvectors X, over the coordinates `places`. */
 static void take_over(int size, const int *places, rmin_matrix A, rmin_matrix X, const rmin_real *row,
     rmin_modes *modes)
@@ -76,6 +77,7 @@ static void take_over(int size, const int *places, rmin_matrix A, rmin_matrix X,
     modes->rigid = 0;
     modes->fastest = RMIN_REAL_MAX;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const rmin_arrival *arrival, rmin_real pull[RMIN_SYSTEM])
@@ -188,31 +190,38 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
 int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift)
 {
-    rmin_matrix mass;
-    rmin_matrix K;
+    rmin_matrix mass; /* and then X'KX */
+    rmin_matrix K; /* and then eigenvectors of that, its rows */
     rmin_matrix X;
-    rmin_matrix A;
-    int places[RMIN_SYSTEM];
-    rmin_real row[RMIN_SYSTEM];
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < RMIN_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < RMIN_N ? arrival->row[i] : RMIN_R(0.0);
-    }
     for (int i = 0; i < RMIN_N; ++i) {
         const int motor = RMIN_SYSTEM - RMIN_N + i;
         K[motor][motor] += RMIN_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(RMIN_SYSTEM, mass, X)) {
         return RMIN_SINGULAR;
     }
-    const rmin_real noise = congruent(RMIN_SYSTEM, K, X, A);
-    if (!rmin_diagonalise(RMIN_SYSTEM, A, X, noise)) {
+    modes->noise = congruent(RMIN_SYSTEM, K, X, mass);
+    if (!rmin_spectrum(RMIN_SYSTEM, RMIN_EPSILON*RMIN_EPSILON, mass, modes->squared, K)) {
         return RMIN_SINGULAR;
     }
-    take_over(RMIN_SYSTEM, places, A, X, row, modes);
-    modes->noise = noise;
+    for (int i = 0; i < RMIN_SYSTEM; ++i) {
+        rmin_real row = RMIN_R(0.0);
+        for (int j = 0; j < RMIN_SYSTEM; ++j) {
+            rmin_real shape = RMIN_R(0.0);
+            for (int k = j; k < RMIN_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape;
+            row += j < RMIN_N ? arrival->row[j]*shape : RMIN_R(0.0);
+        }
+        modes->row[i] = row;
+        modes->start[i] = RMIN_R(0.0);
+    }
+    modes->count = RMIN_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = RMIN_REAL_MAX;
     *drift = RMIN_R(1.0);
     rmin_real pull[RMIN_SYSTEM];
     pulled_on(arrival, pull);

@@ -9,11 +9,6 @@
  */
 #include "rmin_impact.h"
 
-/*
- * Square of an entry beside the diagonal, over the product of its neighbours on it, below which it counts
- * as none: energies change by less than its root.
- */
-#define SMALL RMIN_R(1e-8)
 /* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
 #define MOST_STEPS 3
 
@@ -69,24 +64,31 @@ static void reflect(int size, rmin_matrix A, rmin_real *d, rmin_real *e, rmin_ma
         }
     }
     d[size - 1] = A[size - 1][size - 1];
-    for (int i = 0; i < size; ++i) {
-        for (int j = 0; j < size; ++j) {
-            Q[i][j] = RMIN_R(0.0);
-        }
-        Q[i][i] = RMIN_R(1.0);
-    }
+    Q[size - 1][size - 1] = RMIN_R(1.0);
     for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
         const rmin_real *const v = A[k];
-        for (int i = k + 1; i < size && scale[k] > RMIN_R(0.0); ++i) {
+        const int next = k + 1; /* row and column that were none but for a 1 where they meet */
+        const rmin_real lead = scale[k]*v[next];
+        Q[next][next] = RMIN_R(1.0) - lead*v[next];
+        for (int j = next + 1; j < size; ++j) {
+            Q[next][j] = -lead*v[j];
+        }
+        for (int i = next + 1; i < size; ++i) {
             rmin_real along = RMIN_R(0.0);
-            for (int j = k + 1; j < size; ++j) {
+            for (int j = next + 1; j < size; ++j) {
                 along += Q[i][j]*v[j];
             }
             along *= scale[k];
-            for (int j = k + 1; j < size; ++j) {
+            for (int j = next + 1; j < size; ++j) {
                 Q[i][j] -= along*v[j];
             }
+            Q[i][next] = -along*v[next];
         }
+    }
+    Q[0][0] = RMIN_R(1.0);
+    for (int i = 1; i < size; ++i) {
+        Q[0][i] = RMIN_R(0.0);
+        Q[i][0] = RMIN_R(0.0);
     }
 }
 
@@ -132,12 +134,12 @@ static void chase(int first, int last, int size, rmin_real *d, rmin_real *e, rmi
 }
 
 /* Whether an entry beside the diagonal is more than none. */
-static bool counts(int row, const rmin_real *d, const rmin_real *e, rmin_real noise)
+static bool counts(int row, const rmin_real *d, const rmin_real *e, rmin_real small, rmin_real noise)
 {
-    return e[row]*e[row] > noise + SMALL*RMIN_FABS(d[row]*d[row + 1]);
+    return e[row]*e[row] > noise + small*RMIN_FABS(d[row]*d[row + 1]);
 }
 
-bool rmin_spectrum(int size, rmin_matrix A, rmin_real *values, rmin_matrix vectors)
+bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, rmin_matrix vectors)
 {
     rmin_real e[RMIN_SYSTEM];
     rmin_real all = RMIN_R(0.0);
@@ -148,14 +150,14 @@ bool rmin_spectrum(int size, rmin_matrix A, rmin_real *values, rmin_matrix vecto
     const rmin_real noise = RMIN_EPSILON*RMIN_EPSILON*all*all;
     int last = size - 1;
     for (int step = 0; step <= MOST_STEPS*size; ++step) {
-        while (last > 0 && !counts(last - 1, values, e, noise)) {
+        while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
         }
         if (last == 0) {
             return true;
         }
         int first = last - 1;
-        while (first > 0 && counts(first - 1, values, e, noise)) {
+        while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
         chase(first, last, size, values, e, vectors);

@@ -18,20 +18,23 @@ typedef struct {
     const rmin_phase *phase;
     rmin_real speed;
     rmin_real scale; /* of forces, N */
+    const rmin_level *step; /* of the next one's length */
     int level;
     int even; /* steps in a row of this length */
     rmin_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     rmin_real time;
-    rmin_real drifted; /* by the motors, m */
+    rmin_real drift, drifted; /* by the motors, m/s and m */
     rmin_real amplitude[RMIN_MODES], rate[RMIN_MODES];
+    rmin_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
     rmin_real h, h_before, x; /* last steps, contact point */
     rmin_real bump; /* what the bend adds to the force on average of the last step */
     rmin_real f, rise; /* force, and by how much it grew in the last step */
     rmin_real u, u_before; /* deformation of the skin and of what stands */
-    rmin_real now, root; /* depth of the skin, and its root where it is Hertz's */
+    rmin_real now; /* depth of the skin */
+    rmin_real root, root_before; /* of it, where it is Hertz's */
     rmin_real rest; /* deflection of the body out of contact */
     rmin_real depth; /* of the skin at the largest force so far */
     rmin_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -55,6 +58,9 @@ typedef struct {
     rmin_real f, bump, base, share; /* force at the end; what its bend adds on the way */
     rmin_real u, depth, root;
 } rmin_trial;
+
+/* Goes over to the steps of a phase, the first of a level. */
+void rmin_begin_phase(const rmin_phase *phase, int level, rmin_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate);

@@ -16,6 +16,9 @@
 /* A mode of less than this share of all squared periods has no digits left. */
 #define NOISE (RR_R(8.0)*RR_EPSILON)
 
+/* Square of what may be left beside the diagonal of a compliance: energies change by less than its root. */
+#define SMALL RR_R(1e-8)
+
 #if RR_STRUCTURED
 /* S, R and b. */
 typedef struct {
@@ -48,7 +51,7 @@ static int spring_modes(rr_matrix C, const rr_real b[RR_N], rr_modes *modes)
     for (int i = 0; i < RR_N; ++i) {
         all += C[i][i];
     }
-    if (!rr_spectrum(RR_N, C, squares, vectors)) {
+    if (!rr_spectrum(RR_N, SMALL, C, squares, vectors)) {
         return RR_SINGULAR;
     }
     const rr_real least = NOISE*all;
@@ -61,9 +64,6 @@ static int spring_modes(rr_matrix C, const rr_real b[RR_N], rr_modes *modes)
         for (int j = 0; j < RR_N; ++j) {
             row += vectors[i][j]*b[j];
             modes->shape[at][j] = vectors[i][j]*rate;
-        }
-        for (int j = RR_N; j < RR_SYSTEM; ++j) {
-            modes->shape[at][j] = RR_R(0.0);
         }
         modes->squared[at] = squared;
         modes->row[at] = row*rate;
@@ -94,9 +94,10 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
 int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real carried[RR_N])
 {
+    const int end = RR_N - 1;
     spring_scaled s;
-    rr_matrix G;
-    rr_matrix Y; /* columns of L_G^-1 L' */
+    rr_matrix G; /* from its end to its start: so Cholesky's factors are upper ones, G = U U' */
+    rr_matrix Y; /* columns of U^-1 L', upper triangular as both are */
     rr_matrix C;
     rr_real z[RR_N];
     scale_by_springs(arrival, p, &s);
@@ -105,7 +106,7 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     }
     for (int i = 0; i < RR_N; ++i) {
         z[i] = s.b[i];
-        rr_real stiff[RR_N] = {0};
+        rr_real stiff[RR_N];
         for (int l = i; l < RR_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }
@@ -114,30 +115,36 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
             for (int l = i; l < RR_N; ++l) {
                 sum += stiff[l]*s.S[l][j];
             }
-            G[i][j] = sum;
+            G[end - j][end - i] = sum;
         }
     }
     if (!rr_cholesky(RR_N, G)) {
         return RR_SINGULAR;
     }
     rr_forward(RR_N, s.S, z);
-    rr_forward(RR_N, G, z);
+    for (int i = end; i >= 0; --i) {
+        for (int m = i + 1; m < RR_N; ++m) {
+            z[i] -= G[end - i][end - m]*z[m];
+        }
+        z[i] /= G[end - i][end - i];
+    }
     rr_real together = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) { /* column i of L' ends at its row i */
         rr_real sum = RR_R(0.0);
-        for (int l = 0; l < RR_N; ++l) {
-            rr_real rest = l <= i ? s.S[i][l] : RR_R(0.0);
-            for (int m = 0; m < l; ++m) {
-                rest -= G[l][m]*Y[i][m];
+        for (int l = i; l >= 0; --l) {
+            const rr_real *const U = G[end - l];
+            rr_real rest = s.S[i][l];
+            for (int m = l + 1; m <= i; ++m) {
+                rest -= U[end - m]*Y[i][m];
             }
-            Y[i][l] = rest/G[l][l];
+            Y[i][l] = rest/U[end - l];
             sum += Y[i][l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
         for (int j = 0; j <= i; ++j) {
             rr_real entry = RR_R(0.0);
-            for (int l = 0; l < RR_N; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 entry += Y[i][l]*Y[j][l];
             }
             C[i][j] = entry;

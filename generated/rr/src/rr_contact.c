@@ -9,57 +9,65 @@
  */
 #include "rr_state.h"
 
-/* Halley's iterations, and the relative change after which the next would be nothing. */
+/* Halley's iterations, and the relative change after which the next, a fourth of its cube, is nothing. */
 #define ITERATIONS 8
-#define CLOSE RR_R(0.01)
+#define CLOSE RR_R(0.03)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
 
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate)
 {
-    rr_real halfway[RR_MODES];
-    for (int round = 0; round < 2; ++round) {
-        const rr_real span = round == 0 ? RR_R(0.5)*time : time;
-        const rr_real *const from = round == 0 ? rate : halfway;
-        rr_real torque[RR_DAMPERS];
+    const rr_modes *const modes = &phase->modes;
+    rr_real turned[RR_DAMPERS];
+    rr_real impulse[RR_DAMPERS]; /* of each damper, to first and then to second order */
+    for (int j = 0; j < RR_DAMPERS; ++j) {
+        turned[j] = RR_R(0.0);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const rr_real *const shape = &modes->shape[i][RR_SYSTEM - RR_DAMPERS];
+        const rr_real led = rate[i] - speed*modes->start[i];
         for (int j = 0; j < RR_DAMPERS; ++j) {
-            const int place = RR_SYSTEM - RR_DAMPERS + j;
-            rr_real turned = RR_R(0.0);
-            for (int i = 0; i < phase->active; ++i) {
-                turned += phase->modes.shape[i][place]*(from[i] - speed*phase->modes.start[i]);
-            }
-            torque[j] = span*phase->damping[j]*turned;
+            turned[j] += shape[j]*led;
         }
-        for (int i = 0; i < phase->active; ++i) {
-            rr_real change = RR_R(0.0);
-            for (int j = 0; j < RR_DAMPERS; ++j) {
-                change += phase->modes.shape[i][RR_SYSTEM - RR_DAMPERS + j]*torque[j];
-            }
-            if (round == 0) {
-                halfway[i] = rate[i] - change;
-            } else {
-                rate[i] -= change;
-            }
+    }
+    for (int j = 0; j < RR_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int j = 0; j < RR_DAMPERS; ++j) {
+        rr_real slowed = RR_R(0.0);
+        for (int k = 0; k < RR_DAMPERS; ++k) {
+            slowed += phase->together[j][k]*impulse[k];
         }
+        turned[j] -= RR_R(0.5)*slowed;
+    }
+    for (int j = 0; j < RR_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const rr_real *const shape = &modes->shape[i][RR_SYSTEM - RR_DAMPERS];
+        rr_real change = RR_R(0.0);
+        for (int j = 0; j < RR_DAMPERS; ++j) {
+            change += shape[j]*impulse[j];
+        }
+        rate[i] -= change;
     }
 }
 
 void rr_glide(const rr_state *s, rr_trial *t)
 {
     const rr_phase *const phase = s->phase;
-    const rr_level *const level = &phase->level[s->level];
+    const rr_level *const level = s->step;
     const rr_real *rate = s->rate;
     rr_real damped[RR_MODES];
     if (phase->damped) {
         for (int i = 0; i < phase->active; ++i) {
             damped[i] = s->rate[i];
         }
-        rr_damp(phase, s->speed, RR_R(0.5)*level->h, damped);
+        rr_damp(phase, s->speed, s->owed + RR_R(0.5)*level->h, damped);
         rate = damped;
     }
-    const rr_real drift = phase->drift*s->speed;
-    rr_real x = s->drifted + drift*level->h;
-    rr_real v = drift;
+    rr_real x = s->drifted + s->drift*level->h;
+    rr_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
         const rr_mode_step *const step = &level->mode[i];
         const rr_real a = s->amplitude[i];
@@ -98,7 +106,7 @@ static rr_real root_of(rr_real depth, rr_real cubic, rr_real guess)
 static void set_pace(rr_state *s)
 {
     const rr_region *const region = s->impact->region;
-    const rr_level *const level = &s->phase->level[s->level];
+    const rr_level *const level = s->step;
     const rr_real one = RR_R(1.0);
     rr_pace *const pace = &s->pace;
     rr_real ratio = RR_R(0.0);
@@ -131,7 +139,7 @@ void rr_press(rr_state *s, rr_trial *t)
 {
     const rr_region *const region = s->impact->region;
     const rr_phase *const phase = s->phase;
-    const rr_level *const level = &phase->level[s->level];
+    const rr_level *const level = s->step;
     const rr_pace *const pace = &s->pace;
     if (s->even < LIKE) {
         set_pace(s);
@@ -144,16 +152,15 @@ void rr_press(rr_state *s, rr_trial *t)
     const rr_real v = t->v - level->kick[0]*first - level->kick[1]*t->base;
     const rr_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
     const rr_real pressed = region->stiffness*x + region->damping*slip;
-    t->f = RR_R(0.0);
-    t->u = RR_R(0.0);
-    t->root = RR_R(0.0);
-    t->depth = RR_R(0.0);
     if (pressed > RR_R(0.0)) {
         if (region->law == NULL) {
-            t->root = root_of(pressed/pace->hold, region->hertz_stiffness*pace->soft/pace->hold, s->root);
+            const rr_real per = RR_R(1.0)/pace->hold;
+            const rr_real guess = s->root + pace->ratio*(s->root - s->root_before);
+            t->root = root_of(pressed*per, region->hertz_stiffness*pace->soft*per, guess);
             t->depth = t->root*t->root;
             t->f = region->hertz_stiffness*t->root*t->depth;
         } else {
+            t->root = RR_R(0.0);
             t->f = rr_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
         }
         t->u = t->depth + phase->compliance*t->f;
@@ -165,13 +172,17 @@ void rr_press(rr_state *s, rr_trial *t)
         t->share = RR_R(0.0);
         t->x -= level->push[0]*(s->f + t->base) + level->push[1]*t->base;
         t->bump = RR_R(0.0);
+        t->f = RR_R(0.0);
+        t->u = RR_R(0.0);
+        t->root = RR_R(0.0);
+        t->depth = RR_R(0.0);
     }
 }
 
 void rr_take(const rr_trial *t, rr_state *s)
 {
     const rr_phase *const phase = s->phase;
-    const rr_level *const level = &phase->level[s->level];
+    const rr_level *const level = s->step;
     const rr_real first = s->f + t->base - t->share*t->f;
     const rr_real last = t->base + (RR_R(1.0) - t->share)*t->f;
     for (int i = 0; i < phase->active; ++i) {

@@ -78,6 +78,7 @@ typedef struct {
     rr_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     rr_real damping[RR_DAMPERS];
+    rr_real together[RR_DAMPERS][RR_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     rr_level level[RR_LEVELS];
 } rr_phase;
@@ -121,7 +122,6 @@ typedef struct {
 typedef struct {
     rr_real force; /* largest, N */
     rr_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } rr_peak;
@@ -243,7 +243,10 @@ void rr_backward(int size, rr_matrix L, rr_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool rr_diagonalise(int size, rr_matrix A, rr_matrix X, rr_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool rr_spectrum(int size, rr_matrix A, rr_real *values, rr_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, rr_matrix vectors);
 
 #endif

@@ -11,7 +11,7 @@
 /* Share of the largest entry that rounding leaves of one that should be none. */
 #define NOISE (RR_R(8.0)*RR_EPSILON)
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
 {
     if (!rr_cholesky(size, mass)) {
@@ -22,7 +22,7 @@ static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? RR_R(1.0) : RR_R(0.0);
         }
-        rr_backward(size, mass, column);
+        rr_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -30,21 +30,21 @@ static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
     return true;
 }
 
-/* A = X'KX; returns the noise in its entries. */
+/* A = X'KX of such an X; returns the noise in its entries. */
 static rr_real congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
 {
     rr_real largest = RR_R(0.0);
     for (int i = 0; i < size; ++i) {
         rr_real pulled[RR_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = RR_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             rr_real sum = RR_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -55,6 +55,7 @@ static rr_real congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
     return NOISE*largest;
 }
 
+#if !RR_STRUCTURED
 /* Takes over the eigenvectors X, over the coordinates `places`. */
 static void take_over(int size, const int *places, rr_matrix A, rr_matrix X, const rr_real *row,
     rr_modes *modes)
@@ -76,6 +77,7 @@ static void take_over(int size, const int *places, rr_matrix A, rr_matrix X, con
     modes->rigid = 0;
     modes->fastest = RR_REAL_MAX;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const rr_arrival *arrival, rr_real pull[RR_SYSTEM])
@@ -188,31 +190,38 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
 int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real *drift)
 {
-    rr_matrix mass;
-    rr_matrix K;
+    rr_matrix mass; /* and then X'KX */
+    rr_matrix K; /* and then eigenvectors of that, its rows */
     rr_matrix X;
-    rr_matrix A;
-    int places[RR_SYSTEM];
-    rr_real row[RR_SYSTEM];
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < RR_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < RR_N ? arrival->row[i] : RR_R(0.0);
-    }
     for (int i = 0; i < RR_N; ++i) {
         const int motor = RR_SYSTEM - RR_N + i;
         K[motor][motor] += RR_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(RR_SYSTEM, mass, X)) {
         return RR_SINGULAR;
     }
-    const rr_real noise = congruent(RR_SYSTEM, K, X, A);
-    if (!rr_diagonalise(RR_SYSTEM, A, X, noise)) {
+    modes->noise = congruent(RR_SYSTEM, K, X, mass);
+    if (!rr_spectrum(RR_SYSTEM, RR_EPSILON*RR_EPSILON, mass, modes->squared, K)) {
         return RR_SINGULAR;
     }
-    take_over(RR_SYSTEM, places, A, X, row, modes);
-    modes->noise = noise;
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        rr_real row = RR_R(0.0);
+        for (int j = 0; j < RR_SYSTEM; ++j) {
+            rr_real shape = RR_R(0.0);
+            for (int k = j; k < RR_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape;
+            row += j < RR_N ? arrival->row[j]*shape : RR_R(0.0);
+        }
+        modes->row[i] = row;
+        modes->start[i] = RR_R(0.0);
+    }
+    modes->count = RR_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = RR_REAL_MAX;
     *drift = RR_R(1.0);
     rr_real pull[RR_SYSTEM];
     pulled_on(arrival, pull);

@@ -18,20 +18,23 @@ typedef struct {
     const rr_phase *phase;
     rr_real speed;
     rr_real scale; /* of forces, N */
+    const rr_level *step; /* of the next one's length */
     int level;
     int even; /* steps in a row of this length */
     rr_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     rr_real time;
-    rr_real drifted; /* by the motors, m */
+    rr_real drift, drifted; /* by the motors, m/s and m */
     rr_real amplitude[RR_MODES], rate[RR_MODES];
+    rr_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
     rr_real h, h_before, x; /* last steps, contact point */
     rr_real bump; /* what the bend adds to the force on average of the last step */
     rr_real f, rise; /* force, and by how much it grew in the last step */
     rr_real u, u_before; /* deformation of the skin and of what stands */
-    rr_real now, root; /* depth of the skin, and its root where it is Hertz's */
+    rr_real now; /* depth of the skin */
+    rr_real root, root_before; /* of it, where it is Hertz's */
     rr_real rest; /* deflection of the body out of contact */
     rr_real depth; /* of the skin at the largest force so far */
     rr_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -55,6 +58,9 @@ typedef struct {
     rr_real f, bump, base, share; /* force at the end; what its bend adds on the way */
     rr_real u, depth, root;
 } rr_trial;
+
+/* Goes over to the steps of a phase, the first of a level. */
+void rr_begin_phase(const rr_phase *phase, int level, rr_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate);

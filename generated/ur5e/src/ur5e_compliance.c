@@ -16,6 +16,9 @@
 /* A mode of less than this share of all squared periods has no digits left. */
 #define NOISE (UR5E_R(8.0)*UR5E_EPSILON)
 
+/* Square of what may be left beside the diagonal of a compliance: energies change by less than its root. */
+#define SMALL UR5E_R(1e-8)
+
 #if UR5E_STRUCTURED
 /* S, R and b. */
 typedef struct {
@@ -48,7 +51,7 @@ static int spring_modes(ur5e_matrix C, const ur5e_real b[UR5E_N], ur5e_modes *mo
     for (int i = 0; i < UR5E_N; ++i) {
         all += C[i][i];
     }
-    if (!ur5e_spectrum(UR5E_N, C, squares, vectors)) {
+    if (!ur5e_spectrum(UR5E_N, SMALL, C, squares, vectors)) {
         return UR5E_SINGULAR;
     }
     const ur5e_real least = NOISE*all;
@@ -61,9 +64,6 @@ static int spring_modes(ur5e_matrix C, const ur5e_real b[UR5E_N], ur5e_modes *mo
         for (int j = 0; j < UR5E_N; ++j) {
             row += vectors[i][j]*b[j];
             modes->shape[at][j] = vectors[i][j]*rate;
-        }
-        for (int j = UR5E_N; j < UR5E_SYSTEM; ++j) {
-            modes->shape[at][j] = UR5E_R(0.0);
         }
         modes->squared[at] = squared;
         modes->row[at] = row*rate;
@@ -94,9 +94,10 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
 int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real carried[UR5E_N])
 {
+    const int end = UR5E_N - 1;
     spring_scaled s;
-    ur5e_matrix G;
-    ur5e_matrix Y; /* columns of L_G^-1 L' */
+    ur5e_matrix G; /* from its end to its start: so Cholesky's factors are upper ones, G = U U' */
+    ur5e_matrix Y; /* columns of U^-1 L', upper triangular as both are */
     ur5e_matrix C;
     ur5e_real z[UR5E_N];
     scale_by_springs(arrival, p, &s);
@@ -105,7 +106,7 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     }
     for (int i = 0; i < UR5E_N; ++i) {
         z[i] = s.b[i];
-        ur5e_real stiff[UR5E_N] = {0};
+        ur5e_real stiff[UR5E_N];
         for (int l = i; l < UR5E_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }
@@ -114,30 +115,36 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
             for (int l = i; l < UR5E_N; ++l) {
                 sum += stiff[l]*s.S[l][j];
             }
-            G[i][j] = sum;
+            G[end - j][end - i] = sum;
         }
     }
     if (!ur5e_cholesky(UR5E_N, G)) {
         return UR5E_SINGULAR;
     }
     ur5e_forward(UR5E_N, s.S, z);
-    ur5e_forward(UR5E_N, G, z);
+    for (int i = end; i >= 0; --i) {
+        for (int m = i + 1; m < UR5E_N; ++m) {
+            z[i] -= G[end - i][end - m]*z[m];
+        }
+        z[i] /= G[end - i][end - i];
+    }
     ur5e_real together = UR5E_R(0.0);
     for (int i = 0; i < UR5E_N; ++i) { /* column i of L' ends at its row i */
         ur5e_real sum = UR5E_R(0.0);
-        for (int l = 0; l < UR5E_N; ++l) {
-            ur5e_real rest = l <= i ? s.S[i][l] : UR5E_R(0.0);
-            for (int m = 0; m < l; ++m) {
-                rest -= G[l][m]*Y[i][m];
+        for (int l = i; l >= 0; --l) {
+            const ur5e_real *const U = G[end - l];
+            ur5e_real rest = s.S[i][l];
+            for (int m = l + 1; m <= i; ++m) {
+                rest -= U[end - m]*Y[i][m];
             }
-            Y[i][l] = rest/G[l][l];
+            Y[i][l] = rest/U[end - l];
             sum += Y[i][l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
         for (int j = 0; j <= i; ++j) {
             ur5e_real entry = UR5E_R(0.0);
-            for (int l = 0; l < UR5E_N; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 entry += Y[i][l]*Y[j][l];
             }
             C[i][j] = entry;

@@ -9,57 +9,65 @@
  */
 #include "ur5e_state.h"
 
-/* Halley's iterations, and the relative change after which the next would be nothing. */
+/* Halley's iterations, and the relative change after which the next, a fourth of its cube, is nothing. */
 #define ITERATIONS 8
-#define CLOSE UR5E_R(0.01)
+#define CLOSE UR5E_R(0.03)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
 
 void ur5e_damp(const ur5e_phase *phase, ur5e_real speed, ur5e_real time, ur5e_real *rate)
 {
-    ur5e_real halfway[UR5E_MODES];
-    for (int round = 0; round < 2; ++round) {
-        const ur5e_real span = round == 0 ? UR5E_R(0.5)*time : time;
-        const ur5e_real *const from = round == 0 ? rate : halfway;
-        ur5e_real torque[UR5E_DAMPERS];
+    const ur5e_modes *const modes = &phase->modes;
+    ur5e_real turned[UR5E_DAMPERS];
+    ur5e_real impulse[UR5E_DAMPERS]; /* of each damper, to first and then to second order */
+    for (int j = 0; j < UR5E_DAMPERS; ++j) {
+        turned[j] = UR5E_R(0.0);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const ur5e_real *const shape = &modes->shape[i][UR5E_SYSTEM - UR5E_DAMPERS];
+        const ur5e_real led = rate[i] - speed*modes->start[i];
         for (int j = 0; j < UR5E_DAMPERS; ++j) {
-            const int place = UR5E_SYSTEM - UR5E_DAMPERS + j;
-            ur5e_real turned = UR5E_R(0.0);
-            for (int i = 0; i < phase->active; ++i) {
-                turned += phase->modes.shape[i][place]*(from[i] - speed*phase->modes.start[i]);
-            }
-            torque[j] = span*phase->damping[j]*turned;
+            turned[j] += shape[j]*led;
         }
-        for (int i = 0; i < phase->active; ++i) {
-            ur5e_real change = UR5E_R(0.0);
-            for (int j = 0; j < UR5E_DAMPERS; ++j) {
-                change += phase->modes.shape[i][UR5E_SYSTEM - UR5E_DAMPERS + j]*torque[j];
-            }
-            if (round == 0) {
-                halfway[i] = rate[i] - change;
-            } else {
-                rate[i] -= change;
-            }
+    }
+    for (int j = 0; j < UR5E_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int j = 0; j < UR5E_DAMPERS; ++j) {
+        ur5e_real slowed = UR5E_R(0.0);
+        for (int k = 0; k < UR5E_DAMPERS; ++k) {
+            slowed += phase->together[j][k]*impulse[k];
         }
+        turned[j] -= UR5E_R(0.5)*slowed;
+    }
+    for (int j = 0; j < UR5E_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const ur5e_real *const shape = &modes->shape[i][UR5E_SYSTEM - UR5E_DAMPERS];
+        ur5e_real change = UR5E_R(0.0);
+        for (int j = 0; j < UR5E_DAMPERS; ++j) {
+            change += shape[j]*impulse[j];
+        }
+        rate[i] -= change;
     }
 }
 
 void ur5e_glide(const ur5e_state *s, ur5e_trial *t)
 {
     const ur5e_phase *const phase = s->phase;
-    const ur5e_level *const level = &phase->level[s->level];
+    const ur5e_level *const level = s->step;
     const ur5e_real *rate = s->rate;
     ur5e_real damped[UR5E_MODES];
     if (phase->damped) {
         for (int i = 0; i < phase->active; ++i) {
             damped[i] = s->rate[i];
         }
-        ur5e_damp(phase, s->speed, UR5E_R(0.5)*level->h, damped);
+        ur5e_damp(phase, s->speed, s->owed + UR5E_R(0.5)*level->h, damped);
         rate = damped;
     }
-    const ur5e_real drift = phase->drift*s->speed;
-    ur5e_real x = s->drifted + drift*level->h;
-    ur5e_real v = drift;
+    ur5e_real x = s->drifted + s->drift*level->h;
+    ur5e_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
         const ur5e_mode_step *const step = &level->mode[i];
         const ur5e_real a = s->amplitude[i];
@@ -98,7 +106,7 @@ static ur5e_real root_of(ur5e_real depth, ur5e_real cubic, ur5e_real guess)
 static void set_pace(ur5e_state *s)
 {
     const ur5e_region *const region = s->impact->region;
-    const ur5e_level *const level = &s->phase->level[s->level];
+    const ur5e_level *const level = s->step;
     const ur5e_real one = UR5E_R(1.0);
     ur5e_pace *const pace = &s->pace;
     ur5e_real ratio = UR5E_R(0.0);
@@ -131,7 +139,7 @@ void ur5e_press(ur5e_state *s, ur5e_trial *t)
 {
     const ur5e_region *const region = s->impact->region;
     const ur5e_phase *const phase = s->phase;
-    const ur5e_level *const level = &phase->level[s->level];
+    const ur5e_level *const level = s->step;
     const ur5e_pace *const pace = &s->pace;
     if (s->even < LIKE) {
         set_pace(s);
@@ -144,16 +152,15 @@ void ur5e_press(ur5e_state *s, ur5e_trial *t)
     const ur5e_real v = t->v - level->kick[0]*first - level->kick[1]*t->base;
     const ur5e_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
     const ur5e_real pressed = region->stiffness*x + region->damping*slip;
-    t->f = UR5E_R(0.0);
-    t->u = UR5E_R(0.0);
-    t->root = UR5E_R(0.0);
-    t->depth = UR5E_R(0.0);
     if (pressed > UR5E_R(0.0)) {
         if (region->law == NULL) {
-            t->root = root_of(pressed/pace->hold, region->hertz_stiffness*pace->soft/pace->hold, s->root);
+            const ur5e_real per = UR5E_R(1.0)/pace->hold;
+            const ur5e_real guess = s->root + pace->ratio*(s->root - s->root_before);
+            t->root = root_of(pressed*per, region->hertz_stiffness*pace->soft*per, guess);
             t->depth = t->root*t->root;
             t->f = region->hertz_stiffness*t->root*t->depth;
         } else {
+            t->root = UR5E_R(0.0);
             t->f = ur5e_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
         }
         t->u = t->depth + phase->compliance*t->f;
@@ -165,13 +172,17 @@ void ur5e_press(ur5e_state *s, ur5e_trial *t)
         t->share = UR5E_R(0.0);
         t->x -= level->push[0]*(s->f + t->base) + level->push[1]*t->base;
         t->bump = UR5E_R(0.0);
+        t->f = UR5E_R(0.0);
+        t->u = UR5E_R(0.0);
+        t->root = UR5E_R(0.0);
+        t->depth = UR5E_R(0.0);
     }
 }
 
 void ur5e_take(const ur5e_trial *t, ur5e_state *s)
 {
     const ur5e_phase *const phase = s->phase;
-    const ur5e_level *const level = &phase->level[s->level];
+    const ur5e_level *const level = s->step;
     const ur5e_real first = s->f + t->base - t->share*t->f;
     const ur5e_real last = t->base + (UR5E_R(1.0) - t->share)*t->f;
     for (int i = 0; i < phase->active; ++i) {

@@ -78,6 +78,7 @@ typedef struct {
     ur5e_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     ur5e_real damping[UR5E_DAMPERS];
+    ur5e_real together[UR5E_DAMPERS][UR5E_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     ur5e_level level[UR5E_LEVELS];
 } ur5e_phase;
@@ -121,7 +122,6 @@ typedef struct {
 typedef struct {
     ur5e_real force; /* largest, N */
     ur5e_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } ur5e_peak;
@@ -243,7 +243,10 @@ void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x);
  * below `noise` count as none. False if that does not end.
  */
 bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X, ur5e_real noise);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool ur5e_spectrum(int size, ur5e_matrix A, ur5e_real *values, ur5e_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, ur5e_matrix vectors);
 
 #endif

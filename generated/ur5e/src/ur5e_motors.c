@@ -11,7 +11,7 @@
 /* Share of the largest entry that rounding leaves of one that should be none. */
 #define NOISE (UR5E_R(8.0)*UR5E_EPSILON)
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
 {
     if (!ur5e_cholesky(size, mass)) {
@@ -22,7 +22,7 @@ static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? UR5E_R(1.0) : UR5E_R(0.0);
         }
-        ur5e_backward(size, mass, column);
+        ur5e_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -30,21 +30,21 @@ static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
     return true;
 }
 
-/* A = X'KX; returns the noise in its entries. */
+/* A = X'KX of such an X; returns the noise in its entries. */
 static ur5e_real congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A)
 {
     ur5e_real largest = UR5E_R(0.0);
     for (int i = 0; i < size; ++i) {
         ur5e_real pulled[UR5E_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = UR5E_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             ur5e_real sum = UR5E_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -55,6 +55,7 @@ static ur5e_real congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A
     return NOISE*largest;
 }
 
+#if !UR5E_STRUCTURED
 /* Takes over the eigenvectors X, over the coordinates `places`. */
 static void take_over(int size, const int *places, ur5e_matrix A, ur5e_matrix X, const ur5e_real *row,
     ur5e_modes *modes)
@@ -76,6 +77,7 @@ static void take_over(int size, const int *places, ur5e_matrix A, ur5e_matrix X,
     modes->rigid = 0;
     modes->fastest = UR5E_REAL_MAX;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const ur5e_arrival *arrival, ur5e_real pull[UR5E_SYSTEM])
@@ -188,31 +190,38 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
 int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real *drift)
 {
-    ur5e_matrix mass;
-    ur5e_matrix K;
+    ur5e_matrix mass; /* and then X'KX */
+    ur5e_matrix K; /* and then eigenvectors of that, its rows */
     ur5e_matrix X;
-    ur5e_matrix A;
-    int places[UR5E_SYSTEM];
-    ur5e_real row[UR5E_SYSTEM];
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < UR5E_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < UR5E_N ? arrival->row[i] : UR5E_R(0.0);
-    }
     for (int i = 0; i < UR5E_N; ++i) {
         const int motor = UR5E_SYSTEM - UR5E_N + i;
         K[motor][motor] += UR5E_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(UR5E_SYSTEM, mass, X)) {
         return UR5E_SINGULAR;
     }
-    const ur5e_real noise = congruent(UR5E_SYSTEM, K, X, A);
-    if (!ur5e_diagonalise(UR5E_SYSTEM, A, X, noise)) {
+    modes->noise = congruent(UR5E_SYSTEM, K, X, mass);
+    if (!ur5e_spectrum(UR5E_SYSTEM, UR5E_EPSILON*UR5E_EPSILON, mass, modes->squared, K)) {
         return UR5E_SINGULAR;
     }
-    take_over(UR5E_SYSTEM, places, A, X, row, modes);
-    modes->noise = noise;
+    for (int i = 0; i < UR5E_SYSTEM; ++i) {
+        ur5e_real row = UR5E_R(0.0);
+        for (int j = 0; j < UR5E_SYSTEM; ++j) {
+            ur5e_real shape = UR5E_R(0.0);
+            for (int k = j; k < UR5E_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape;
+            row += j < UR5E_N ? arrival->row[j]*shape : UR5E_R(0.0);
+        }
+        modes->row[i] = row;
+        modes->start[i] = UR5E_R(0.0);
+    }
+    modes->count = UR5E_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = UR5E_REAL_MAX;
     *drift = UR5E_R(1.0);
     ur5e_real pull[UR5E_SYSTEM];
     pulled_on(arrival, pull);
