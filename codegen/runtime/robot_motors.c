@@ -191,8 +191,8 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
     robot_real *drift)
 {
     robot_matrix mass; /* and then X'KX */
-    robot_matrix K; /* and then eigenvectors of that, its rows */
     robot_matrix X;
+    robot_real (*const K)[ROBOT_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < ROBOT_N; ++i) {
@@ -210,10 +210,10 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
         robot_real row = ROBOT_R(0.0);
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
             robot_real shape = ROBOT_R(0.0);
-            for (int k = j; k < ROBOT_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+            for (int k = j; k < ROBOT_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
-            modes->shape[i][j] = shape;
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < ROBOT_N ? arrival->row[j]*shape : ROBOT_R(0.0);
         }
         modes->row[i] = row;

@@ -34,7 +34,6 @@ typedef struct {
     robot_real f, rise; /* force, and by how much it grew in the last step */
     robot_real u, u_before; /* deformation of the skin and of what stands */
     robot_real now; /* depth of the skin */
-    robot_real root, root_before; /* of it, where it is Hertz's */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
     robot_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -56,7 +55,7 @@ typedef struct {
     robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
     robot_real x, v; /* of the contact point without the force at the end */
     robot_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    robot_real u, depth, root;
+    robot_real u, depth;
 } robot_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */
@@ -64,6 +63,8 @@ void robot_begin_phase(const robot_phase *phase, int level, robot_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate);
+/* Rates of modes, damped until halfway through the next step. */
+void robot_damp_ahead(const robot_state *s, robot_real *rate);
 
 /* Moves all modes by a step without forces. */
 void robot_glide(const robot_state *s, robot_trial *t);

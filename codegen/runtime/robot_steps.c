@@ -112,53 +112,31 @@ static void mode_steps(robot_phase *phase)
     for (int k = ROBOT_LEVELS - 1; k >= 0; --k) {
         robot_level *const level = &phase->level[k];
         const robot_real per = one/h;
-        robot_real pushes[2] = {ROBOT_R(0.0), ROBOT_R(0.0)};
-        robot_real kicks[2] = {ROBOT_R(0.0), ROBOT_R(0.0)};
+        robot_real pushes = ROBOT_R(0.0);
+        robot_real lates = ROBOT_R(0.0);
+        robot_real kicks = ROBOT_R(0.0);
         for (int i = 0; i < phase->active; ++i) {
             robot_mode_step *const step = &level->mode[i];
             const robot_real row = modes->row[i];
             const robot_real cosine = one - modes->squared[i]*push[i];
-            const robot_real kick = push[i]*per;
             step->cosine = cosine;
             step->sine = sine[i];
             step->back = -modes->squared[i]*sine[i];
-            step->push[0] = row*(push[i] - late[i]);
-            step->push[1] = row*late[i];
-            step->kick[0] = row*(sine[i] - kick);
-            step->kick[1] = row*kick;
-            pushes[0] += row*step->push[0];
-            pushes[1] += row*step->push[1];
-            kicks[0] += row*step->kick[0];
-            kicks[1] += row*step->kick[1];
-            late[i] += sine[i]*kick;
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
             push[i] = ROBOT_R(2.0)*sine[i]*sine[i];
             sine[i] *= ROBOT_R(2.0)*cosine;
         }
-        level->push[0] = pushes[0];
-        level->push[1] = pushes[1];
-        level->kick[0] = kicks[0];
-        level->kick[1] = kicks[1];
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* How dampers act on each other; returns the most that joints and a servo's gains damp, 1/s. */
-static robot_real damping_rate(robot_phase *phase)
-{
-    robot_real rate = ROBOT_R(0.0);
-    for (int i = 0; i < ROBOT_DAMPERS && phase->damped; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            robot_real sum = ROBOT_R(0.0);
-            for (int k = 0; k < phase->modes.count; ++k) {
-                const robot_real *const shape = &phase->modes.shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS];
-                sum += shape[i]*shape[j];
-            }
-            phase->together[i][j] = sum;
-            phase->together[j][i] = sum;
-        }
-        rate = ROBOT_FMAX(rate, phase->damping[i]*phase->together[i][i]);
-    }
-    return rate;
 }
 
 void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase *phase)
@@ -193,7 +171,7 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
     const robot_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : ROBOT_R(0.0);
     const robot_real slowest = ROBOT_FMAX(ROBOT_R(1.0)/time, rise);
-    const robot_real rate = ROBOT_FMAX(slowest, ROBOT_FMAX(ROBOT_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const robot_real rate = ROBOT_FMAX(slowest, ROBOT_FMAX(ROBOT_SQRT(rate2), robot_damping_rate(phase)/SERVO_STEP));
     const robot_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const robot_real h = wanted < MOST ? time/(robot_real)phase->steps : ROBOT_R(1.0)/rate;
