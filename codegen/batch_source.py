@@ -13,7 +13,6 @@ from functools import cached_property
 
 import numpy as np
 
-from . import wide_sine
 from .inputs import SCALARS
 from .interface import SIZES, CVariable, Entry, interface_of
 from .render import Package, Templates
@@ -32,7 +31,7 @@ def batch_sources(package: Package, header: str, show: Templates) -> dict[str, s
     """
     name, closed = package.prefix, {f.function.name: f for f in package.functions}
     interface = interface_of(header, name)
-    files = {f"batch/{name}_lanes.h": show("batch/lanes.h", wide=wide_sine)}
+    files = {f"batch/{name}_lanes.h": show("batch/lanes.h")}
     for entry in interface.entries.values():
         if is_mapped(entry):
             source = closed.get(entry.name)

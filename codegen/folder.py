@@ -35,11 +35,19 @@ class FolderNotWritable(SoftImpactError):
 
 
 @contextmanager
-def refusals(folder: Path) -> Iterator[None]:
-    """Raise FolderNotWritable for what the operating system refuses."""
+def refusals(folder: Path, inside: Path | None = None) -> Iterator[None]:
+    """Raise FolderNotWritable for what the operating system refuses.
+
+    Args:
+        folder: that is to be written.
+        inside: what another file than one in here meets goes on as it is; a full disk has no file.
+    """
     try:
         yield
     except OSError as error:
+        name = error.filename
+        if inside and name is not None and not Path(name).is_relative_to(inside):
+            raise
         raise FolderNotWritable(folder, error.strerror or str(error)) from error
 
 
@@ -59,7 +67,8 @@ def replaced(folder: Path, check: FolderCheck) -> Iterator[Path]:
     with refusals(folder):
         fresh = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     try:
-        yield fresh
+        with refusals(folder, fresh):
+            yield fresh
         with refusals(folder):
             fresh.chmod(0o755)  # temporary folders are private, results are not
             _exchange(folder, fresh)

@@ -77,6 +77,7 @@ SCALARS = (
     Parameter("speed", "m/s", "of approach along n", POSITIVE),
     Parameter("restitution", "dimensionless", "e: 0 no rebound, 1 elastic", SHARE),
     Parameter("other_mobility", "1/kg", "1/mass of what is hit; 0 if it is held", NOT_NEGATIVE),
+    Parameter("duration", "s", "from first touch to the peak, or to the reaction", NOT_NEGATIVE),
 )
 """Arguments of their own, which some functions take between n and the parameters."""
 

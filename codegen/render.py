@@ -15,7 +15,7 @@ import softimpact
 from softimpact.symbolic import REGIONS, JointKind, Robot, closed_chain
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 
-from . import sine
+from . import sine, wide_sine
 from .bindings import bindings
 from .configuration_source import ConfigurationSource
 from .contacts import BuiltIn
@@ -199,6 +199,7 @@ class Templates:
             "version": softimpact.__version__,
             "scalars": SCALARS,
             "sine": sine,
+            "wide": wide_sine,
             "regions": list(REGIONS.values()),
             "hertz_stiffness": HERTZ_STIFFNESS,
             "most_law_points": MOST_POINTS,

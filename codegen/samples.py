@@ -38,6 +38,7 @@ DRAWN = {
     "speed": (1, 128, 64),
     "restitution": (0, 64, 64),
     "other_mobility": (0, 64, 64),
+    "duration": (0, 64, 1024),
 }
 """Least and largest numerator of other numbers sampled, and their denominator."""
 
@@ -56,7 +57,7 @@ class Sample:
     q: tuple[float, ...]
     n: tuple[float, ...]
     parameters: tuple[tuple[float, ...], ...]
-    scalars: tuple[float, ...] = (1.0, 0.0, 0.0)
+    scalars: tuple[float, ...] = (1.0, 0.0, 0.0, 0.02)
 
 
 def draw_samples(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Numbers of the sine and cosine in double precision that many calls side by side use.
+"""Numbers of the sine and cosine in double precision.
 
 As in ``sine``, with which it shares the form: three parts of a quarter turn whose products with
 up to a hundred thousand quarter turns are exact, and polynomials of (sin r − r)/r³ and
@@ -12,6 +12,9 @@ LIMIT = 1e5
 """Angle [rad] from which on the C library is asked."""
 
 PER_QUARTER = 0.6366197723675814
+
+ADDED = 65536.0
+"""As in ``sine``."""
 
 QUARTER = (1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21)
 """The first two have 33 bits."""

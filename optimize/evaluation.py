@@ -70,12 +70,12 @@ def _equipped(
 def figures(
     bound: Bound, study: Study, q: Array, springs: Array, others: Array | None = None
 ) -> Array:
-    """Return a bound's figures in a posture, in its unit.
+    """Return a bound's figures in a posture, in its unit; a row for each of several.
 
     Args:
         bound: of the study or another.
         study: robot, motions and margin.
-        q: link angles, length n [rad].
+        q: link angles, length n, or m×n [rad].
         springs: stiffness of each spring [N·m/rad].
         others: values of the study's other variables; default the machine as it is.
     """
@@ -87,7 +87,8 @@ def figures(
     if others is None or not size:
         parts = [variable.range(study.model).start for variable in study.other_variables]
         others = np.concatenate(parts) if parts else np.empty(0)
-    return np.array(function(q, springs, others)).ravel()
+    found = np.array(function(np.transpose(q), springs, others))
+    return found.T if np.ndim(q) > 1 else found.ravel()
 
 
 @lru_cache(maxsize=64)
@@ -111,6 +112,17 @@ def kept(study: Study, q: Array, springs: Array, others: Array | None = None) ->
     return [_kept(bound, figures(bound, study, q, springs, others)) for bound in study.bounds]
 
 
+def kept_in_all(
+    study: Study, postures: Array, springs: Array, others: Array | None = None
+) -> list[list[Kept]]:
+    """Return ``kept`` of each of some postures, m×n."""
+    columns = [
+        [_kept(bound, row) for row in figures(bound, study, postures, springs, others)]
+        for bound in study.bounds
+    ]
+    return [list(row) for row in zip(*columns, strict=True)]
+
+
 def _kept(bound: Bound, found: Array) -> Kept:
     pick: Callable[[Array], float] = np.max if bound.sense == "most" else np.min
     figure = float(pick(found)) if found.size else (0.0 if bound.sense == "most" else np.inf)
@@ -127,8 +139,12 @@ def largest_share(study: Study, q: Array, springs: Array, others: Array | None =
 
 
 def keeps_bounds(study: Study, q: Array, springs: Array, others: Array | None = None) -> bool:
-    """Return whether all bounds are kept in a posture, as nearly as searches keep them."""
-    return largest_share(study, q, springs, others) <= 1 + FEASIBLE
+    """Return whether all bounds are kept, as nearly as searches keep them; in all postures of m×n.
+
+    Arguments as ``figures``.
+    """
+    each = kept_in_all(study, np.atleast_2d(q), springs, others)
+    return not any(one.broken for row in each for one in row)
 
 
 def largest_deflection(

@@ -69,7 +69,7 @@ def _print(found: FactorStudy, folder: Path) -> None:
         )
     print_table(
         f"GIAF over {len(found.names)} poses of {found.study.robot.name}",
-        ("tip", "rotors", "least", "most", "most on the self-motion", "joint that matters most"),
+        ("tip", "rotors", "least", "most", "most on the\nself-motion", "joint that\nmatters most"),
         rows,
     )
     say(f"\nResults and figures: {folder}")

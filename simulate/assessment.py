@@ -49,8 +49,8 @@ class Assessment(Record):
             in a linear model, which lets it have that.
         band: of the impact for what is not known exactly; None if not asked for.
         linear_error: share of the force by which a linear model may be off, see ``linear_error``;
-            None for other models and closed chains. Beyond ``TRUSTED`` the nonlinear robot was
-            simulated, too, and the worse of both counts.
+            None for other models and closed chains. Beyond ``TRUSTED``, and where it may break a
+            limit, the nonlinear robot was simulated, too, and the worse of both counts.
         warnings: what was assumed for want of a number, a line each.
     """
 
@@ -150,19 +150,20 @@ def assess_impact(
         for name, end in ends.items()
     }
     error = largest_linear_error(model, approach, found)
-    if not_trusted(error):
+    limits = limits_of(contact.region, contact.clamped, shape)
+
+    def harm(history: ImpactHistory) -> tuple[float, float]:
+        return _verdict(limits, history).share, history.peak
+
+    if not_trusted(error, max(harm(history)[0] for history in found.values())):
         warnings.append(f"the linear model may be off by {100 * error:.0f} %: {CHECKED}")
         by_full = by_full_order(model, approach, contact, ends, horizon, tolerance)
-        found = {k: max(h, by_full[k], key=lambda each: each.peak) for k, h in found.items()}
-    limits = limits_of(contact.region, contact.clamped, shape)
-    worst = max(found, key=lambda name: (_verdict(limits, found[name]).share, found[name].peak))
+        found = {k: max(h, by_full[k], key=harm) for k, h in found.items()}
+    worst = max(found, key=lambda name: harm(found[name]))
     formula = two_body(contact.region, contact.clamped, moving_mass(model.robot) - payload, payload)
     speeds = None
     if safe_speed:
-        allowed = force_limits(limits)
-        speeds, lines = safe_speeds(
-            model, approach, contact, allowed, ends, run, is_checked=not_trusted(error)
-        )
+        speeds, lines = safe_speeds(model, approach, contact, force_limits(limits), ends, run)
         warnings += lines
     return Assessment(
         ends=found,

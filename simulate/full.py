@@ -179,18 +179,33 @@ def _column(vector: Matrix) -> Array:
     return np.array(vector, dtype=float).ravel()
 
 
-def _balance(model: ImpactModel, q: Array) -> Array:
-    """Torques that hold the robot at q; joints without a motor must need none."""
+def holding_torques(model: ImpactModel, q: Array) -> tuple[Array, dict[str, float]]:
+    """Return torques that hold the robot at q, and those that joints without a motor lack, by name.
+
+    Args:
+        model: the robot.
+        q: link angles, length n.
+    """
     G = np.array(loop_tangent(model.robot, ca.DM(q)))
     torques = G.T @ _column(gravity_torques(model.robot, q, model.gravity))
-    for i, actuated, torque in zip(model.independent, model.actuated, torques, strict=True):
-        if not actuated and abs(torque) > AT_REST:
-            raise InvalidValue(
-                "q",
-                f"joint '{model.robot.joint_names[i]}' has no motor and is not at rest there "
-                f"(torque {torque:.3g} N·m); choose its equilibrium",
-            )
-    return np.asarray(torques)
+    lacking = {
+        model.robot.joint_names[i]: float(torque)
+        for i, actuated, torque in zip(model.independent, model.actuated, torques, strict=True)
+        if not actuated and abs(torque) > AT_REST
+    }
+    return torques, lacking
+
+
+def _balance(model: ImpactModel, q: Array) -> Array:
+    """Torques that hold the robot at q; joints without a motor must need none."""
+    torques, lacking = holding_torques(model, q)
+    for name, torque in lacking.items():
+        raise InvalidValue(
+            "q",
+            f"joint '{name}' has no motor and is not at rest there (torque {torque:.3g} N·m); "
+            "choose its equilibrium",
+        )
+    return torques
 
 
 def _gains(model: ImpactModel, q: Array) -> Array:

@@ -83,6 +83,15 @@ class Danger:
         """Factor on the program's speed that keeps the limits, in (0, 1]."""
         return np.minimum(1.0, self.safe_speed / self.speed)
 
+    def lowered(self, share: float) -> Danger:
+        """Return what may be met at a share of the speeds that are safe.
+
+        The program's own speed counts as safe up to that share of the limits only.
+        """
+        own = np.where(self.share > share, self.speed, np.inf)
+        safe = np.where(self.safe_speed < np.inf, self.safe_speed, own)
+        return replace(self, safe_speed=np.asarray(share * safe))
+
 
 @dataclass(frozen=True, eq=False)
 class SafeProgram:

@@ -8,34 +8,54 @@ from dataclasses import replace
 from math import inf
 from typing import Any, TypeGuard
 
+import numpy as np
+
 from softimpact.symbolic import Contact, ImpactModel, Motors
 
 from .arrival import Approach
 from .controller import Controller
+from .full import holding_torques
 from .history import ImpactHistory
 from .impact import simulate_impact
 from .linear_error import linear_error
-from .safe_speed import ForceLimits, largest_safe_speed
+from .safe_speed import ACCURACY, ForceLimits, largest_safe_speed, share_of_limit
 
 TRUSTED = 0.1
-"""Error that a linear model may have before the nonlinear one is asked, too: what is not known of
+"""Error that a linear force may have before the nonlinear robot is asked, too: what is not known of
 robots and people makes for more (see ``Tolerances``)."""
+
+EXACT = 0.01
+"""Error up to which a linear model's verdict or safe speed counts as exact."""
 
 CHECKED = "the nonlinear robot was simulated, too, and the worse of both counts"
 
 
-def not_trusted(error: float | None) -> TypeGuard[float]:
-    """Whether a linear model may be off by so much that the nonlinear robot is asked, too."""
-    return error is not None and error > TRUSTED
+def not_trusted(error: float | None, share: float = 0.0) -> TypeGuard[float]:
+    """Whether a linear model may be off by so much that the nonlinear robot is asked, too.
+
+    Args:
+        error: of the force, as a share; None where it is not known.
+        share: of the limits that is used: energy, at most, goes with the force's square.
+    """
+    if error is None:
+        return False
+    may_flip = error > EXACT and share <= 1 < share * (1 + error) ** 2
+    return error > TRUSTED or may_flip
 
 
 def largest_linear_error(
     model: ImpactModel, approach: Approach, found: Mapping[str, ImpactHistory]
 ) -> float | None:
-    """Return the share by which a linear model may be off; None where that is not known."""
+    """Return the share by which a linear model may be off; None where that is not known.
+
+    It is not of closed chains, nor of joints without a motor that are not at rest, which the
+    nonlinear robot would leave.
+    """
+    if model.robot.loops or holding_torques(model, np.asarray(approach.q, dtype=float))[1]:
+        return None
     errors = []
     for history in found.values():
-        if history.fidelity not in ("chain", "linearised") or model.robot.loops:
+        if history.fidelity not in ("chain", "linearised"):
             return None
         reaction = 0.0 if history.motors is None else history.motors.reaction_time
         late = max(history.time_of_peak, reaction if reaction < inf else 0.0)
@@ -67,29 +87,42 @@ def safe_speeds(
     allowed: ForceLimits,
     ends: Mapping[str, Motors | Controller | None],
     run: Mapping[str, Any],
-    *,
-    is_checked: bool,
 ) -> tuple[dict[str, float], list[str]]:
-    """Return the safe speed at each end, and a line if the nonlinear robot was asked for it alone.
+    """Return the safe speed at each end, and a line if the linear model is not to be trusted there.
 
-    It is, where the linear model is not to be trusted at the impact's speed (``is_checked``), or
-    at the safe speed, which may be higher.
+    The nonlinear robot is asked at the safe speed, which may be higher than the impact's.
     """
     speeds: dict[str, float] = {}
     lines: list[str] = []
     for name, end in ends.items():
         speed = largest_safe_speed(model, approach, contact, allowed, motors=end, **run)
         at = replace(approach, speed=speed)
-        error = None
-        if not is_checked:
-            there = simulate_impact(model, at, contact, motors=end, **run)
-            error = largest_linear_error(model, at, {name: there})
-        if is_checked or not_trusted(error):
-            full = {**run, "fidelity": "full"}
-            slower = largest_safe_speed(model, at, contact, allowed, motors=end, **full)
-            speed = min(speed, slower)
-        if not_trusted(error) and not lines:
+        there = simulate_impact(model, at, contact, motors=end, **run)
+        error = largest_linear_error(model, at, {name: there})
+        speeds[name] = nonlinear_safe_speed(model, at, contact, allowed, end, run, error)
+        if error is not None and not lines and (error > TRUSTED or speeds[name] < speed):
             off = f"at the safe speed the linear model may be off by {100 * error:.0f} %"
             lines.append(f"{off}: {CHECKED}")
-        speeds[name] = speed
     return speeds, lines
+
+
+def nonlinear_safe_speed(
+    model: ImpactModel,
+    approach: Approach,
+    contact: Contact,
+    allowed: ForceLimits,
+    end: Motors | Controller | None,
+    run: Mapping[str, Any],
+    error: float | None,
+) -> float:
+    """Return the approach's speed if the nonlinear robot keeps its limits, else the largest it may.
+
+    It is not asked where the linear model's error counts as none, or is not known.
+    """
+    if error is None or error <= EXACT:
+        return approach.speed
+    full = {**run, "fidelity": "full"}
+    history = simulate_impact(model, approach, contact, motors=end, **full)
+    if share_of_limit(history, allowed, "peak") <= 1 + ACCURACY:
+        return approach.speed
+    return largest_safe_speed(model, approach, contact, allowed, motors=end, **full)

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from . import options as o
+from .typed import But, TypedArm, TypedDrives
 
 if TYPE_CHECKING:
     from softimpact.symbolic import Analysis
@@ -19,21 +21,14 @@ NO_SPRING = 1e-9
 
 
 def analyze(
-    model: o.ModelArgument,
+    arm: Annotated[TypedArm, But(tip=None)],
+    drives: Annotated[
+        TypedDrives,
+        But(reaction_time=None, stopping_time=None, damping_gain=None, torque_limit=None),
+    ],
     q: o.ConfigurationOption,
     direction: o.DirectionsOption,
     tip: o.TipsOption = None,
-    end: o.EndOption = None,
-    lock: o.LockOption = None,
-    hold_base: o.HoldBaseOption = False,
-    payload: o.PayloadOption = None,
-    tool: o.ToolOption = None,
-    motors: o.MotorsOption = None,
-    joint_stiffness: o.JointStiffnessOption = None,
-    rotor_inertia: o.RotorInertiaOption = None,
-    position_gain: o.PositionGainOption = None,
-    computed_torque_gain: o.ComputedTorqueGainOption = None,
-    gear_ratio: o.GearRatioOption = None,
     gravity: o.GravityOption = None,
     motor_angles: o.MotorAnglesOption = False,
     order: o.OrderOption = 3,
@@ -46,24 +41,16 @@ def analyze(
     from softimpact.symbolic import analyse
 
     from .output import print_json, print_warnings
-    from .situation import Typed, TypedArm, TypedDrives, situation, unknown_rotors_line
-    from .typed_motors import TypedMotors, motors_meant
+    from .situation import Typed, situation, unknown_rotors_line
+    from .typed_motors import motors_meant
 
-    given = TypedDrives(
-        joint_stiffness,
-        rotor_inertia,
-        position_gain,
-        computed_torque_gain,
-        gear_ratio,
-        servo=motors == "servo",
-    )
-    known, _ = motors_meant(TypedMotors(motors), given)
+    known, _ = motors_meant(drives)
     law = None if known is None else known.kind
     points: list[str | None] = [*tip] if tip else [None]
     found, warnings = [], []
     for point, along in product(points, direction):
-        arm = TypedArm(model, point, end, lock, payload, tool, hold_base)
-        scene = situation(Typed(arm, q, along, given, gravity, motor_angles))
+        typed = Typed(replace(arm, tip=point), q, along, drives, gravity, motor_angles)
+        scene = situation(typed)
         found.append((scene, analyse(scene.model, scene.q, scene.direction, order, law)))
         warnings += [*scene.warnings, *unknown_rotors_line(scene.model)]
     warnings = list(dict.fromkeys(warnings))

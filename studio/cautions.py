@@ -12,9 +12,12 @@ from softimpact.symbolic import BodyRegion
 
 
 def not_permitted(regions: Iterable[BodyRegion]) -> Iterator[str]:
-    """Yield a line for each region with which contact is not to be designed for."""
+    """Yield a line for each region with which contact is not permitted."""
     for name in dict.fromkeys(region.name for region in regions if not region.permitted):
-        yield f"contact with '{name}' is not to be designed for; its limits are for reference"
+        yield (
+            f"contact with '{name}' is not permitted, whatever the force; its limits are for "
+            "reference"
+        )
 
 
 def study_warnings(study: Study) -> list[str]:

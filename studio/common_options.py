@@ -14,6 +14,8 @@ from typing import Annotated, Any
 
 import typer
 
+from .typed import groups_of
+
 LOGGER = logging.getLogger("softimpact")
 
 CsvOption = Annotated[bool, typer.Option("--csv", help="Print tables as CSV, numbers in full.")]
@@ -26,11 +28,12 @@ def common(command: Callable[..., None], waiting: str | None = None) -> Callable
     """Return a command with the options that all have.
 
     Args:
-        command: its parameters are the command line's.
+        command: its parameters are the command line's; groups of them stand in ``typed``.
         waiting: what it is about, shown on a terminal once it has taken two seconds; None where
             the command shows its progress itself.
     """
     own = inspect.signature(command, eval_str=True)
+    groups = groups_of(own.parameters)
 
     @wraps(command)
     def with_common(*, csv: bool, verbose: bool, **options: Any) -> None:
@@ -42,13 +45,17 @@ def common(command: Callable[..., None], waiting: str | None = None) -> Callable
         if csv and options.get("json"):
             raise InvalidValue("csv", "excludes json; give one of them")
         with spoken(command.__name__, verbose), tables_as_csv(csv), working(waiting):
-            command(**options)
+            command(**{name: group.taken(options) for name, group in groups.items()}, **options)
 
     ours = [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=kind)
         for name, kind in (("csv", CsvOption), ("verbose", VerboseOption))
     ]
-    parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in own.parameters.values()]
+    parameters = [
+        each.replace(kind=inspect.Parameter.KEYWORD_ONLY)
+        for name, parameter in own.parameters.items()
+        for each in (groups[name].parameters if name in groups else (parameter,))
+    ]
     with_common.__signature__ = own.replace(parameters=[*parameters, *ours])  # type: ignore[attr-defined]
     with_common.__annotations__ = {p.name: p.annotation for p in [*parameters, *ours]}
     return with_common

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from rich.console import Console
-
 from softimpact.optimize import Outcome
 from softimpact.optimize.study.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
@@ -20,7 +18,7 @@ from .design_report import (
     peak_in_words,
     reactions_in_words,
 )
-from .output import Cell, print_table, say
+from .output import Cell, print_table, say, tables_are_csv
 
 COLUMNS = (
     "rank",
@@ -36,8 +34,8 @@ COLUMNS = (
     "best k_s\nkN·m/rad",
 )
 
-WIDE = 118
-"""Columns of a terminal that hold the whole ranking of a seven-joint arm."""
+NARROW = 12
+"""Characters of the springs' column that 80 columns have room for: springs that are all equal."""
 
 
 def print_design(report: DesignReport) -> None:
@@ -45,17 +43,17 @@ def print_design(report: DesignReport) -> None:
     study = report.study
     contact = study.contact
     held = "clamped" if contact.clamped else "free to give way"
-    console = Console()
-    fits = not console.is_terminal or console.width >= WIDE
+    rows = [_row(pose) for pose in report.poses]
+    fits = tables_are_csv() or all(len(str(row[-1])) <= NARROW for row in rows)
     columns = COLUMNS if fits else COLUMNS[:-1]
     print_table(
         f"{study.title}\n{contact.region.title}, {held}, {study.speed:g} m/s; "
         f"{peak_in_words(study)}. Nominal: k_s = {_stiffness(study.nominal)} kN·m/rad",
         columns,
-        [_row(pose)[: len(columns)] for pose in report.poses],
+        [row[: len(columns)] for row in rows],
     )
     if not fits:
-        say(f"joint stiffness: in results.json, or here from {WIDE} columns on")
+        say("joint stiffness of each pose: --csv, or results.json")
     for line in [*_notes(report), *_winner(report)]:
         say(line)
 

@@ -9,20 +9,15 @@ from typing import Annotated, Any
 import typer
 
 from . import options as o
+from .typed import TypedArm, TypedDrives
 
 IMPULSES = "Impulses at the joints"
 
 
 def factors(
-    model: o.ModelArgument,
+    arm: TypedArm,
     q: o.ConfigurationOption,
     direction: o.DirectionOption,
-    tip: o.TipOption = None,
-    end: o.EndOption = None,
-    lock: o.LockOption = None,
-    hold_base: o.HoldBaseOption = False,
-    payload: o.PayloadOption = None,
-    tool: o.ToolOption = None,
     floating: Annotated[
         bool,
         typer.Option(
@@ -55,16 +50,14 @@ def factors(
     from .output import print_json, print_warnings
     from .situation import (
         Typed,
-        TypedArm,
-        TypedDrives,
         free_situation,
         situation,
         unknown_rotors_line,
     )
 
     given = TypedDrives(rotor_inertia=rotor_inertia, gear_ratio=gear_ratio)
-    typed = Typed(TypedArm(model, tip, end, lock, payload, tool, hold_base), q, direction, given)
-    if floating and hold_base:
+    typed = Typed(arm, q, direction, given)
+    if floating and arm.hold_base:
         raise InvalidValue("hold_base", "excludes floating; give one of them")
     scene = free_situation(typed) if floating else situation(typed)
     found = impact_factors(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from . import options as o
+from .typed import But, TypedArm, TypedDrives
 
 if TYPE_CHECKING:
     from softimpact.codegen import Manifest, Payload
@@ -21,24 +22,27 @@ NameOption = Annotated[
 ]
 PAYLOAD = "What the robot carries"
 
+DEFAULTS = But(
+    motors=None,
+    reaction_time=None,
+    stopping_time=None,
+    damping_gain=None,
+    computed_torque_gain=None,
+    torque_limit=None,
+)
+"""What a package is told with each impact, or has no default of."""
+
 MANY_JOINTS = 14
 """From here on a package takes ten seconds and more; what it takes grows with the square: 20 and
 30 joints in general position took 20 and 48 s, 370 and 650 MB, 5 and 11 MB of C."""
 
 
 def generate(
-    model: o.ModelArgument,
+    arm: Annotated[TypedArm, But(payload=None, tool=None)],
+    drives: Annotated[TypedDrives, DEFAULTS],
     out: o.OutOption,
-    tip: o.TipOption = None,
-    end: o.EndOption = None,
-    lock: o.LockOption = None,
-    hold_base: o.HoldBaseOption = False,
     real: RealOption = "double",
     name: NameOption = None,
-    joint_stiffness: o.JointStiffnessOption = None,
-    rotor_inertia: o.RotorInertiaOption = None,
-    position_gain: o.PositionGainOption = None,
-    gear_ratio: o.GearRatioOption = None,
     gravity: o.GravityOption = None,
     order: Annotated[
         int | None,
@@ -115,8 +119,6 @@ def generate(
     from .pose_table import pose_table
     from .progress import progress_bar
     from .situation import (
-        TypedArm,
-        TypedDrives,
         drives_of,
         gravity_of,
         loaded_arm,
@@ -125,13 +127,11 @@ def generate(
     from .values import one_of
 
     number: Real = one_of("number type", real, Real)
-    if floating and hold_base:
+    if floating and arm.hold_base:
         raise InvalidValue("hold_base", "excludes floating; give one of them")
-    typed = TypedArm(model, tip, end=end, lock=lock, hold_base=hold_base)
-    robot = whole_robot(model, tip) if floating else loaded_arm(typed).robot
+    robot = whole_robot(arm.model, arm.tip) if floating else loaded_arm(arm).robot
     print_warnings([*robot.warnings, *_left_out(robot)])
-    given = TypedDrives(joint_stiffness, rotor_inertia, position_gain, None, gear_ratio)
-    known = drives_of(robot, given)
+    known = drives_of(robot, drives)
     write = partial(
         generate_package,
         robot,
@@ -158,7 +158,7 @@ def generate(
             progress.update(task, description=what, completed=done, total=of)
 
         manifest = write(on_step=show)
-    if joint_stiffness is not None and not all(known.elastic):
+    if drives.joint_stiffness is not None and not all(known.elastic):
         print_warnings(["rigid joints have no default stiffness: joint_stiffness must be set"])
     if name is not None and name != manifest.name:
         print_warnings([f"'{name}' cannot begin C names; they begin with '{manifest.name}'"])

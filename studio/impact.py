@@ -27,7 +27,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from . import values
 from .situation import Situation, Typed, situation
-from .typed_motors import NOTHING_SAID, TypedMotors, motors_meant
+from .typed_motors import motors_meant
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,6 @@ class TypedImpact:
     fidelity: str = "linearised"
     joint_velocity: str | None = None
     peak: str = "peak"
-    motors: TypedMotors = NOTHING_SAID
     horizon: float | None = None
     safe_speed: bool = False
     band: bool = False
@@ -100,7 +99,9 @@ def impact(where: Typed, how: TypedImpact) -> Answer:
     fidelity: Fidelity = values.one_of("impact model", how.fidelity, Fidelity)
     definition: PeakDefinition = values.one_of("peak definition", how.peak, PeakDefinition)
     contact = contact_of(how.body)
-    motors, reaction = motors_meant(how.motors, where.drives)
+    motors, reaction = motors_meant(where.drives)
+    if how.pid is not None and where.drives.tell_motors:
+        raise InvalidValue("pid", "excludes --motors and its reaction")
     scene = situation(where)
     speed, velocity = _speed(scene, how)
     horizon = HORIZON if how.horizon is None else how.horizon
@@ -148,8 +149,6 @@ def controller_of(how: TypedImpact) -> Controller | None:
         if how.reference is not None:
             raise InvalidValue("reference", "is of the controller that --pid gives; give that too")
         return None
-    if how.motors != NOTHING_SAID:
-        raise InvalidValue("pid", "excludes --motors and its reaction")
     reference: ControllerReference = values.one_of(
         "reference of the motors", how.reference or "moving", ControllerReference
     )

@@ -13,7 +13,7 @@ from softimpact.symbolic import InvalidValue
 
 from .impact import TypedImpact, contact_of, impact
 from .impact_record import record_of
-from .output import print_table
+from .output import Cell, folded, print_table, tables_are_csv
 from .progress import progress_bar
 from .situation import Typed
 
@@ -68,27 +68,33 @@ def impacts(asked: Asked, report: Path | None = None) -> dict[str, Any]:
 
 
 def print_impacts(result: Mapping[str, Any]) -> None:
-    """Print a line for each impact."""
-    records = result["impacts"]
-    first = records[0]
+    """Print a line for each impact, the worst first; what all have in common is in the title."""
+    records = sorted(result["impacts"], key=lambda record: -record["share_of_limit"])
+    first, motors = records[0], {record["motors"] for record in records}
+    columns: dict[str, list[Cell]] = {
+        "point": [folded(record["tip"]) for record in records],
+        "direction": [folded(_listed(record["direction"])) for record in records],
+        "hit": [folded(f"{r['region']} ({'held' if r['clamped'] else 'free'})") for r in records],
+        "motors": [record["motors"] for record in records],
+        "peak\nN": [record["peak"] for record in records],
+        "after\n0.5 s\nN": [record["pressing"] for record in records],
+        "% of\nlimit": [100 * record["share_of_limit"] for record in records],
+        "of": [folded(record["binding"]) for record in records],
+        "verdict": [folded(record["verdict"]) for record in records],
+        "safe\nm/s": [record["safe_speed"] for record in records],
+    }
+    known = f"model {first['model']}"
+    if not tables_are_csv():
+        if len(motors) == 1:
+            known += f", motors {columns.pop('motors')[0]}"
+        if result["safe_speed"] is None:
+            del columns["safe\nm/s"]
     print_table(
-        f"{first['robot']} at {first['speed']:.3g} m/s, model {first['model']}",
-        ("", "point", "direction", "hit", "motors", "peak N", "pressing N", "of limit %",
-         "binding", "verdict", "safe m/s"),
-        [
-            (
-                "worst" if i == result["worst"] else "",
-                record["tip"],
-                ", ".join(f"{x:.3g}" for x in record["direction"]),
-                f"{record['region']} ({'held' if record['clamped'] else 'free'})",
-                record["motors"],
-                record["peak"],
-                record["pressing"],
-                f"{100 * record['share_of_limit']:.0f}",
-                record["binding"],
-                record["verdict"],
-                record["safe_speed"],
-            )
-            for i, record in enumerate(records)
-        ],
-    )  # fmt: skip
+        f"{first['robot']} at {first['speed']:.3g} m/s, {known}; the worst first",
+        list(columns),
+        list(zip(*columns.values(), strict=True)),
+    )
+
+
+def _listed(vector: Sequence[float]) -> str:
+    return ", ".join(f"{x:.3g}" for x in vector)

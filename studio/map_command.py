@@ -9,6 +9,7 @@ import typer
 
 from . import options as o
 from .simulate_command import BODY, ClampedOption, CoverOption, HorizonOption
+from .typed import But, TypedArm, TypedDrives
 
 WHERE = "Where"
 
@@ -73,7 +74,8 @@ SpeedOption = Annotated[float, typer.Option(metavar="V", help="Speed of the peak
 
 
 def safety_map(
-    model: o.ModelArgument,
+    arm: TypedArm,
+    drives: Annotated[TypedDrives, But(computed_torque_gain=None, torque_limit=None)],
     out: o.OutOption,
     q: PostureOption = None,
     over: OverOption = "plane",
@@ -85,20 +87,7 @@ def safety_map(
     cover: CoverOption = None,
     clamped: ClampedOption = True,
     speed: SpeedOption = 0.5,
-    tip: o.TipOption = None,
-    end: o.EndOption = None,
-    lock: o.LockOption = None,
-    payload: o.PayloadOption = None,
-    tool: o.ToolOption = None,
-    motors: o.MotorsOption = None,
-    reaction_time: o.ReactionTimeOption = None,
-    stopping_time: o.StoppingTimeOption = None,
     horizon: HorizonOption = None,
-    joint_stiffness: o.JointStiffnessOption = None,
-    rotor_inertia: o.RotorInertiaOption = None,
-    position_gain: o.PositionGainOption = None,
-    damping_gain: o.DampingGainOption = None,
-    gear_ratio: o.GearRatioOption = None,
     gravity: o.GravityOption = None,
     json: o.JsonOption = False,
 ) -> None:
@@ -109,22 +98,11 @@ def safety_map(
     from .results_folder import replaced_folder, require_replaceable_results
     from .safety_map import TypedMap
     from .safety_map import safety_map as mapped
-    from .situation import TypedArm, TypedDrives
-    from .typed_motors import TypedMotors
 
     require_replaceable_results(out, GENERATOR)
     how = TypedMap(
-        arm=TypedArm(model, tip, end, lock, payload, tool),
-        drives=TypedDrives(
-            joint_stiffness,
-            rotor_inertia,
-            position_gain,
-            None,
-            gear_ratio,
-            damping_gain,
-            servo=motors == "servo",
-        ),
-        motors=TypedMotors(motors, reaction_time, stopping_time),
+        arm=arm,
+        drives=drives,
         q=q,
         over=over,
         plane=plane,

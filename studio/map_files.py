@@ -13,7 +13,7 @@ from softimpact.symbolic.record import plain
 
 from .design_report import versions
 from .figures.safety_map import map_figure
-from .output import print_table, write_json
+from .output import folded, print_table, say, write_json
 from .results_folder import RESULTS
 from .safety_map import SafetyMap
 
@@ -113,21 +113,21 @@ def print_map(found: SafetyMap, out: Path) -> None:
         f"{found.model.robot.name} against the {found.body.region.title.lower()}: "
         f"{len(order)} postures of a {ground}; the two-body formula allows "
         f"{found.two_body:.3g} m/s everywhere",
-        ("", "place", "direction", "safe m/s", "limit", "motors", f"N at {found.speed:g} m/s"),
+        ("", "place", "direction", "safe m/s", "limit", "motors", f"N at\n{found.speed:g} m/s"),
         [
             (
                 name,
-                _listed(found.place[k]),
-                _listed(found.direction[k]),
+                folded(_listed(found.place[k])),
+                folded(_listed(found.direction[k])),
                 float(found.safe_speed[k]),
-                str(found.limit[k]),
+                folded(str(found.limit[k])),
                 str(found.motors[k]),
                 float(found.peak[k]),
             )
             for name, k in chosen.items()
         ],
     )
-    print(f"wrote {out}")
+    say(f"wrote {out}")
 
 
 def _listed(vector: Any) -> str:

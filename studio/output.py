@@ -39,9 +39,14 @@ def tables_as_csv(wanted: bool) -> Iterator[None]:
         AS_CSV.reset(token)
 
 
+def tables_are_csv() -> bool:
+    """Return whether tables are for machines, which hold any number of columns."""
+    return AS_CSV.get()
+
+
 def say(line: str) -> None:
     """Print a line for people to stdout; to stderr where stdout is for a machine."""
-    typer.echo(line, err=AS_CSV.get())
+    typer.echo(line, err=tables_are_csv())
 
 
 def print_json(result: Mapping[str, Any]) -> None:
@@ -86,7 +91,7 @@ def print_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Cell
     As CSV, numbers are in full, what does not apply is empty, and each table has its title as a
     comment (``#``) above it and an empty line after it.
     """
-    if AS_CSV.get():
+    if tables_are_csv():
         _print_csv(title, columns, rows)
         return
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
@@ -107,7 +112,7 @@ def folded(cell: Cell) -> Cell:
 
     So 80 columns hold tables of many words. CSV keeps cells as they are: ``BODY@x,y,z`` is typed.
     """
-    if AS_CSV.get() or not isinstance(cell, str):
+    if tables_are_csv() or not isinstance(cell, str):
         return cell
     return cell.replace(" ", "\n").replace("@", "\n@")
 

@@ -34,19 +34,18 @@ from .cautions import not_permitted
 from .motion_file import limits_left
 from .motion_source import MotionSource, Survey, motion_source, require_all_move, survey
 from .program_engine import Engine
+from .program_moments import Question
 from .program_record import ProgramResult, program_record
-from .program_run import Question, slowed_program
-from .program_trust import doubts
+from .program_run import slowed_program
 from .progress import progress_bar
 from .situation import (
-    TypedArm,
-    TypedDrives,
     counted_as_rigid,
     drives_of,
     gravity_of,
     loaded_arm,
 )
-from .typed_motors import TypedMotors, motors_meant
+from .typed import TypedArm, TypedDrives
+from .typed_motors import motors_meant
 from .zones_file import read_zones
 
 APART = 0.15
@@ -62,7 +61,6 @@ class TypedProgram:
 
     arm: TypedArm
     drives: TypedDrives
-    motors: TypedMotors
     points: tuple[str, ...]
     regions: tuple[str, ...]
     zones: Path | None = None
@@ -78,11 +76,11 @@ class TypedProgram:
 def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     """Return how fast a program may run; raises SoftImpactError."""
     engine: Engine = values.one_of("engine", how.engine, Engine)
-    motors, reaction = motors_meant(how.motors, how.drives)
+    motors, reaction = motors_meant(how.drives)
     if motors is not None:
         refuse_held(motors, "a safe program")
     bodies = _bodies(how)
-    whole = load_robot(how.arm.model)
+    whole = load_robot(how.arm.model, hold_base=how.arm.hold_base)
     arm = loaded_arm(replace(how.arm, tip=None if whole.tip else _end(whole, how)))
     robot = arm.robot
     source, told = motion_source(path, robot, whole)
@@ -101,8 +99,6 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     rigid = counted_as_rigid(model, how.drives)
     cautions = _cautions(robot, bodies, seen)
     warnings = [*arm.warnings, *rigid, *told, *limits, *assumed, *cautions]
-    worst, doubtful = doubts(question, answer.worst)
-    answer = replace(answer, worst=worst, warnings=[*answer.warnings, *doubtful])
     warnings += answer.warnings
     record = program_record(path, question, answer, warnings)
     return ProgramResult(question, answer, record)

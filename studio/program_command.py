@@ -11,6 +11,7 @@ from typer.core import TyperCommand
 
 from . import options as o
 from .simulate_command import BODY, ClampedOption, CoverOption, HorizonOption, ShapeOption
+from .typed import But, TypedArm, TypedDrives
 
 
 class SeveralValues(TyperCommand):
@@ -105,27 +106,15 @@ OutOption = Annotated[
 
 def program(
     motion: MotionArgument,
-    model: RobotOption,
+    arm: Annotated[TypedArm, But(model=RobotOption, tip=None)],
+    drives: Annotated[TypedDrives, But(computed_torque_gain=None)],
     regions: RegionsOption = None,
     zones: ZonesOption = None,
     points: PointsOption = None,
-    end: o.EndOption = None,
-    lock: o.LockOption = None,
-    payload: o.PayloadOption = None,
-    tool: o.ToolOption = None,
     cover: CoverOption = None,
     shape: ShapeOption = None,
     clamped: ClampedOption = True,
-    motors: o.MotorsOption = None,
-    reaction_time: o.ReactionTimeOption = None,
-    stopping_time: o.StoppingTimeOption = None,
     horizon: HorizonOption = None,
-    joint_stiffness: o.JointStiffnessOption = None,
-    rotor_inertia: o.RotorInertiaOption = None,
-    position_gain: o.PositionGainOption = None,
-    damping_gain: o.DampingGainOption = None,
-    torque_limit: o.TorqueLimitOption = None,
-    gear_ratio: o.GearRatioOption = None,
     gravity: o.GravityOption = None,
     band: BandOption = False,
     engine: EngineOption = "auto",
@@ -138,25 +127,13 @@ def program(
     from .program import TypedProgram, run_program
     from .program_record import GENERATOR, print_program
     from .results_folder import replaced_folder, require_folder_of, require_replaceable_results
-    from .situation import TypedArm, TypedDrives
-    from .typed_motors import TypedMotors
 
     require_folder_of(report)
     if out is not None:
         require_replaceable_results(out, GENERATOR)
     how = TypedProgram(
-        arm=TypedArm(model, None, end, lock, payload, tool),
-        drives=TypedDrives(
-            joint_stiffness,
-            rotor_inertia,
-            position_gain,
-            None,
-            gear_ratio,
-            damping_gain,
-            torque_limit,
-            servo=motors == "servo",
-        ),
-        motors=TypedMotors(motors, reaction_time, stopping_time),
+        arm=arm,
+        drives=drives,
         points=tuple(points or ()),
         regions=tuple(name for text in regions or () for name in text.split(",") if name),
         zones=zones,

@@ -15,8 +15,8 @@ from softimpact.symbolic.record import plain
 from .figures.program import program_figure
 from .figures.style import save
 from .output import write_json
+from .program_moments import Question
 from .program_record import ProgramResult
-from .program_run import Question
 from .program_table import ProgramTable
 from .results_folder import RESULTS
 

@@ -13,7 +13,8 @@ import numpy as np
 from softimpact.simulate.zones import Somebody
 
 from .output import Cell, folded, print_table, say
-from .program_run import Question, SlowedProgram
+from .program_moments import Question
+from .program_run import SlowedProgram
 
 GENERATOR = "softimpact program"
 

@@ -158,6 +158,14 @@ class ProgramTable:
             if name not in ("names", "time"):
                 getattr(self, name)[rows] = values
 
+    def lower(self, share: float) -> None:
+        """Slow down to a share of what is safe, also where the limits' use is not known."""
+        used = np.where(np.isfinite(self.share), self.share, np.inf)
+        moves = self.two_body < np.inf
+        rows = moves & ((self.factor < 1) | (used > share))
+        self.factor[rows] *= share
+        self.safe_speed[rows] = self.factor[rows] * self.speed[rows]
+
     def moment(self, row: int) -> dict[str, Any] | None:
         """Return what is worst at a sample, None where nothing moves."""
         if self.point[row] == NOTHING:

@@ -1,43 +1,46 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether a program's worst moments keep their limits where a linear robot is not trusted."""
+"""Whether a program's moments keep their limits where a linear robot is not exact."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-from softimpact.simulate import assess_impact
-from softimpact.simulate.trust import not_trusted
+from softimpact.simulate import simulate_impact
+from softimpact.simulate.assessment import force_limits
+from softimpact.simulate.trust import largest_linear_error, nonlinear_safe_speed
 
-from .program_run import Question, approach_at, at_point
-
-KEPT = 1 + 1e-3
-"""Share of a limit up to which it is kept: C and Python find speeds to so much."""
+from .program_moments import Question, approach_at, at_point
 
 
-def doubts(
+def nonlinear_share(
     question: Question, moments: Sequence[dict[str, Any]]
-) -> tuple[list[dict[str, Any]], list[str]]:
-    """Simulate the worst moments slowed down, the nonlinear robot too where that is needed.
+) -> tuple[float, list[dict[str, Any]], list[str]]:
+    """Ask the nonlinear robot about moments of a slowed program, where the linear one may be off.
 
     Returns:
-        The moments with their ``linear_error``, and a line for each that then exceeds a limit.
+        The least share of their speeds that it allows, at most 1; the moments with their
+        ``linear_error``; and a line if that share is below 1.
     """
-    seen, lines = [], []
+    least, seen, lines = 1.0, [], []
+    run: dict[str, Any] = {"horizon": question.horizon}
     for moment in moments:
-        found = assess_impact(
-            at_point(question.model, moment["point"]),
-            approach_at(question, moment, moment["factor"] * moment["speed"]),
-            question.bodies[moment["body"]].contact,
-            motors=question.ends[moment["motors"]],
-            horizon=question.horizon,
-            shape=question.bodies[moment["body"]].shape,
-        )
-        seen.append({**moment, "linear_error": found.linear_error})
-        if not_trusted(found.linear_error) and found.verdict.share > KEPT:
-            off = f"{100 * (found.verdict.share - 1):.0f} % of {found.verdict.binding}"
-            lines.append(
-                f"at {moment['t']:.4g} s '{moment['point']}' is beyond its limit by {off}, says "
-                "the nonlinear robot; factors near there are too high by as much"
+        at, body = at_point(question.model, moment["point"]), question.bodies[moment["body"]]
+        approach = approach_at(question, moment, moment["factor"] * moment["speed"])
+        allowed = force_limits(body.limits)
+        errors = []
+        for kind, motors in question.ends.items():
+            history = simulate_impact(
+                at, approach, body.contact, motors=motors, horizon=question.horizon
             )
-    return seen, lines
+            error = largest_linear_error(at, approach, {kind: history})
+            safe = nonlinear_safe_speed(at, approach, body.contact, allowed, motors, run, error)
+            errors += [error] if error is not None else []
+            if safe < least * approach.speed:
+                least = safe / approach.speed
+                lines = [
+                    f"all factors were lowered by {100 * (1 - least):.2g} %: so much less is safe "
+                    f"for '{moment['point']}' at {moment['t']:.4g} s, says the nonlinear robot"
+                ]
+        seen.append({**moment, "linear_error": max(errors, default=None)})
+    return least, seen, lines

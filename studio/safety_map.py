@@ -13,15 +13,11 @@ from numpy.typing import NDArray
 from softimpact.optimize.posture.self_motion import self_motion
 from softimpact.optimize.posture.workspace import Hold, postures_in_plane
 from softimpact.simulate import HORIZON, bracket
-from softimpact.simulate.sampled import SampledImpacts, Samples
-from softimpact.simulate.sampled_speeds import safe_speeds
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
     InvalidValue,
     Motors,
-    SingularDirection,
-    approach_velocity,
     body_region,
     frame_pose,
     impact_model,
@@ -36,25 +32,19 @@ from softimpact.symbolic.robot.rigid import Array
 from . import values
 from .cautions import not_permitted
 from .first_study import first_posture
+from .map_speeds import lowered_slowest, map_samples, map_speeds
 from .situation import (
-    TypedArm,
-    TypedDrives,
     beyond_limits,
     drives_of,
     gravity_of,
     loaded_arm,
 )
-from .typed_motors import TypedMotors, motors_meant
+from .typed import TypedArm, TypedDrives
+from .typed_motors import motors_meant
 from .worst_directions import worst_directions
 
 Over = Literal["plane", "self-motion"]
 PlaneName = Literal["xy", "xz", "yz"]
-
-FASTER = 1.4
-"""Factor on the C package's safe speed from which on the right one is sought."""
-
-DOUBLINGS = 6
-"""Times that a speed which is still safe is doubled; faster ones count as this fast."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +53,6 @@ class TypedMap:
 
     arm: TypedArm
     drives: TypedDrives
-    motors: TypedMotors
     q: str | None = None
     over: str = "plane"
     plane: str = "xz"
@@ -159,7 +148,7 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         seen: called with the number of impacts that were looked at.
     """
     over: Over = values.one_of("map's ground", how.over, Over)
-    motors, reaction = motors_meant(how.motors, how.drives)
+    motors, reaction = motors_meant(how.drives)
     if motors is not None:
         refuse_held(motors, "a map of safe speeds")
     if not 0 < how.speed < np.inf:
@@ -188,11 +177,12 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         direction, guess = worst_directions(model, ground.postures, body, ends, seen)
     else:
         direction, guess = np.tile(asked, (len(ground.postures), 1)), None
-    samples, rows = _samples(model, ground.postures, direction, guess)
+    samples, rows = map_samples(model, ground.postures, direction, guess)
     if not len(rows):
         raise InvalidValue("direction", "is one in which the tip moves nowhere on the map")
     speeds = np.full(len(rows), how.speed) if guess is None else guess[rows]
-    best, which, limit, peak = _speeds(model, samples, speeds, body, ends, how.speed, horizon)
+    best, which, limit, peak = map_speeds(model, samples, speeds, body, ends, how.speed, horizon)
+    best, doubts = lowered_slowest(model, samples, best, body, ends, horizon)
     seen(len(rows))
     formula = two_body(body.region, body.clamped, float(moving_mass(robot)), arm.load)
     return SafetyMap(
@@ -220,7 +210,13 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
         two_body=float(formula.safe_speed(limits_of(body.region, body.clamped).transient.force)),
         asked=asked,
         hold=ground.hold,
-        warnings=(*arm.warnings, *told, *assumed, *_cautions(model, body, len(rows), direction)),
+        warnings=(
+            *arm.warnings,
+            *told,
+            *assumed,
+            *_cautions(model, body, len(rows), direction),
+            *doubts,
+        ),
     )
 
 
@@ -245,55 +241,6 @@ def _ground(model: ImpactModel, q: Array, over: Over, how: TypedMap) -> _Ground:
     postures = plane.q[plane.reached]
     begun = int(np.linalg.norm(postures - q, axis=1).argmin())
     return _Ground(postures, begun, cells, (u, v), (plane.u, plane.v), hold=hold)
-
-
-def _samples(
-    model: ImpactModel, postures: Array, directions: Array, guess: Array | None
-) -> tuple[Samples, NDArray[np.intp]]:
-    """Return the impacts that can be, and their rows."""
-    rows, rates = [], []
-    for k, (q, n) in enumerate(zip(postures, directions, strict=True)):
-        if guess is not None and not np.isfinite(guess[k]):
-            continue
-        try:
-            rates.append(approach_velocity(model, q, n))
-        except SingularDirection:
-            continue
-        rows.append(k)
-    at = np.array(rows, dtype=np.intp)
-    return Samples(postures[at], directions[at], np.array(rates)), at
-
-
-def _speeds(
-    model: ImpactModel,
-    at: Samples,
-    guess: Array,
-    body: Contact,
-    ends: Mapping[str, Motors],
-    speed: float,
-    horizon: float,
-) -> tuple[Array, NDArray[np.str_], NDArray[np.str_], Array]:
-    """Return safe speeds, at which motors and by which limit, and the peaks at a speed."""
-    count = len(at)
-    best, peak = np.full(count, np.inf), np.zeros(count)
-    which, limit = np.full(count, "", "U8"), np.full(count, "", "U32")
-    for kind, motors in ends.items():
-        forces = SampledImpacts(model, at, body, motors, horizon).peaks(np.full(count, speed))
-        peak = np.maximum(peak, forces.peak)
-        tried = FASTER * guess
-        open_, own = np.arange(count), np.full(count, np.inf)
-        for _ in range(DOUBLINGS):  # until none of them is safe any more
-            found = safe_speeds(model, at.taken(open_), tried[open_], body, motors, horizon)
-            own[open_] = np.minimum(found.safe, tried[open_])
-            better = own[open_] < best[open_]
-            limit[open_[better]] = found.limit[better]
-            open_ = open_[np.isinf(found.safe)]
-            if not open_.size:
-                break
-            tried[open_] *= 2
-        which[own < best] = kind
-        best = np.minimum(best, own)
-    return best, which, limit, peak
 
 
 def _spread(found: Array, rows: NDArray[np.intp], count: int) -> Array:

@@ -18,7 +18,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .cautions import study_warnings
 from .checks import simulated
-from .output import Cell, print_table
+from .output import AS_CSV, Cell, print_table, say
 
 Criterion = Literal["peak_force", "m_c", "giaf", "directional_giaf"]
 """What to rank by: least force, least mass, or largest absorption factor."""
@@ -101,15 +101,23 @@ MANY = 100
 """Configurations beyond which all are looked at at once, by the program of a design: the same
 model, to 0.1 %, in a thousandth of the time. The best are simulated again."""
 
+DOUBT = 2e-3
+"""Share by which the force of one of many may be wrong, so that any so near to the least may be the
+best: as many are simulated, each for itself, but ``AGAIN`` at most."""
+
 AGAIN = 3
-"""Configurations of least force that are simulated, each for itself."""
+"""Configurations that are simulated at most."""
+
+SHOWN = 100
+"""Configurations of a table for people."""
 
 
 def _of_many(study: Study, given: Sequence[Candidate]) -> list[PoseFigures]:
     """Return the figures of many configurations."""
     postures = np.array([candidate.q for candidate in given])
     forces = peaks_of_postures(study, postures)
-    for i in np.argsort(forces)[:AGAIN]:
+    near = np.flatnonzero(forces <= forces.min() * (1 + DOUBT))
+    for i in near[np.argsort(forces[near])][:AGAIN]:
         forces[i] = simulated(study, postures[i], study.nominal, "linearised").peak
     figures = np.array(_all_figures(study)(postures.T)).T
     found = []
@@ -174,13 +182,15 @@ def record(
 
 
 def print_ranking(study: Study, criterion: Criterion, ranked: Sequence[PoseFigures]) -> None:
-    """Print a ranking as a table."""
-    limit = study.limit
+    """Print a ranking as a table, for people the first of it alone."""
+    limit, shown = study.limit, ranked if AS_CSV.get() else ranked[:SHOWN]
     print_table(
         f"{study.title}: by {criterion}; {study.contact.region.name}, {study.speed:g} m/s, "
         f"limit {limit:.4g} N",
-        *figures_table(ranked),
+        *figures_table(shown),
     )
+    if len(shown) < len(ranked):
+        say(f"the first {len(shown)} of {len(ranked):,}; --csv and --json have all")
 
 
 def figures_table(ranked: Sequence[PoseFigures]) -> tuple[Sequence[str], list[list[Cell]]]:

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import typer
 
 from . import options as o
+from .typed import But, TypedArm, TypedDrives
 
 BODY = "What is hit"
 
@@ -106,17 +108,13 @@ SafeSpeedOption = Annotated[
 
 
 def simulate(
-    model: o.ModelArgument,
+    arm: Annotated[TypedArm, But(tip=None)],
+    drives: TypedDrives,
     q: o.ConfigurationOption,
     direction: o.DirectionsOption,
     region: RegionsOption = None,
     speed: SpeedOption = None,
     tip: o.TipsOption = None,
-    end: o.EndOption = None,
-    lock: o.LockOption = None,
-    hold_base: o.HoldBaseOption = False,
-    payload: o.PayloadOption = None,
-    tool: o.ToolOption = None,
     fidelity: o.FidelityOption = "linearised",
     body: BodyOption = None,
     cover: CoverOption = None,
@@ -124,22 +122,12 @@ def simulate(
     clamped: ClampedOption = True,
     joint_velocity: JointVelocityOption = None,
     peak: PeakOption = "peak",
-    motors: o.MotorsOption = None,
-    reaction_time: o.ReactionTimeOption = None,
-    stopping_time: o.StoppingTimeOption = None,
     horizon: HorizonOption = None,
     pid: PidOption = None,
     reference: ReferenceOption = None,
     safe_speed: SafeSpeedOption = False,
     band: BandOption = False,
     report: o.ReportOption = None,
-    joint_stiffness: o.JointStiffnessOption = None,
-    rotor_inertia: o.RotorInertiaOption = None,
-    position_gain: o.PositionGainOption = None,
-    damping_gain: o.DampingGainOption = None,
-    torque_limit: o.TorqueLimitOption = None,
-    computed_torque_gain: o.ComputedTorqueGainOption = None,
-    gear_ratio: o.GearRatioOption = None,
     gravity: o.GravityOption = None,
     motor_angles: o.MotorAnglesOption = False,
     order: o.OrderOption = 3,
@@ -153,30 +141,17 @@ def simulate(
     from .impact_record import print_impact, record_of
     from .impacts import combinations, impacts, print_impacts
     from .output import print_json, print_warnings
-    from .situation import Typed, TypedArm, TypedDrives
-    from .typed_motors import TypedMotors
+    from .situation import Typed
 
-    given = TypedDrives(
-        joint_stiffness,
-        rotor_inertia,
-        position_gain,
-        computed_torque_gain,
-        gear_ratio,
-        damping_gain,
-        torque_limit,
-        servo=motors == "servo",
-    )
     points: list[str | None] = [*tip] if tip else [None]
     regions: list[str | None] = [*region] if region else [None]
-    arm = TypedArm(model, points[0], end, lock, payload, tool, hold_base)
-    where = Typed(arm, q, direction[0], given, gravity, motor_angles)
+    where = Typed(replace(arm, tip=points[0]), q, direction[0], drives, gravity, motor_angles)
     how = TypedImpact(
         body=TypedBody(regions[0], body, cover, clamped, shape),
         speed=speed,
         fidelity=fidelity,
         joint_velocity=joint_velocity,
         peak=peak,
-        motors=TypedMotors(motors, reaction_time, stopping_time),
         horizon=horizon,
         safe_speed=safe_speed,
         band=band,

@@ -31,42 +31,7 @@ from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 from softimpact.symbolic.robot.rigid import Array
 
 from . import values
-
-
-@dataclass(frozen=True)
-class TypedDrives:
-    """The options that make up drives, as typed; see ``options``.
-
-    With ``servo`` they are to have gains: the file's where none are given.
-    """
-
-    joint_stiffness: str | None = None
-    rotor_inertia: str | None = None
-    position_gain: str | None = None
-    computed_torque_gain: float | None = None
-    gear_ratio: str | None = None
-    damping_gain: str | None = None
-    torque_limit: str | None = None
-    servo: bool = False
-
-    @property
-    def has_gains(self) -> bool:
-        """Whether gains were given."""
-        gains = (self.position_gain, self.computed_torque_gain, self.damping_gain)
-        return any(gain is not None for gain in gains)
-
-
-@dataclass(frozen=True)
-class TypedArm:
-    """The options that make up an arm, as typed; see ``options``."""
-
-    model: str
-    tip: str | None = None
-    end: str | None = None
-    lock: str | None = None
-    payload: str | None = None
-    tool: str | None = None
-    hold_base: bool = False
+from .typed import TypedArm, TypedDrives
 
 
 @dataclass(frozen=True)
@@ -76,7 +41,7 @@ class Typed:
     arm: TypedArm
     q: str
     direction: str
-    drives: TypedDrives = TypedDrives()
+    drives: TypedDrives
     gravity: str | None = None
     motor_angles: bool = False
 
@@ -249,13 +214,17 @@ def link_angles(model: ImpactModel, motor_angles: Array) -> Array:
 
 
 def drives_of(robot: Robot, typed: TypedDrives) -> Drives:
-    """Return the drives that the options describe; raises SoftImpactError."""
+    """Return the drives that the options describe; a servo's gains are the file's by default.
+
+    Raises:
+        SoftImpactError: one of them cannot be.
+    """
 
     def given(field: str, text: str | None) -> PerJoint | None:
         return None if text is None else values.per_joint(field, text)
 
     rotors = typed.rotor_inertia
-    if typed.servo and not typed.has_gains:
+    if typed.motors == "servo" and not typed.gains:
         return _file_servo(robot, typed)
     return drives(
         robot,

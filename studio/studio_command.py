@@ -50,7 +50,7 @@ def studio(
     from .page.opened import opened
     from .page.write import page_of
     from .results_folder import replaced_folder, require_replaceable_results
-    from .situation import TypedArm
+    from .typed import TypedArm
 
     if out is not None:
         require_replaceable_results(out, GENERATOR)

@@ -3,46 +3,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from softimpact.symbolic import InvalidValue, Motors
 from softimpact.symbolic.impact.motors import MotorKind, check_motors
 
 from . import values
-from .situation import TypedDrives
+from .typed import TypedDrives
 
 
-@dataclass(frozen=True)
-class TypedMotors:
-    """The options that say what motors do; see ``options``."""
-
-    kind: str | None = None
-    reaction_time: float | None = None
-    stopping_time: float | None = None
-
-
-NOTHING_SAID = TypedMotors()
-"""Motors of which nothing is known."""
-
-
-def motors_meant(typed: TypedMotors, drives: TypedDrives) -> tuple[Motors | None, Motors]:
+def motors_meant(typed: TypedDrives) -> tuple[Motors | None, Motors]:
     """Return what motors do, None if that is open, and how they react.
 
     Raises:
         InvalidValue, UnknownName: the options contradict each other, or one cannot be.
     """
-    gains = {
-        "position_gain": drives.position_gain,
-        "computed_torque_gain": drives.computed_torque_gain,
-        "damping_gain": drives.damping_gain,
-    }
-    given = [name for name, value in gains.items() if value is not None]
-    kind = typed.kind
+    given, kind = list(typed.gains), typed.motors
     if given and kind in ("free", "driven"):
         raise InvalidValue(given[0], f"is a servo's; motors that are '{kind}' have no gains")
-    if drives.damping_gain is not None and kind == "held":
+    if typed.damping_gain is not None and kind == "held":
         raise InvalidValue("damping_gain", "is a servo's; motors that are 'held' have K_p alone")
-    if kind == "held" and len(given) == 0:
+    if kind == "held" and not given:
         raise InvalidValue("motors", "'held' needs position_gain or computed_torque_gain")
     how = Motors()
     if typed.reaction_time is not None:

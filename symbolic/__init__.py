@@ -19,6 +19,7 @@ from .body.shapes import Edge, Flat, Sphere
 from .body.verdict import Limits, Verdict, judge, limits_of
 from .dynamics.equations_of_motion import (
     STANDARD_GRAVITY,
+    bias_acceleration,
     bias_torques,
     gravity_torques,
     mass_matrix,
@@ -79,6 +80,7 @@ from .impact.drives import Drives, drives
 from .impact.elastic import LinearModel
 from .impact.floating import FloatingRobot, floating_model, floating_robot
 from .impact.impact_model import ImpactModel, impact_model
+from .impact.linearisation_error import linearisation_error
 from .impact.motors import MotorKind, Motors
 from .impact.reduction import ReducedModel, reduce_to_two_masses, reflected_mass, static_stiffness
 from .impact.two_body import TwoBody, moving_mass, two_body
@@ -165,6 +167,7 @@ __all__ = [
     "analyse",
     "approach_velocity",
     "arm_of",
+    "bias_acceleration",
     "bias_torques",
     "body_region",
     "chain",
@@ -205,6 +208,7 @@ __all__ = [
     "judge",
     "least_velocity",
     "limits_of",
+    "linearisation_error",
     "link_angles_at_rest",
     "load_robot",
     "lock_joints",

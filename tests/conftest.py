@@ -9,7 +9,7 @@ from pathlib import Path
 
 import mujoco
 import pytest
-from hypothesis import settings
+from hypothesis import Phase, settings
 
 from softimpact.symbolic import Robot, load_robot
 
@@ -20,6 +20,9 @@ OPTIONAL = {
 """Markers whose tests run only with the option of the same name."""
 
 settings.register_profile("softimpact", deadline=None, derandomize=True, database=None)
+settings.register_profile(  # of tests/mutation, which needs no smaller example
+    "first-failure", settings.get_profile("softimpact"), phases=(Phase.explicit, Phase.generate)
+)
 settings.load_profile("softimpact")
 
 

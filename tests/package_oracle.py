@@ -30,6 +30,8 @@ from softimpact.symbolic import (
     impact_mitigation,
     impact_model,
     joint_impulse,
+    least_velocity,
+    linearisation_error,
     manipulability,
     single_joint_giaf,
 )
@@ -103,11 +105,14 @@ def shape_and_joints(
     if model.robot.loops:
         return values
     M, rotors = model.mass_matrix(q), model.drives.rotors
-    impulse = joint_impulse(M, rotors, J, n, *sample.scalars)
+    speed, restitution, other_mobility, duration = sample.scalars
+    impulse = joint_impulse(M, rotors, J, n, speed, restitution, other_mobility)
+    velocity = speed * least_velocity(J, n)
     return values | {
         "rotor_influence": [giaf_by_rotor(M, rotors, J), giaf_by_gear(M, rotors, J)],
         "single_joint_giaf": [single_joint_giaf(M, rotors, J)],
         "joint_impulse": list(vars(impulse).values()),
+        "linear_error": [linearisation_error(model, q, n, velocity, duration)],
     }
 
 

@@ -9,7 +9,7 @@ adam and urdf2casadi make of the robot, and a Runge-Kutta method for impacts. Ne
 from the folder in the variable EIGEN3_INCLUDE_DIR. adam and urdf2casadi come from the Python of
 ``--others`` (see ``requirements.txt``), and are left out, visibly, without it.
 
-Exits with 1 if values differ, or M(q) takes more than 0.3 of the time of Pinocchio's crba.
+Exits with 1 if values differ, or M(q) takes more than 0.2 of the time of Pinocchio's crba.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from softimpact.symbolic import Robot, load_robot  # noqa: E402
 
 OTHERS = ROOT / ".venv-others" / "bin" / "python"
 ON_MICROCONTROLLERS = ("CasADi", "adam")
-TARGET = 0.3
+TARGET = 0.2
 """Time of M(q) over that of Pinocchio's crba."""
 
 

@@ -13,11 +13,12 @@ import contextlib
 import itertools
 import platform
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import casadi as ca
 import cma
@@ -26,7 +27,9 @@ from scipy.optimize import NonlinearConstraint, differential_evolution, minimize
 
 from softimpact.optimize import Study, load_study
 from softimpact.optimize.impact.impact_program import ImpactProgram, impact_program
+from softimpact.optimize.robust.certificate import Hardening, Setting, Worst
 from softimpact.optimize.robust.robust import RobustDesign, robust_design
+from softimpact.optimize.robust.screening import Screened
 from softimpact.optimize.study.scenarios import Scenarios
 from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.robots import FOLDER
@@ -262,25 +265,51 @@ def study_for(region: str) -> tuple[Study, Scenarios]:
     return study, replace(scenarios, poses=tuple(given), directions=directions)
 
 
+@dataclass(frozen=True)
+class Looked:
+    """A look at all scenarios: when [s], and the worst share; infinite where a bound is broken."""
+
+    began: float
+    ended: float
+    share: float
+
+
+@contextlib.contextmanager
+def screenings() -> Iterator[list[Looked]]:
+    """Note when our search looks at all scenarios, and what it finds."""
+    found: list[Looked] = []
+    own = Setting.worst
+
+    def worst(setting: Setting, at: Hardening) -> tuple[Worst, list[Screened]]:
+        began = time.process_time()
+        answer = own(setting, at)
+        share = answer[0].share if answer[0].keeps else np.inf
+        found.append(Looked(began, time.process_time(), share))
+        return answer
+
+    with patch.object(Setting, "worst", worst):
+        yield found
+
+
 def measured(region: str, budget: int) -> tuple[list[str], RobustDesign]:
     """Return the rows of a region's table."""
     study, scenarios = study_for(region)
     robust_design(study, scenarios, Here())  # compiles what is not in the cache
-    heard: list[float] = []
-
-    def hear(what: str, done: int, total: int) -> None:
-        heard.append(time.process_time())
-
     began = time.process_time()
-    ours = robust_design(study, scenarios, Here(), hear)
+    with screenings() as looked:
+        ours = robust_design(study, scenarios, Here())
     whole = time.process_time() - began
-    spent = heard[-1] - heard[0]  # from the first screening to the last
+    first, last = looked[0].began, looked[-1].ended
+    near = [each.ended for each in looked if each.share <= ours.worst.share * (1 + NEAR)]
+    reached, spent = near[0] - first, last - first
     share = ours.worst.share
     timing = ours.timing
     program = impact_program(study.model, timing.nodes, timing.substeps, compiled=True)
     rows = [
-        f"| softimpact: search and certificate | {ours.worst.force:.2f} | {spent:.2f} s | | 1 |",
-        f"| softimpact: from study to prices | | {whole:.2f} s | | {whole / spent:.1f} |",
+        f"| softimpact | {ours.worst.force:.2f} | {reached:.2f} s | | 1 | |",
+        f"| softimpact: search and certificate | | {spent:.2f} s | | {spent / reached:.1f} | 1 |",
+        f"| softimpact: from study to prices | | {whole:.2f} s | | {whole / reached:.1f} | "
+        f"{whole / spent:.1f} |",
     ]
     for name, run in CONTENDERS.items():
         problem = Problem(study, scenarios, program, timing.step, share, budget)
@@ -288,11 +317,14 @@ def measured(region: str, budget: int) -> tuple[list[str], RobustDesign]:
             run(problem)
         total = time.process_time() - problem.began
         limit = problem.limits[0]
-        reached = "no" if problem.reached is None else f"{problem.reached[0]:.1f} s"
-        ratio = problem.reached[0] / spent if problem.reached else total / spent
+        told = "no" if problem.reached is None else f"{problem.reached[0]:.1f} s"
+        took, more = (
+            problem.reached[0] if problem.reached else total,
+            "" if problem.reached else "> ",
+        )
         rows.append(
-            f"| {name} | {problem.best * limit:.2f} | {reached} of {total:.0f} s | "
-            f"{problem.evaluations} | {'' if problem.reached else '> '}{ratio:.1f} |"
+            f"| {name} | {problem.best * limit:.2f} | {told} of {total:.0f} s | "
+            f"{problem.evaluations} | {more}{took / reached:.1f} | {more}{took / spent:.1f} |"
         )
         print(rows[-1], flush=True)
         assert problem.best >= share * (1 - NEAR), f"{name} is better: {problem.best} < {share}"
@@ -304,9 +336,11 @@ HEAD = """# Designs against general optimisers
 Written by `make bench-opt`: one set of seven springs for the Panda in {poses} poses of its task,
 hit along 9 directions, free motors, 1 m/s, at most 1 mm under 30 N everywhere. All contenders call
 the same compiled forces, {scenarios} scenarios at once, on one core; times are the processor's.
-"Reached" is when a design that keeps the accuracy came within 0.1 % of ours; all get {budget}
-evaluations. The others are given what we first find out, how long and finely impacts must be
-stepped; our second row has that, ranges and prices in it. Compiled functions are in the cache.
+"Reached" is when a design that keeps the accuracy came within 0.1 % of our answer over all
+scenarios, for us as for the others. Who searches cannot know it, and goes on: our whole search
+looks for other optima, too, and the others get {budget} evaluations. These are given what we first
+find out, how long and finely impacts must be stepped; our third row has that, ranges and prices in
+it. Compiled functions are in the cache.
 
 {machine}.
 """
@@ -324,8 +358,8 @@ def main() -> None:
         table = "\n".join(
             [
                 f"## {region.capitalize()}\n",
-                "| | worst force, N | reached | evaluations | time over ours |",
-                "|---|---:|---:|---:|---:|",
+                "| | worst force, N | reached | evaluations | over ours | over our search |",
+                "|---|---:|---:|---:|---:|---:|",
                 *rows,
             ]
         )

@@ -18,6 +18,7 @@ from .dynamics import (
 )
 from .impact_factors import absorption_extremes, directional_factor, impact_factors, osim
 from .joints import joint_impulse, rotor_influence, single_joint
+from .linearity import linear_error
 from .measures import force_measure, impact_measure, manipulability
 from .mitigation import impact_mitigation
 from .reductions import chain, reduced_model, reflected_mass
@@ -54,6 +55,8 @@ def functions_of(s: Symbols, chain_order: int, *, floating: bool = False) -> tup
             functions += [rotor_influence(s), single_joint(s)]
     if not s.robot.loops:
         functions.append(joint_impulse(s))
+        if moves_in_space(s.model):
+            functions.append(linear_error(s))
     if floating:
         functions.append(impact_mitigation(s))
     return tuple(functions)

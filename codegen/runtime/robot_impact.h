@@ -241,11 +241,8 @@ bool robot_cholesky(int size, robot_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void robot_forward(int size, robot_matrix L, robot_real *x);
 void robot_backward(int size, robot_matrix L, robot_real *x);
-/*
- * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
- * below `noise` count as none. False if that does not end.
- */
-bool robot_diagonalise(int size, robot_matrix A, robot_matrix X, robot_real noise);
+/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+bool robot_diagonalise(int size, robot_matrix A, robot_matrix X);
 /*
  * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
  * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.

@@ -50,7 +50,8 @@ void robot_backward(int size, robot_matrix L, robot_real *x)
 
 #if !ROBOT_STRUCTURED
 /*
- * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
+ * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
  * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
  */
 #define TURNED ROBOT_R(1e-8)
@@ -94,15 +95,13 @@ static void rotate(int size, robot_matrix A, robot_matrix X, int i, int j)
     turn_columns(size, X, i, j, c, s);
 }
 
-bool robot_diagonalise(int size, robot_matrix A, robot_matrix X, robot_real noise)
+bool robot_diagonalise(int size, robot_matrix A, robot_matrix X)
 {
-    const robot_real none = noise*noise;
     for (int sweep = 0; sweep < SWEEPS; ++sweep) {
         bool turned = false;
         for (int i = 0; i < size; ++i) {
             for (int j = i + 1; j < size; ++j) {
-                const robot_real square = A[i][j]*A[i][j];
-                if (square > TURNED*ROBOT_FABS(A[i][i]*A[j][j]) && square > none) {
+                if (A[i][j]*A[i][j] > TURNED*ROBOT_FABS(A[i][i]*A[j][j])) {
                     rotate(size, A, X, i, j);
                     turned = true;
                 }

@@ -176,8 +176,8 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     if (!unit_motions(size, mass, X)) {
         return ROBOT_SINGULAR;
     }
-    const robot_real noise = congruent(size, K, X, A);
-    if (!robot_diagonalise(size, A, X, noise)) {
+    (void)congruent(size, K, X, A);
+    if (!robot_diagonalise(size, A, X)) {
         return ROBOT_SINGULAR;
     }
     take_over(size, places, A, X, row, modes);
@@ -255,8 +255,8 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     if (!unit_motions(ROBOT_SYSTEM, mass, X)) {
         return ROBOT_SINGULAR;
     }
-    const robot_real noise = congruent(ROBOT_SYSTEM, K, X, A);
-    if (!robot_diagonalise(ROBOT_SYSTEM, A, X, noise)) {
+    (void)congruent(ROBOT_SYSTEM, K, X, A);
+    if (!robot_diagonalise(ROBOT_SYSTEM, A, X)) {
         return ROBOT_SINGULAR;
     }
     take_over(ROBOT_SYSTEM, places, A, X, row, modes);

@@ -132,7 +132,7 @@ def scenario_timing(study: Study, scenarios: Scenarios) -> Timing:
     for i in np.unique(np.linspace(0, len(scenarios) - 1, TRIALS).astype(int)):
         one = scenarios[int(i)]
         row, forces = scenarios.numbers(one, whole.step), of_point[one.point]
-        for springs in (study.lower, study.nominal, study.upper):
+        for springs in _tried(study):
             x = np.concatenate([scenarios.poses[one.pose].q, np.log10(springs)])
             latest = max(latest, _end_of_peak(np.array(forces(x, row)), whole))
     return _timing(study, min(max(SHORTEST, MARGIN * latest), study.horizon), fastest)
@@ -206,10 +206,15 @@ def _latest_peak(study: Study, forces: ca.Function, q: Array, timing: Timing) ->
     latest = 0.0
     for motors in study.motors:
         row = impact_numbers(study.direction, study.speed, study.contact, motors, timing.step)
-        for springs in (study.lower, study.nominal, study.upper):
+        for springs in _tried(study):
             x = np.concatenate([q, np.log10(springs)])
             latest = max(latest, _end_of_peak(np.array(forces(x, row)), timing))
     return latest
+
+
+def _tried(study: Study) -> Array:
+    """Return the softest, the nominal and the stiffest springs, a row each, equal ones once."""
+    return np.unique([study.lower, study.nominal, study.upper], axis=0)
 
 
 def _end_of_peak(force: Array, timing: Timing) -> float:

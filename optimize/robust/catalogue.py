@@ -11,8 +11,7 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..evaluation import keeps_bounds
-from ..evaluation import kept as kept_bounds
+from ..evaluation import keeps_bounds, kept_in_all
 from ..search.failure import Unavailable
 from ..study.study import Study
 from .certificate import Hardening, Setting, Worst
@@ -82,7 +81,7 @@ def bought(setting: Setting, decisive: Setting, at: Hardening, ideal: Worst) -> 
         best = min(best, _descended(start, entries, cost), key=cost)
     if not np.isfinite(cost(best)):
         found = machine(best)
-        each = [kept_bounds(study, q, *limits.parted(found.v)) for q in at.postures]
+        each = kept_in_all(study, at.postures, *limits.parted(found.v))
         broken = max((k for row in each for k in row), key=lambda k: k.share)
         raise Unavailable(broken.name, broken.share)
     found = machine(best)
@@ -108,9 +107,8 @@ def _entries(study: Study) -> list[Array]:
 def _cost(decisive: Setting, at: Hardening) -> float:
     """Return what is made small; infinite where a bound is broken."""
     parted = decisive.limits.parted(at.v)
-    for q in at.postures:
-        if not keeps_bounds(decisive.study, q, *parted):
-            return np.inf
+    if not keeps_bounds(decisive.study, at.postures, *parted):
+        return np.inf
     value = decisive.value(at)[0]
     return 1 / value if decisive.study.objective.more_is_better else value
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array, Indices
 
-from ..evaluation import Kept, kept
+from ..evaluation import Kept, kept_in_all
 from ..impact.timing import Timing
 from ..running.workers import Progress, as_completed
 from ..search.ipopt import VariableBounds, felt
@@ -190,14 +190,12 @@ class Setting:
 
     def kept(self, at: Hardening) -> tuple[Kept, ...]:
         """Return how well each bound is kept, in the pose where it is kept worst."""
-        each = [kept(self.study, q, *self.limits.parted(at.v)) for q in at.postures]
-        return tuple(max(column, key=lambda k: k.share) for column in zip(*each, strict=True))
+        columns = zip(*self._each(at), strict=True)
+        return tuple(max(column, key=lambda k: k.share) for column in columns)
 
     def shares_of_bounds(self, at: Hardening) -> Array:
         """Return the largest share of a limit that any bound uses in each pose, P."""
-        return np.array(
-            [
-                max(k.share for k in kept(self.study, q, *self.limits.parted(at.v)))
-                for q in at.postures
-            ]
-        )
+        return np.array([max(k.share for k in row) for row in self._each(at)])
+
+    def _each(self, at: Hardening) -> list[list[Kept]]:
+        return kept_in_all(self.study, at.postures, *self.limits.parted(at.v))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ..posture.tip_pose import tip_pose
 from ..running.workers import as_completed
 from ..search.failure import SolverFailure
 from ..search.ipopt import Found, Instance
-from ..search.minimax import serves
+from ..search.minimax import GIVEN_UP, ROUGH, WHOLE, Effort, serves
 from ..search.nlp import NlpShape, task_numbers
 from ..search.solve import Outcome, search
 from ..solver_options import FEASIBLE
@@ -28,8 +28,12 @@ ROUNDS = 40
 ADDED_IN_AN_EXCHANGE = 4
 """Scenarios added in an exchange: the worst, each of another pose, point or direction."""
 
-SAMPLED = 3
-"""Searches that begin with hardware at random."""
+SAMPLED, AT_ONCE = 6, 2
+"""Searches that begin with what looks best, at most, and how many of them at once, so that the
+answer does not hang on the number of cores. They end with one that finds what is known."""
+
+HOPS = 3
+"""How often it is looked elsewhere where nothing is to be exchanged any more."""
 
 ALIKE = 1e-3
 """Share of the cost within which optima over the first scenarios count as one."""
@@ -64,11 +68,19 @@ class _Start:
 
 @dataclass(frozen=True, eq=False)
 class _Optimum:
-    """What a search found, over which scenarios, and the postures of all poses."""
+    """What a search found, over which scenarios, and the postures of all poses.
+
+    Attributes:
+        found: where it ended.
+        instance: the NLP with these scenarios.
+        postures: P×n [rad].
+        rough: whether it can still be made better.
+    """
 
     found: Found
     instance: Instance
     postures: Array
+    rough: bool = False
 
 
 def exchange(
@@ -107,15 +119,18 @@ def exchange(
     poses = _poses(setting, [int(np.argmax(bends))], active)
     instance = _instance(setting, active, poses, unit)
     if thorough:
+        known = [limits.vector(*each) for each in starts]
         shared = setting.program, instance, limits, given[poses]
-        starts = [*starts, *promising(*shared, SAMPLED)]
-    begun = [_Start(*each, postures) for each in starts]
-    found = _apart(_searched(setting, instance, poses, begun, free))
-    hopped = not thorough
+        starts = promising(*shared, known, SAMPLED)
+        begun = [_Start(*each, postures) for each in starts]
+        found = _until_known(setting, instance, poses, begun)
+    else:
+        begun = [_Start(*each, postures) for each in starts]
+        found = _apart(_searched(setting, instance, poses, begun, free))
+    hops, left = HOPS if thorough else 0, np.inf
     for rounds in range(1, ROUNDS + 1):
         while (best := min(found, key=lambda each: each.found.cost)).instance is not instance:
-            start = _Start(best.found.springs, best.found.others, best.postures)
-            again = _searched(setting, instance, poses, [start], free)
+            again = _searched(setting, instance, poses, [_again(best)], free)
             found = [*again, *(each for each in found if each is not best)]
         factors = _factors(setting, best.found)
         at = Hardening(limits.vector(best.found.springs, best.found.others), best.postures, factors)
@@ -130,8 +145,13 @@ def exchange(
         if shares[too_far] > 1 + FEASIBLE and too_far not in poses:
             poses = [*poses, too_far]
         elif not fresh:
-            more = [] if hopped else _hops(setting, instance, poses, best)
-            found, hopped = [*found, *more], True
+            if best.rough:
+                more = _searched(setting, instance, poses, [_again(best)], free)
+                found = [*more, *(each for each in found if each is not best)]
+                continue
+            if hops and best.found.cost < left * (1 - ALIKE):
+                left, hops = best.found.cost, hops - 1
+                found = [*found, *_hops(setting, instance, poses, best)]
             if min(each.found.cost for each in found) >= best.found.cost * (1 - FEASIBLE):
                 break
             continue
@@ -141,12 +161,48 @@ def exchange(
     return state
 
 
+def _again(best: _Optimum) -> _Start:
+    """Return the start of a search from where another ended."""
+    return _Start(best.found.springs, best.found.others, best.postures)
+
+
+def _until_known(
+    setting: Setting, instance: Instance, poses: list[int], starts: Sequence[_Start]
+) -> list[_Optimum]:
+    """Return optima, found roughly, until a search ends in one that is known; postures are held."""
+    found: list[_Optimum] = []
+    missed: list[Found] = []
+    for begin in range(0, len(starts), AT_ONCE):
+        some = starts[begin : begin + AT_ONCE]
+        more, without = _feasible(setting, instance, poses, some, False, ROUGH)
+        known, found = len(found) + len(more), _apart([*found, *more])
+        missed += without
+        if len(found) < known:
+            break
+    if not found:
+        raise _failure(setting, instance, missed)
+    return found
+
+
 def _hops(setting: Setting, instance: Instance, poses: list[int], best: _Optimum) -> list[_Optimum]:
-    """Return optima that differ from the best in one value, to begin with; postures are held."""
-    v = setting.limits.vector(best.found.springs, best.found.others)
-    shared = setting.program, instance, setting.limits, setting.given[poses]
-    starts = [_Start(*each, setting.given) for each in elsewhere(*shared, v)]
-    return _feasible(setting, instance, poses, starts, free=False)[0]
+    """Return better optima from what differs from the best in one value alone, one by one.
+
+    Postures are held. Values near the tip, which impacts feel least, come last.
+    """
+    better: list[_Optimum] = []
+    shared, V = (
+        (setting.program, instance, setting.limits, setting.given[poses]),
+        setting.limits.lower.size,
+    )
+    for begin in range(0, V, AT_ONCE):
+        v = setting.limits.vector(best.found.springs, best.found.others)
+        hardware = elsewhere(*shared, v, range(begin, min(begin + AT_ONCE, V)))
+        starts = [_Start(*each, setting.given) for each in hardware]
+        effort = replace(ROUGH, reach=best.found.cost * (1 - FEASIBLE))
+        found = _feasible(setting, instance, poses, starts, False, effort)[0]
+        better += [each for each in found if each.found.status != GIVEN_UP]
+        best = min([best, *better], key=lambda each: each.found.cost)
+    return better
 
 
 def _apart(optima: Sequence[_Optimum]) -> list[_Optimum]:
@@ -201,27 +257,41 @@ def _instance(setting: Setting, active: list[int], poses: list[int], unit: float
 
 
 def _searched(
-    setting: Setting, instance: Instance, poses: list[int], starts: Sequence[_Start], free: bool
+    setting: Setting,
+    instance: Instance,
+    poses: list[int],
+    starts: Sequence[_Start],
+    free: bool,
+    effort: Effort = WHOLE,
 ) -> list[_Optimum]:
     """Return what searches from some starts found that keeps the bounds.
 
     Raises:
         SolverFailure: nothing.
     """
-    optima, missed = _feasible(setting, instance, poses, starts, free)
+    optima, missed = _feasible(setting, instance, poses, starts, free, effort)
     if not optima:
-        nearest = min(missed, key=lambda each: each.violation)
-        raise SolverFailure([_as_outcome(nearest, instance, setting)], setting.study)
+        raise _failure(setting, instance, missed)
     return optima
 
 
+def _failure(setting: Setting, instance: Instance, missed: Sequence[Found]) -> SolverFailure:
+    nearest = min(missed, key=lambda each: each.violation)
+    return SolverFailure([_as_outcome(nearest, instance, setting)], setting.study)
+
+
 def _feasible(
-    setting: Setting, instance: Instance, poses: list[int], starts: Sequence[_Start], free: bool
+    setting: Setting,
+    instance: Instance,
+    poses: list[int],
+    starts: Sequence[_Start],
+    free: bool,
+    effort: Effort = WHOLE,
 ) -> tuple[list[_Optimum], list[Found]]:
     """Return what searches found that keeps the bounds, and what does not."""
     shared = setting.program, instance, setting.limits
     jobs = [
-        setting.pool.submit(search, *shared, s.postures[poses], s.springs, s.others, free)
+        setting.pool.submit(search, *shared, s.postures[poses], s.springs, s.others, free, effort)
         for s in starts
     ]
     optima, missed = [], []
@@ -233,7 +303,7 @@ def _feasible(
         postures = setting.given.copy()
         if free:
             postures[poses] = found.postures
-        optima.append(_Optimum(found, instance, postures))
+        optima.append(_Optimum(found, instance, postures, rough=effort is not WHOLE))
     return optima, missed
 
 

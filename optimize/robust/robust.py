@@ -209,8 +209,7 @@ def indifferent(setting: Setting, state: ExchangeState) -> Array:
         return 1 / value if study.objective.more_is_better else value
 
     def keeps(v: Array) -> bool:
-        parted = setting.limits.parted(v)
-        return all(keeps_bounds(study, q, *parted) for q in state.at.postures)
+        return keeps_bounds(study, state.at.postures, *setting.limits.parted(v))
 
     return indifferent_ranges(setting.limits, state.at.v, cost, keeps)
 

@@ -110,16 +110,14 @@ def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Ar
         x: posture, and log10 of what impacts feel of the hardware, a row each.
         numbers: of the impacts, m×``NUMBERS``.
     """
-    count = len(x)
-    chunk = min(
-        IMPACTS_IN_A_CALL, 1 << (count - 1).bit_length()
-    )  # few sizes, so that maps are made once
-    padding = (-count) % chunk
-    x, numbers = (np.pad(a, ((0, padding), (0, 0)), mode="edge") for a in (x, numbers))
-    peaks = program.impacts[point]["peaks"].map(chunk)
-    found = [
-        np.array(peaks(x[i : i + chunk].T, numbers[i : i + chunk].T, np.zeros((1, chunk)))).max(0)
-        for i in range(0, count + padding, chunk)
-    ]
-    forces = np.concatenate(found)[:count]
+    found, begin = [], 0
+    while begin < len(x):
+        left = len(x) - begin  # few sizes, so that maps are made once
+        chunk = min(IMPACTS_IN_A_CALL, 1 << (left - 1).bit_length())
+        some = np.arange(begin, begin + chunk).clip(max=len(x) - 1)
+        peaks = program.impacts[point]["peaks"].map(chunk)
+        forces = np.array(peaks(x[some].T, numbers[some].T, np.zeros((1, chunk))))
+        found.append(forces.max(axis=0)[:left])
+        begin += chunk
+    forces = np.concatenate(found)
     return np.where(np.isnan(forces), np.inf, forces)  # else sorting would take it for the least

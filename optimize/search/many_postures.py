@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import casadi as ca
 import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..impact.impact_program import impact_program
+from ..impact.impact_program import forces_alone
+from ..impact.peaks import peaks_in_windows
 from ..impact.timing import impact_timing
 from ..running.workers import cores
 from ..study.study import Study
@@ -31,21 +35,19 @@ def peaks_of_postures(study: Study, postures: Array) -> Array:
         postures: m×n.
     """
     spread = np.unique(np.linspace(0, len(postures) - 1, TRIALS).astype(int))
-    timing = impact_timing(study, [postures[i] for i in spread])
-    program = impact_program(study.model, timing.nodes, timing.substeps, compiled=True)
+    given = replace(study, lower=study.nominal, upper=study.nominal)
+    timing = impact_timing(given, [postures[i] for i in spread])
+    forces = forces_alone(study.model, timing.nodes, timing.substeps)
+    x, p = forces.mx_in()
+    peak = ca.mmax(peaks_in_windows(forces(x, p), ca.MX(0)))
     count, padding = len(postures), (-len(postures)) % IMPACTS_IN_A_CALL
     padded = np.pad(postures, ((0, padding), (0, 0)), mode="edge")
     springs = np.tile(np.log10(study.nominal), (IMPACTS_IN_A_CALL, 1))
-    peaks = program["peaks"].map(IMPACTS_IN_A_CALL, "thread", cores())
+    peaks = ca.Function("peak", [x, p], [peak]).map(IMPACTS_IN_A_CALL, "thread", cores())
     rows = study_impacts(study, timing.step)
     found = []
     for begin in range(0, count + padding, IMPACTS_IN_A_CALL):
-        x = np.column_stack([padded[begin : begin + IMPACTS_IN_A_CALL], springs]).T
-        forces = [
-            np.array(
-                peaks(x, np.tile(row[:, None], IMPACTS_IN_A_CALL), np.zeros((1, IMPACTS_IN_A_CALL)))
-            ).max(axis=0)
-            for row in rows
-        ]
-        found.append(np.max(forces, axis=0))
+        at = np.column_stack([padded[begin : begin + IMPACTS_IN_A_CALL], springs]).T
+        rows_of = (np.tile(row[:, None], IMPACTS_IN_A_CALL) for row in rows)
+        found.append(np.max([np.array(peaks(at, each)) for each in rows_of], axis=0).ravel())
     return np.concatenate(found)[:count]

@@ -57,12 +57,36 @@ STATIONARY = 2e-4
 FRESH = 2
 """How often the curvature is forgotten where it promises nothing but the slope is not zero."""
 
+LOOKED, PROMISES = 3, 5
+"""Steps after which a search is given up that would not come to what it must reach if each step
+promised as much as the last, so often."""
+
+GIVEN_UP = "Given_Up"
+"""Status of a search that would not have come to what it had to reach."""
+
 PLAIN = 1e-4
 """Curvature of the two variables that have none, so that the quadratic program is strictly convex:
 for steps of a hundredth of the force it adds a ten-millionth."""
 
 BLOCK = 32
 """Rows of a quadratic program come in multiples, so that few solvers are made."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How far a search goes.
+
+    Attributes:
+        gain: share of the force below which what a step promises is not worth it.
+        reach: cost that must be in reach, else the search is given up.
+    """
+
+    gain: float = GAIN
+    reach: float = np.inf
+
+
+WHOLE, ROUGH = Effort(), Effort(gain=1e-4)
+"""To the end; and as far as it takes to tell one optimum from another."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +179,7 @@ def least_worst(
     postures: Array,
     springs: Array,
     others: Array | None = None,
+    effort: Effort = WHOLE,
 ) -> Found:
     """Make the largest of all shares small over the hardware; arguments as ``ipopt.minimise``."""
     held = Held(program, instance, np.clip(postures, bounds.q_lower, bounds.q_upper))
@@ -164,9 +189,14 @@ def least_worst(
     while steps < STEPS:
         model = _model(search)
         search, step = _bounded(search, model)
-        if search.promised(step) <= GAIN * max(1.0, search.merit(search.at)):
+        promised, merit = search.promised(step), search.merit(search.at)
+        if steps >= LOOKED and merit - PROMISES * promised > effort.reach:
+            status = GIVEN_UP
+            break
+        kept = search.at.violation <= FEASIBLE
+        if promised <= (effort.gain if kept else GAIN) * max(1.0, merit):
             slope = abs(search.curvature @ step.step).max(initial=0.0)
-            if slope <= STATIONARY or fresh == FRESH:
+            if slope <= STATIONARY or fresh == FRESH or effort.gain > GAIN:
                 status = "Solve_Succeeded"
                 break
             search, fresh = search.forgotten(), fresh + 1

@@ -157,20 +157,31 @@ def bound_rows(program: Program, postures: Array, v: Array, tasks: Array) -> tup
         v: log10 of the hardware's values, m×V.
         tasks: numbers of each posture's task, m×size.
     """
-    count, x = len(postures), np.column_stack([postures, v])
-    rows, by_x = _tasks(program.task, count)(x.T, tasks.T)
-    slopes = np.array(by_x).reshape(program.rows, count, -1)[program.held :, :, program.n :]
-    return np.array(rows)[program.held :].T, slopes.transpose(1, 0, 2)
+    bounds = _bounds(program.task, program.held, program.n)
+    found = bounds(np.column_stack([postures, v]).T, tasks.T)
+    rows, by_v = (np.array(each) for each in found)
+    return rows.T, by_v.reshape(len(rows), len(postures), -1).transpose(1, 0, 2)
+
+
+def values_of_bounds(program: Program, postures: Array, v: Array, tasks: Array) -> Array:
+    """Return the rows of the bounds alone, m×R; arguments as ``bound_rows``."""
+    bounds = _bounds(program.task, program.held, None)
+    return np.array(bounds(np.column_stack([postures, v]).T, tasks.T)).T
+
+
+@lru_cache(maxsize=32)
+def _bounds(serialised: str, held: int, n: int | None) -> ca.Function:
+    """Return (x, b) -> the bounds' rows and, behind n joints, their derivative by v."""
+    task = _loaded(serialised)
+    x, b = task.sx_in()
+    rows, by_x = task(x, b)
+    found = [rows[held:, :]] if n is None else [rows[held:, :], by_x[held:, n:]]
+    return ca.Function("bounds", [x, b], found)
 
 
 @lru_cache(maxsize=16)
 def _loaded(serialised: str) -> ca.Function:
     return ca.Function.deserialize(serialised)
-
-
-@lru_cache(maxsize=64)
-def _tasks(serialised: str, count: int) -> ca.Function:
-    return _loaded(serialised).map(count)
 
 
 @lru_cache(maxsize=64)

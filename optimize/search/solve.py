@@ -21,7 +21,7 @@ from .ipopt import (
     rank,
     ranked,
 )
-from .minimax import least_worst, serves
+from .minimax import WHOLE, Effort, least_worst, serves
 from .nlp import Program
 
 Mode = Literal["table", "free"]
@@ -159,11 +159,14 @@ def search(
     springs: Array,
     others: Array | None,
     free: bool,
+    effort: Effort = WHOLE,
 ) -> Found:
     """Run ``least_worst`` or, where it does not serve or fails, ``minimise``, too."""
     shared = program, instance, bounds, postures, springs, others
     with IN_TURN:
         if not serves(instance.shape.objective, free=free):
             return minimise(*shared, free=free)
-        found = least_worst(*shared)
-        return found if found.solved else min(found, minimise(*shared, free=free), key=rank)
+        found = least_worst(*shared, effort)
+        if found.solved or effort != WHOLE:
+            return found
+        return min(found, minimise(*shared, free=free), key=rank)

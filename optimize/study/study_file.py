@@ -200,8 +200,10 @@ def read_toml(source: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(source.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
-        known = ", ".join(built_in_studies())
-        raise InvalidValue(str(source), f"no such study file; built in: {known}") from None
+        known = built_in_studies()
+        meant = did_you_mean(str(source), known)
+        reason = f"no such study file; built in: {', '.join(known)}{meant}"
+        raise InvalidValue(str(source), reason) from None
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidValue(str(source), f"cannot be read: {error}") from None
     except tomllib.TOMLDecodeError as error:

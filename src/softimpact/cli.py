@@ -131,8 +131,9 @@ def _exit_code(error: Exception) -> int | None:
 
 def _one_line(error: Exception) -> str:
     text = str(error)
-    if isinstance(error, OSError) and error.filename is not None:
-        text = f"{error.filename}: {error.strerror}"
+    if isinstance(error, OSError) and error.strerror:  # without a file stdout's, or a full disk's
+        place = "the result cannot be written" if error.filename is None else error.filename
+        text = f"{place}: {error.strerror}"
     elif hasattr(error, "format_message"):  # usage errors
         text = error.format_message()
     return " ".join(text.split())

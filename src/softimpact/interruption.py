@@ -23,7 +23,7 @@ def interruptible() -> Iterator[None]:
     """Let Ctrl-C raise KeyboardInterrupt, or end the process where that would be lost.
 
     CasADi's solvers take an exception that Ctrl-C raises for their own end, and the command would
-    go on with what is no result.
+    go on with what is no result. CasADi's Python drops it, or makes another of it.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -36,8 +36,27 @@ def interruptible() -> Iterator[None]:
 
 
 def _interrupt(signum: int, frame: FrameType | None) -> None:
-    if not _in_solver(frame):
+    casadi = _casadi_frames(frame)
+    if any(each.f_code.co_qualname.startswith("Function.") for each in casadi):
+        _end()  # it may be a solver
+    caller = casadi[-1].f_back if casadi else None
+    if caller is None:
         raise KeyboardInterrupt
+    _raise_in(caller)
+
+
+def _casadi_frames(frame: FrameType | None) -> list[FrameType]:
+    """Return the frames in which CasADi's Python is, from the inside out."""
+    module, found = sys.modules.get("casadi.casadi"), []
+    while module is not None and frame is not None:
+        if frame.f_code.co_filename == module.__file__:
+            found.append(frame)
+        frame = frame.f_back
+    return found
+
+
+def _end() -> None:
+    """End this process and its children at once."""
     for child in multiprocessing.active_children():
         child.terminate()
     if sys.stderr.isatty():
@@ -47,15 +66,16 @@ def _interrupt(signum: int, frame: FrameType | None) -> None:
     os._exit(INTERRUPTED)
 
 
-def _in_solver(frame: FrameType | None) -> bool:
-    """Whether CasADi evaluates a function, which may be a solver."""
-    casadi = sys.modules.get("casadi.casadi")
-    while casadi is not None and frame is not None:
-        code = frame.f_code
-        if code.co_filename == casadi.__file__ and code.co_qualname.startswith("Function."):
-            return True
-        frame = frame.f_back
-    return False
+def _raise_in(frame: FrameType) -> None:
+    """Raise KeyboardInterrupt as soon as a frame goes on, or ends."""
+
+    def interrupt(*_: object) -> None:
+        sys.settrace(None)
+        frame.f_trace = None
+        raise KeyboardInterrupt
+
+    frame.f_trace = interrupt
+    sys.settrace(lambda *_: None)  # without one, no frame is traced
 
 
 def report() -> None:

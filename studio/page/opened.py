@@ -13,13 +13,14 @@ import numpy as np
 
 from softimpact.optimize import Study, load_study
 from softimpact.optimize.machine.coordinates import is_plain
-from softimpact.robots import built_in_robots, study_path
+from softimpact.robots import built_in_robots, built_in_studies, study_path
 from softimpact.simulate.trajectory import Trajectory
 from softimpact.symbolic import (
     Contact,
     Drives,
     InvalidValue,
     Robot,
+    UnknownName,
     body_region,
     drives,
     load_robot,
@@ -32,7 +33,8 @@ from .. import design_report, map_files, pareto_record, program_record, trade_of
 from ..first_study import NOMINAL, first_posture
 from ..motion_file import read_motion
 from ..results_folder import RESULTS
-from ..situation import TypedArm, loaded_arm
+from ..situation import loaded_arm
+from ..typed import TypedArm
 from ..waypoints import read_waypoints
 
 SPEED = 0.5
@@ -136,12 +138,19 @@ def opened(what: str, arm: TypedArm | None = None) -> Opened:
 
     Raises:
         InvalidValue: a folder without results, or with some that have no page.
+        UnknownName: none of these.
         SoftImpactError: a model or a study that cannot be read.
     """
     path = Path(what)
     is_folder = what not in built_in_robots() and path.is_dir()
     if not is_folder and study_path(what).suffix != ".toml":
-        return of_model(arm or TypedArm(what))
+        try:
+            return of_model(arm or TypedArm(what))
+        except UnknownName as error:
+            if error.name != what:
+                raise
+            known = [*built_in_robots(), *built_in_studies()]
+            raise UnknownName("robot, study or folder of results", what, known) from None
     if arm is not None:
         raise InvalidValue("tip", "and the like are a model's; studies and results have theirs")
     return _of_results(path) if is_folder else of_study(load_study(path))

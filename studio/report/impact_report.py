@@ -121,12 +121,13 @@ def _answer(answer: Answer) -> str:
     words = {
         "kept": f"Yes: at most {peak:.0f} N; {share}.",
         "exceeded": f"No: up to {peak:.0f} N; {share}.",
-        "not permitted": f"No: contact here is not to be designed for; it would be {peak:.0f} N.",
+        "not permitted": f"No, whatever the force; it would be {peak:.0f} N.",
         "no limit": f"There is no limit to hold it against: at most {peak:.0f} N.",
     }[verdict.ruling]
     if found.safe_speed is None:
         return words
-    return f"{words} Every limit is kept up to {found.safe_speed:.3g} m/s."
+    reference = " (for reference)" if verdict.ruling == "not permitted" else ""
+    return f"{words} Every limit{reference} is kept up to {found.safe_speed:.3g} m/s."
 
 
 def _arm(answer: Answer) -> ArmPicture:

@@ -31,7 +31,7 @@ class BodyRegion:
         quasi_static_limit: force limit when pressed or clamped [N].
         transient_limit: force limit of a short free impact [N], None where none is given.
         damping: c_h [N·s/m].
-        permitted: False where contact is not to be designed for, whatever the force; the
+        permitted: False where contact may not happen at all, whatever the force; the
             quasi-static limit is then for reference alone.
         quasi_static_pressure: limit [Pa]; of a region, that of its most sensitive area; None where
             none is given.

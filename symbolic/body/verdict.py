@@ -44,7 +44,7 @@ class Limits:
     """What a body may bear.
 
     Attributes:
-        permitted: False where contact is not to be designed for, whatever the force; the limits
+        permitted: False where contact may not happen at all, whatever the force; the limits
             are then for reference.
         transient: of the peak in the first 0.5 s.
         quasi_static: of what presses later; None where nothing can, since the body gives way.

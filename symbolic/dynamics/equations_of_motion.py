@@ -8,6 +8,7 @@ fold and whatever no output needs is never computed.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import product
 from typing import overload
 
@@ -18,7 +19,7 @@ from ..robot.joint_frames import customised
 from ..robot.rigid import Array
 from ..robot.robot import BASE, Joint, JointKind, Robot
 from .composites import Composite, bodies_of
-from .kinematics import JointMotion, cross, motions, require_length
+from .kinematics import JointMotion, cross, motions, poses, require_length
 
 Gravity = Sequence[float] | Array
 """Acceleration along the base's axes [m/s²], length 3."""
@@ -191,14 +192,22 @@ def bias_torques(
     return on_scalars(_bias_torques, (customised(robot), tuple(gravity)), q, velocity)
 
 
-def _bias_torques(robot: Robot, gravity: tuple[float, ...], q: Matrix, velocity: Matrix) -> Matrix:
-    require_length(robot, "velocity", velocity)
-    moves = motions(robot, q)
+@dataclass(frozen=True)
+class _CoastingFrames:
+    """How joints' frames move in their own axes while no joint accelerates, by joint."""
+
+    spin: dict[int, Matrix]
+    spin_rate: dict[int, Matrix]
+    acceleration: dict[int, Matrix]
+
+
+def _coasting(
+    robot: Robot, moves: list[JointMotion], velocity: Matrix, gravity: FixedGravity
+) -> _CoastingFrames:
+    """Return how all frames move; gravity counts as an acceleration of the base against it."""
     spin = {BASE: ca.SX.zeros(3)}
     spin_rate = {BASE: ca.SX.zeros(3)}
     acceleration = {BASE: -ca.SX(ca.sparsify(ca.DM(list(gravity))))}
-    bodies = bodies_of(robot)
-    forces, moments = [], []
     for i, joint in enumerate(robot.joints):
         p, move, along = joint.parent, moves[i], ca.vertcat(0, 0, velocity[i])
         w = move.to_child(spin[p])
@@ -211,7 +220,47 @@ def _bias_torques(robot: Robot, gravity: tuple[float, ...], q: Matrix, velocity:
             spin_rate[i], spin[i] = move.to_child(spin_rate[p]), w
             a = a + 2 * cross(w, along)
         acceleration[i] = a
-        force, moment = _newton_euler(bodies[i], spin[i], spin_rate[i], a)
+    return _CoastingFrames(spin, spin_rate, acceleration)
+
+
+@overload
+def bias_acceleration(robot: Robot, frame: str, q: Kind, velocity: Kind | Numbers) -> Kind: ...
+@overload
+def bias_acceleration(robot: Robot, frame: str, q: Numbers, velocity: Kind) -> Kind: ...
+@overload
+def bias_acceleration(robot: Robot, frame: str, q: Numbers, velocity: Numbers) -> ca.DM: ...
+def bias_acceleration(robot: Robot, frame: str, q: Matrix, velocity: Matrix) -> Matrix:
+    """Return the acceleration J̇ q̇ of a frame's origin while joints keep their speed, base axes.
+
+    Args:
+        robot: any robot.
+        frame: its name; raises FrameNotFound.
+        q: configuration, length n, of any matrix kind.
+        velocity: joint velocities, length n.
+    """
+    robot.frame(frame)
+    return on_scalars(_bias_acceleration, (customised(robot), frame), q, velocity)
+
+
+def _bias_acceleration(robot: Robot, name: str, q: Matrix, velocity: Matrix) -> Matrix:
+    frame = robot.frame(name)
+    moves = motions(robot, q)
+    found, i = _coasting(robot, moves, velocity, (0.0, 0.0, 0.0)), frame.joint
+    offset = ca.SX(ca.sparsify(ca.DM(frame.placement.translation)))
+    w = found.spin[i]
+    a = found.acceleration[i] + cross(found.spin_rate[i], offset) + cross(w, cross(w, offset))
+    return ca.mtimes(poses(robot, moves)[i].rotation, a)
+
+
+def _bias_torques(robot: Robot, gravity: FixedGravity, q: Matrix, velocity: Matrix) -> Matrix:
+    require_length(robot, "velocity", velocity)
+    moves = motions(robot, q)
+    found = _coasting(robot, moves, velocity, gravity)
+    forces, moments = [], []
+    for i, body in enumerate(bodies_of(robot)):
+        force, moment = _newton_euler(
+            body, found.spin[i], found.spin_rate[i], found.acceleration[i]
+        )
         forces.append(force)
         moments.append(moment)
     torques = [ca.SX(0.0)] * robot.n

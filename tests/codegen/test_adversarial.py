@@ -13,13 +13,13 @@ import impact_search
 import numpy as np
 import pytest
 from adversarial.__main__ import key, read
-from adversarial.cases import Draw
+from adversarial.cases import WIDE_ROTORS, Draw
 from adversarial.forces import forces
 from adversarial.impacts import Cases, Robot
 from adversarial.robots import ROBOTS, package_of
 from adversarial.search import Search, look
 from compiled_impacts import BOUNDED, DRIVEN, FREE, OK, SERVO, SINGULAR
-from compiled_packages import Generated, mostly_slow
+from compiled_packages import KINDS, Generated, mostly_slow
 from independent_impacts import arm_of, force_by_scipy
 
 from softimpact.simulate import Approach
@@ -134,6 +134,26 @@ def test_what_was_found_once_keeps_its_limit(
         shares = np.array([[1.0, 0.95, 0.8, 0.5]])
         right = forces(robot, cases, speed[0] * shares, 4.0) / cases.limit
         assert right.max() <= 1, row
+
+
+def test_float_finds_what_double_does_where_slow_modes_carry_the_motion(
+    package: Callable[[str], Generated], tmp_path: Path
+) -> None:
+    """Rotors far heavier than links beside rotors far lighter, and a body that is pressed long."""
+    robot, count = robot_of(package, "rmin", tmp_path), 60
+    random = np.random.default_rng(66)
+    numbers = {"horizon": 0.5, "stiffness": 150.0, "damping": 0.5, "mass": 0.0, "skin": 1.9e7}
+    cases = replace(
+        Draw(robot, random, wide=True).cases(count),
+        rotors=np.where(random.random((count, robot.joints)) < 0.5, *WIDE_ROTORS),
+        motors=np.full(count, FREE, np.int32),
+        steps=np.full(count, 8000, np.int32),
+        **{name: np.full(count, number) for name, number in numbers.items()},
+    ).rounded()
+    found = [robot.answers("peak_force", cases, np.full(count, 10.0), real) for real in KINDS]
+    (status, double), (_, single) = found
+    assert (status == OK).all()
+    np.testing.assert_allclose(single, double, rtol=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -69,7 +69,7 @@ def test_parameters_and_regions_may_differ_by_row(rr: batch.CompiledPackage) -> 
     assert np.array_equal(
         rr.safe_speed(q, n, region="hand", horizon=0.1)["speed"], of_hand["speed"]
     )
-    with pytest.raises(InvalidValue, match="'head' is not to be designed for; give a limit"):
+    with pytest.raises(InvalidValue, match="'head' may not be hit at all; give a limit"):
         rr.safe_speed(q, n, region="head", horizon=0.1)
     assert (worse["speed"] <= 1.02 * free["speed"]).all()
 

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sine and cosine of float builds."""
+"""Sine and cosine, in float to the last bit as Python has them, in double against NumPy's."""
 
 from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 from compiled_packages import Generated
 from numpy.typing import NDArray
 
+from softimpact.codegen import wide_sine
 from softimpact.codegen.sine import ERROR, LIMIT, sine_and_cosine
 
 Angles = NDArray[np.float32]
@@ -30,12 +32,16 @@ def test_error_is_within_its_bound() -> None:
 
 @pytest.fixture(name="in_c")
 def _in_c(package: Callable[[str], Generated]) -> Callable[[Angles], Angles]:
-    entry = package("rr").load("float").library.rr_sines_cosines
-    array = ctypes.POINTER(ctypes.c_float)
+    return entry_of(package, "float", ctypes.c_float)
+
+
+def entry_of(package: Callable[[str], Generated], real: str, kind: Any) -> Callable[[Any], Any]:
+    entry = package("rr").load(real).library.rr_sines_cosines
+    array = ctypes.POINTER(kind)
     entry.argtypes = [array, ctypes.c_int, array, array]
 
-    def call(x: Angles) -> Angles:
-        both = np.zeros((2, x.size), dtype=np.float32)
+    def call(x: NDArray[Any]) -> NDArray[Any]:
+        both = np.zeros((2, x.size), dtype=x.dtype)
         angles, sines, cosines = (values.ctypes.data_as(array) for values in (x, *both))
         entry(angles, x.size, sines, cosines)
         return both
@@ -51,3 +57,13 @@ def test_c_computes_the_same_to_the_last_bit(in_c: Callable[[Angles], Angles]) -
 def test_large_angles_go_to_the_library(in_c: Callable[[Angles], Angles], angle: float) -> None:
     x = np.array([0.5, angle, -1.0], dtype=np.float32)
     np.testing.assert_allclose(in_c(x), [np.sin(x, dtype=float), np.cos(x, dtype=float)], atol=1e-7)
+
+
+def test_double_is_within_its_bound(package: Callable[[str], Generated]) -> None:
+    in_c = entry_of(package, "double", ctypes.c_double)
+    turns = np.arange(-63000, 63001, 7) * np.pi / 2
+    x = np.concatenate([np.linspace(-7, 7, 40001), turns, turns + 0.3, [0.0, 1e-300, 99999.0]])
+    found, right = in_c(x), np.array([np.sin(x), np.cos(x)])
+    assert abs(found - right).max() < wide_sine.ERROR
+    far = np.array([0.5, wide_sine.LIMIT, -1e9, 1e300])
+    np.testing.assert_array_equal(in_c(far), [np.sin(far), np.cos(far)])

@@ -18,6 +18,7 @@ from softimpact.symbolic import (
     JointKind,
     Matrix,
     Robot,
+    bias_acceleration,
     bias_torques,
     frame_jacobian,
     frame_pose,
@@ -70,6 +71,19 @@ def test_kinetic_energy_is_that_of_the_moving_masses(
         energy += 0.5 * (joint.inertia.mass * v @ v + w @ I @ w)
     M = np.array(mass_matrix(robot, q))
     assert 0.5 * velocity @ M @ velocity == pytest.approx(energy, rel=1e-9, abs=1e-12)
+
+
+@LAWS
+@given(robots(), vectors(5), vectors(5))
+def test_a_coasting_frame_accelerates_as_its_path_bends(
+    robot: Robot, q: Array, velocity: Array
+) -> None:
+    """J̇ q̇ = d²p/dt² along q + q̇ t."""
+    q, v, tip = q[: robot.n], velocity[: robot.n], str(robot.tip)
+    t = ca.SX.sym("t")
+    path = frame_pose(robot, tip, ca.SX(q) + t * ca.SX(v)).position
+    bent = ca.Function("bent", [t], [ca.jacobian(ca.jacobian(path, t), t)])(0)
+    assert_near(bias_acceleration(robot, tip, q, v), bent, 1e-9)
 
 
 @LAWS

@@ -9,20 +9,26 @@ them notices is printed; docs/verification.md judges what was found.
 from __future__ import annotations
 
 import argparse
+import math
+import multiprocessing
 import os
 import random
+import resource
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from queue import Queue
+from types import SimpleNamespace
 
 import coverage
+import pytest
 from mutants import Mutant, mutants, mutated  # type: ignore[import-not-found] # beside it
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,13 +36,19 @@ FEW = 25
 """Tests that a fault meets first: those that pass through the fewest lines, so the closest ones."""
 MANY = 200
 """Tests that a fault meets at most."""
-SECONDS = 300
-"""Time after which a run counts as endless, so the fault as noticed."""
+TEST_SECONDS = 20
+"""Processor time after which a test counts as endless: fast ones take two. The fault is noticed."""
+RUN_SECONDS = 300
+"""Time after which a run that waits counts as endless."""
+
+PROCESSES = multiprocessing.get_context("forkserver")
+"""Starts a process for each fault; what all of them import is imported once."""
+PROCESSES.set_forkserver_preload(["casadi", "hypothesis", "mujoco", "pytest"])
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A mutant of a file, and the tests that pass through its line, closest first."""
+    """A mutant of a file, and the tests that may notice it, closest first."""
 
     file: str
     mutant: Mutant
@@ -45,23 +57,32 @@ class Fault:
 
 def faults(folders: Sequence[str], data: coverage.CoverageData) -> Iterator[Fault]:
     """Yield the faults of folders whose lines some test passes through."""
-    lines_of: dict[str, int] = {}
-    contexts: dict[Path, dict[int, list[str]]] = {}
+    lines_of: Counter[str] = Counter()
+    ran: dict[Path, dict[int, set[str]]] = {}
     for measured in data.measured_files():
-        contexts[Path(measured).resolve()] = by_line = data.contexts_by_lineno(measured)
-        for tests in by_line.values():
-            for test in tests:
-                lines_of[test] = lines_of.get(test, 0) + 1
+        ran[Path(measured).resolve()] = by_line = {
+            line: {context.rpartition("|")[0] for context in contexts} - {""}
+            for line, contexts in data.contexts_by_lineno(measured).items()
+        }
+        lines_of.update(test for tests in by_line.values() for test in tests)
+
+    def closest(tests: Iterable[str]) -> list[str]:
+        return sorted(tests, key=lambda test: (lines_of[test], test))
+
     for folder in folders:
         for path in sorted((ROOT / folder).rglob("*.py")):
-            by_line = contexts.get(path, {})
-            anywhere = {test for tests in by_line.values() for test in tests}
-            for mutant in mutants(path.read_text(encoding="utf-8")):
-                ran = set(by_line.get(mutant.line, ())) - {""} or anywhere  # constants of a module
-                tests = sorted(ran - {""}, key=lambda test: (lines_of[test], test))
-                names = tuple(dict.fromkeys(test.rpartition("|")[0] for test in tests))
-                if names:
-                    yield Fault(path.relative_to(ROOT).as_posix(), mutant, names[:MANY])
+            by_line, file = ran.get(path, {}), path.relative_to(ROOT)
+            through = closest(set().union(*by_line.values()))
+            # what a module or a cache holds was made while another test ran, or none
+            beside = closest(test for test in lines_of if test.startswith(tests_of(file)))
+            for mutant in mutants(path.read_text(encoding="utf-8")) if by_line else ():
+                tests = dict.fromkeys([*closest(by_line.get(mutant.line, ())), *through, *beside])
+                yield Fault(file.as_posix(), mutant, tuple(tests)[:MANY])
+
+
+def tests_of(file: Path) -> str:
+    """Return the folder of tests that is named as the deepest folder of a source."""
+    return next(f"tests/{f.as_posix()}/" for f in file.parents if (ROOT / "tests" / f).is_dir())
 
 
 @contextmanager
@@ -97,16 +118,35 @@ def noticed(fault: Fault, free: Queue[Path]) -> bool:
 
 
 def fails(copy: Path, tests: Sequence[str]) -> bool:
-    """Return whether one of some tests fails."""
-    environment = {**os.environ, "PYTHONPATH": str(copy / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
-    try:
-        done = subprocess.run(
-            command, cwd=copy, env=environment, capture_output=True, check=False, timeout=SECONDS
-        )
-    except subprocess.TimeoutExpired:
-        return True
-    return done.returncode != 0
+    """Return whether one of some tests fails, in a process that has the libraries already."""
+    process = PROCESSES.Process(target=run, args=(copy, tests))
+    process.start()
+    process.join(RUN_SECONDS)
+    if process.exitcode is None:
+        process.kill()
+        process.join()
+    return process.exitcode != 0
+
+
+def run(copy: Path, tests: Sequence[str]) -> None:
+    """Run tests of a copy, silently, and end this process as they ended."""
+    os.chdir(copy)
+    sys.path.insert(0, str(copy / "src"))
+    sys.dont_write_bytecode = True
+    os.environ["PYTHONPATH"] = str(copy / "src")  # of the processes that tests start
+    for stream in (sys.stdout, sys.stderr):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+    options = "-x -q -p no:cacheprovider -p no:randomly --hypothesis-profile first-failure"
+    already = "-W ignore::pytest.PytestAssertRewriteWarning"  # imported, by PROCESSES
+    hurry = SimpleNamespace(pytest_runtest_setup=end_soon)
+    sys.exit(pytest.main([*options.split(), *already.split(), *tests], plugins=[hurry]))
+
+
+def end_soon() -> None:
+    """End this process when the test that begins takes too much processor time."""
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    limit = math.ceil(used.ru_utime + used.ru_stime) + TEST_SECONDS
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
 
 
 def main() -> int:
@@ -115,6 +155,7 @@ def main() -> int:
     parser.add_argument("folders", nargs="+")
     parser.add_argument("--sample", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--most", type=int, default=None, help="survivors that are no failure")
     given = parser.parse_args()
     data = coverage.CoverageData(str(ROOT / ".coverage"))
@@ -124,8 +165,7 @@ def main() -> int:
         random.Random(given.seed).sample(known, min(given.sample, len(known))),
         key=lambda fault: (fault.file, fault.mutant),
     )
-    cores = os.cpu_count() or 1
-    with copies(cores) as free, ThreadPoolExecutor(cores) as pool:
+    with copies(given.processes) as free, ThreadPoolExecutor(given.processes) as pool:
         answers = pool.map(lambda fault: noticed(fault, free), chosen)
         missed = []
         for fault, found in zip(chosen, answers, strict=True):

@@ -14,7 +14,7 @@ from oracles import Pinocchio, configurations
 
 from softimpact.simulate import Approach, assess_impact, simulate_impact
 from softimpact.simulate.linear_error import UNSEEN, linear_error
-from softimpact.simulate.trust import TRUSTED
+from softimpact.simulate.trust import TRUSTED, not_trusted
 from softimpact.symbolic import (
     Contact,
     InvalidValue,
@@ -117,3 +117,12 @@ def test_closed_chains_are_refused(tmp_path: Path) -> None:
     model = impact_model(robot_of(tmp_path, FIVE_BAR))
     with pytest.raises(InvalidValue, match="closed chains"):
         linear_error(model, Approach(np.zeros(4), ALONG_Y, 1.0), 0.01)
+
+
+def test_a_verdict_that_may_flip_is_asked_of_the_nonlinear_robot_too() -> None:
+    assert not_trusted(0.2, 0.0)
+    assert not not_trusted(0.05, 0.5)
+    assert not_trusted(0.05, 0.96)
+    assert not not_trusted(0.05, 1.2)  # it is exceeded anyway
+    assert not not_trusted(0.005, 0.999)
+    assert not not_trusted(None, 0.999)

@@ -7,14 +7,18 @@ import csv
 import io
 import logging
 import time
+from dataclasses import dataclass
+from typing import Annotated
 
 import pytest
 import typer
 from command_line import refusal, run, run_json
 
 from softimpact.cli import app
+from softimpact.studio.common_options import common
 from softimpact.studio.output import folded, print_table, say, shown, tables_as_csv
 from softimpact.studio.progress import working
+from softimpact.studio.typed import But
 
 COMMANDS = {command.name or "": command for command in app.registered_commands}
 ANALYZE = ("analyze", "rr", "--q", "[0.1, 0, 0.4, 0]", "--direction", "[1, 0, 0]")
@@ -108,11 +112,49 @@ def test_a_terminal_sees_that_a_command_is_at_work(
         (("simulate", *ANALYZE[1:], "--region", "chset", "--speed", "1"), "chest"),
         (("simulate", *ANALYZE[1:], "--region", "chest", "--model", "linearized"), "linearised"),
         (("select", "robots/studies/panda_24_poses.toml", "--by", "gaif"), "giaf"),
+        (("check", "panda_24_pose"), "panda_24_poses"),
+        (("studio", "robust_pand", "--out", "page"), "robust_panda"),
     ],
     ids=lambda case: case if isinstance(case, str) else case[0],
 )
 def test_errors_show_the_name_that_was_meant(words: tuple[str, ...], meant: str) -> None:
     assert f"did you mean '{meant}'?" in refusal(*words)
+
+
+@dataclass(frozen=True)
+class Hand:
+    mass: Annotated[float, typer.Option("--mass")]
+    tip: Annotated[str | None, typer.Option("--tip")] = None
+    end: Annotated[str | None, typer.Option("--end")] = None
+
+
+Kilograms = Annotated[float, typer.Option("--kg")]
+
+
+def test_a_command_takes_a_group_of_options_but_those_it_cannot_use(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def hit(
+        hand: Annotated[Hand, But(mass=Kilograms, end=None)],
+        speed: Annotated[float, typer.Option("--speed")] = 0.5,
+    ) -> None:
+        print(hand, speed)
+
+    command = typer.Typer()
+    command.command()(common(hit))
+    command(["--kg", "2", "--tip", "palm"], standalone_mode=False)
+    assert capsys.readouterr().out == f"{Hand(2.0, 'palm')} 0.5\n"
+    for other in ("--end", "--mass"):
+        with pytest.raises(Exception, match=f"No such option: {other}"):
+            command(["--kg", "2", other, "3"], standalone_mode=False)
+
+
+def test_several_impacts_fit_eighty_columns() -> None:
+    directions = ("--direction", "[0, 1, 0]")
+    found = run("simulate", *ANALYZE[1:], *directions, "--region", "chest", "--speed", "0.5")
+    assert found.code == 0
+    assert max(map(len, found.out.splitlines())) <= 80
+    assert found.out.index("exceeded") < found.out.index("kept")
 
 
 def test_cells_are_short_for_people() -> None:

@@ -47,6 +47,25 @@ def endless():
         solver(x0=0)
 """
 
+PYTHON = """
+@cli.app.command()
+def endless():
+    import casadi as ca
+    import numpy as np
+
+    class Slow(np.ndarray):
+        def astype(self, *args, **kwargs):
+            time.sleep(0.1)
+            return super().astype(*args, **kwargs)
+
+    numbers = np.zeros(2).view(Slow)
+    ca.DM(numbers)
+    ready()
+    while True:
+        ca.DM(numbers)
+"""
+"""CasADi's own Python takes an exception for numbers that it cannot use."""
+
 WORKERS = """
 def job():
     ready()
@@ -70,7 +89,7 @@ if __name__ == "__main__":
 
 
 @pytest.mark.parametrize(
-    "command", [WAITING, SOLVER, WORKERS], ids=["waiting", "solver", "workers"]
+    "command", [WAITING, SOLVER, PYTHON, WORKERS], ids=["waiting", "solver", "python", "workers"]
 )
 def test_one_line_and_exit_code_130(tmp_path: Path, command: str) -> None:
     script = tmp_path / "command.py"

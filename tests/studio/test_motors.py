@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 from command_line import refusal, run_json
 
+from softimpact.simulate.linear_error import UNSEEN
+
 Q = "[-1.22, 0.84, 0.72, -2.41, 0.79, 1.97, -2.04]"
 WHERE = ("panda", "--q", Q, "--direction", "[0, 1, 0]")
 CHEST = ("--region", "chest", "--speed", 0.5)
@@ -61,7 +63,8 @@ def test_safe_speed_keeps_every_limit_at_both_ends() -> None:
     assert found["safe_speed"] == min(found["safe_speeds"].values())
     at = ("--region", "chest", "--speed", found["safe_speed"], "--joint-stiffness", 1e4)
     there = run_json("simulate", *WHERE, *at)
-    assert there["share_of_limit"] == pytest.approx(1, rel=1e-6)
+    # the linear robot's share; of a safe speed the nonlinear one is asked, too
+    assert 1 - there["linear_error"] - UNSEEN < there["share_of_limit"] <= 1 + 1e-6
 
 
 def test_unknown_rotors_are_taken_for_the_worst(tmp_path: Path) -> None:
@@ -125,7 +128,7 @@ def test_some_regions_must_not_be_hit(region: str) -> None:
     slow = run_json("simulate", *WHERE, "--region", region, "--speed", 0.01)
     assert slow["verdict"] == "not permitted"
     assert not slow["within_limit"]
-    assert "not to be designed for" in slow["warnings"][0]
+    assert "is not permitted, whatever the force" in slow["warnings"][0]
 
 
 def test_two_body_formula_stands_beside() -> None:

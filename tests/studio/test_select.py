@@ -99,7 +99,8 @@ def test_table_for_people(study: Path) -> None:
     outcome = run("select", study)
     assert outcome.code == 0
     assert outcome.err == (
-        "warning: contact with 'head' is not to be designed for; its limits are for reference\n"
+        "warning: contact with 'head' is not permitted, whatever the force; its limits are for "
+        "reference\n"
     )
     for word in ("low", "high", "GIAF", "peak", "limit"):
         assert word in outcome.out

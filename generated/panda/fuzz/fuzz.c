@@ -20,6 +20,7 @@ typedef struct {
     panda_real speed;
     panda_real restitution;
     panda_real other_mobility;
+    panda_real duration;
     panda_real region[4];
     panda_real number;
     panda_real dq[7];
@@ -177,6 +178,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         memset(&out, 0xA5, sizeof out);
         const int status = panda_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out);
         check(status, &out, sizeof out);
+    }
+    {
+        panda_real error;
+        memset(&error, 0xA5, sizeof error);
+        const int status = panda_linear_error(in.q, in.n, in.speed, in.duration, &error);
+        check(status, &error, sizeof error);
     }
     panda_region region;
     if (panda_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != PANDA_OK) {

@@ -78,7 +78,7 @@ typedef enum {
 } panda_motors;
 
 /* What structs and functions look like, in this number type. */
-#define PANDA_LAYOUT (0xe68a4b30u + (unsigned int)sizeof(panda_real))
+#define PANDA_LAYOUT (0x9d73a0a0u + (unsigned int)sizeof(panda_real))
 
 typedef struct {
     unsigned int layout; /* PANDA_LAYOUT; panda_default_params sets it */
@@ -314,6 +314,20 @@ int panda_joint_impulse(
     panda_real other_mobility,
     const panda_params *p,
     panda_joint_impulse_t *out);
+
+/*
+ * Share of the force by which the linear robot may be off at an impact.
+ * error: dimensionless; share of the force.
+ * speed: m/s, > 0; of approach along n.
+ * duration: s, >= 0; from first touch to the peak, or to the reaction.
+ * 2375 operations, 28 sines and cosines. Error: 1e-12 in double, 0.0005 in float.
+ */
+int panda_linear_error(
+    const panda_real q[7],
+    const panda_real n[3],
+    panda_real speed,
+    panda_real duration,
+    panda_real *error);
 
 /*
  * A point of a law of contact. From it to the next the force follows the parabola whose tangents at both

@@ -24,7 +24,7 @@ pub const PANDA_CANDIDATES: usize = 24;
 pub const PANDA_VERSION: &str = "0.2.0";
 pub const PANDA_MODEL_DIGEST: &str = "4d55b88b1dbb963dbf3ba6052077da0bf8d34700e10b93eac36c486e0b89b1d5";
 /// What structs and functions look like, in this number type.
-pub const PANDA_LAYOUT: c_uint = 0xe68a4b30 + core::mem::size_of::<panda_real>() as c_uint;
+pub const PANDA_LAYOUT: c_uint = 0x9d73a0a0 + core::mem::size_of::<panda_real>() as c_uint;
 
 pub const PANDA_OK: c_int = 0;
 pub const PANDA_NULL_POINTER: c_int = 1;
@@ -341,6 +341,7 @@ extern "C" {
     pub fn panda_rotor_influence(q: *const panda_real, p: *const panda_params, out: *mut panda_rotor_influence_t) -> c_int;
     pub fn panda_single_joint_giaf(q: *const panda_real, p: *const panda_params, giaf: *mut panda_real) -> c_int;
     pub fn panda_joint_impulse(q: *const panda_real, n: *const panda_real, speed: panda_real, restitution: panda_real, other_mobility: panda_real, p: *const panda_params, out: *mut panda_joint_impulse_t) -> c_int;
+    pub fn panda_linear_error(q: *const panda_real, n: *const panda_real, speed: panda_real, duration: panda_real, error: *mut panda_real) -> c_int;
     pub fn panda_body_region(part: c_int, clamped: c_int, region: *mut panda_region) -> c_int;
     pub fn panda_peak_force(q: *const panda_real, n: *const panda_real, speed: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_peak_force_t) -> c_int;
     pub fn panda_peak_force_at(q: *const panda_real, point: c_int, n: *const panda_real, speed: panda_real, region: *const panda_region, p: *const panda_params, out: *mut panda_peak_force_t) -> c_int;

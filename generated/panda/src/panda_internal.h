@@ -38,17 +38,7 @@
 #define PANDA_POW(x, y) PANDA_F(pow)(x, y)
 
 /* Sines s and cosines c of finite angles x. */
-#if defined(PANDA_USE_FLOAT)
-void panda_sines_cosines(const float *x, int count, float *s, float *c);
-#else
-static inline void panda_sines_cosines(const double *x, int count, double *s, double *c)
-{
-    for (int i = 0; i < count; ++i) {
-        s[i] = sin(x[i]);
-        c[i] = cos(x[i]);
-    }
-}
-#endif
+void panda_sines_cosines(const panda_real *x, int count, panda_real *s, panda_real *c);
 
 /*
  * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.

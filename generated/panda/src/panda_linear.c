@@ -50,7 +50,8 @@ void panda_backward(int size, panda_matrix L, panda_real *x)
 
 #if !PANDA_STRUCTURED
 /*
- * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
+ * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
  * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
  */
 #define TURNED PANDA_R(1e-8)
@@ -94,15 +95,13 @@ static void rotate(int size, panda_matrix A, panda_matrix X, int i, int j)
     turn_columns(size, X, i, j, c, s);
 }
 
-bool panda_diagonalise(int size, panda_matrix A, panda_matrix X, panda_real noise)
+bool panda_diagonalise(int size, panda_matrix A, panda_matrix X)
 {
-    const panda_real none = noise*noise;
     for (int sweep = 0; sweep < SWEEPS; ++sweep) {
         bool turned = false;
         for (int i = 0; i < size; ++i) {
             for (int j = i + 1; j < size; ++j) {
-                const panda_real square = A[i][j]*A[i][j];
-                if (square > TURNED*PANDA_FABS(A[i][i]*A[j][j]) && square > none) {
+                if (A[i][j]*A[i][j] > TURNED*PANDA_FABS(A[i][i]*A[j][j])) {
                     rotate(size, A, X, i, j);
                     turned = true;
                 }

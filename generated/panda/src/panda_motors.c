@@ -176,8 +176,8 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     if (!unit_motions(size, mass, X)) {
         return PANDA_SINGULAR;
     }
-    const panda_real noise = congruent(size, K, X, A);
-    if (!panda_diagonalise(size, A, X, noise)) {
+    (void)congruent(size, K, X, A);
+    if (!panda_diagonalise(size, A, X)) {
         return PANDA_SINGULAR;
     }
     take_over(size, places, A, X, row, modes);
@@ -191,8 +191,8 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
     panda_real *drift)
 {
     panda_matrix mass; /* and then X'KX */
-    panda_matrix K; /* and then eigenvectors of that, its rows */
     panda_matrix X;
+    panda_real (*const K)[PANDA_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < PANDA_N; ++i) {
@@ -210,10 +210,10 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
         panda_real row = PANDA_R(0.0);
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
             panda_real shape = PANDA_R(0.0);
-            for (int k = j; k < PANDA_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+            for (int k = j; k < PANDA_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
-            modes->shape[i][j] = shape;
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < PANDA_N ? arrival->row[j]*shape : PANDA_R(0.0);
         }
         modes->row[i] = row;
@@ -255,8 +255,8 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     if (!unit_motions(PANDA_SYSTEM, mass, X)) {
         return PANDA_SINGULAR;
     }
-    const panda_real noise = congruent(PANDA_SYSTEM, K, X, A);
-    if (!panda_diagonalise(PANDA_SYSTEM, A, X, noise)) {
+    (void)congruent(PANDA_SYSTEM, K, X, A);
+    if (!panda_diagonalise(PANDA_SYSTEM, A, X)) {
         return PANDA_SINGULAR;
     }
     take_over(PANDA_SYSTEM, places, A, X, row, modes);

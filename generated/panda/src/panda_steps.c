@@ -112,53 +112,31 @@ static void mode_steps(panda_phase *phase)
     for (int k = PANDA_LEVELS - 1; k >= 0; --k) {
         panda_level *const level = &phase->level[k];
         const panda_real per = one/h;
-        panda_real pushes[2] = {PANDA_R(0.0), PANDA_R(0.0)};
-        panda_real kicks[2] = {PANDA_R(0.0), PANDA_R(0.0)};
+        panda_real pushes = PANDA_R(0.0);
+        panda_real lates = PANDA_R(0.0);
+        panda_real kicks = PANDA_R(0.0);
         for (int i = 0; i < phase->active; ++i) {
             panda_mode_step *const step = &level->mode[i];
             const panda_real row = modes->row[i];
             const panda_real cosine = one - modes->squared[i]*push[i];
-            const panda_real kick = push[i]*per;
             step->cosine = cosine;
             step->sine = sine[i];
             step->back = -modes->squared[i]*sine[i];
-            step->push[0] = row*(push[i] - late[i]);
-            step->push[1] = row*late[i];
-            step->kick[0] = row*(sine[i] - kick);
-            step->kick[1] = row*kick;
-            pushes[0] += row*step->push[0];
-            pushes[1] += row*step->push[1];
-            kicks[0] += row*step->kick[0];
-            kicks[1] += row*step->kick[1];
-            late[i] += sine[i]*kick;
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
             push[i] = PANDA_R(2.0)*sine[i]*sine[i];
             sine[i] *= PANDA_R(2.0)*cosine;
         }
-        level->push[0] = pushes[0];
-        level->push[1] = pushes[1];
-        level->kick[0] = kicks[0];
-        level->kick[1] = kicks[1];
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* How dampers act on each other; returns the most that joints and a servo's gains damp, 1/s. */
-static panda_real damping_rate(panda_phase *phase)
-{
-    panda_real rate = PANDA_R(0.0);
-    for (int i = 0; i < PANDA_DAMPERS && phase->damped; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            panda_real sum = PANDA_R(0.0);
-            for (int k = 0; k < phase->modes.count; ++k) {
-                const panda_real *const shape = &phase->modes.shape[k][PANDA_SYSTEM - PANDA_DAMPERS];
-                sum += shape[i]*shape[j];
-            }
-            phase->together[i][j] = sum;
-            phase->together[j][i] = sum;
-        }
-        rate = PANDA_FMAX(rate, phase->damping[i]*phase->together[i][i]);
-    }
-    return rate;
 }
 
 void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase *phase)
@@ -193,7 +171,7 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
     const panda_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : PANDA_R(0.0);
     const panda_real slowest = PANDA_FMAX(PANDA_R(1.0)/time, rise);
-    const panda_real rate = PANDA_FMAX(slowest, PANDA_FMAX(PANDA_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const panda_real rate = PANDA_FMAX(slowest, PANDA_FMAX(PANDA_SQRT(rate2), panda_damping_rate(phase)/SERVO_STEP));
     const panda_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const panda_real h = wanted < MOST ? time/(panda_real)phase->steps : PANDA_R(1.0)/rate;

@@ -14,6 +14,7 @@ typedef struct {
     panda_real speed;
     panda_real restitution;
     panda_real other_mobility;
+    panda_real duration;
 } panda_golden_input;
 
 extern const panda_golden_input panda_golden_inputs[PANDA_GOLDEN_CASES];
@@ -36,6 +37,7 @@ extern const double panda_golden_impact_measure[PANDA_GOLDEN_CASES][9];
 extern const double panda_golden_rotor_influence[PANDA_GOLDEN_CASES][16];
 extern const double panda_golden_single_joint_giaf[PANDA_GOLDEN_CASES][8];
 extern const double panda_golden_joint_impulse[PANDA_GOLDEN_CASES][26];
+extern const double panda_golden_linear_error[PANDA_GOLDEN_CASES][2];
 
 typedef struct {
     panda_real q[7];

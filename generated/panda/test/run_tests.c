@@ -1253,6 +1253,74 @@ static void test_joint_impulse(void)
            name, "nothing written for bad inputs");
 }
 
+static void test_linear_error(void)
+{
+    const char *const name = "panda_linear_error";
+    panda_real error;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(panda_golden_inputs); ++k) {
+        const panda_golden_input *const in = &panda_golden_inputs[k];
+        const double *right = panda_golden_linear_error[k];
+        expect(panda_linear_error(in->q, in->n, in->speed, in->duration, &error) == PANDA_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)error;
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+        }
+    }
+    const double bound = BOUND(1e-12, 0.0005);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    panda_golden_input in = panda_golden_inputs[0];
+    memset(&error, 0xA5, sizeof error);
+    in.q[0] = (panda_real)NAN;
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, &error) == PANDA_NOT_FINITE,
+           name, "q is not a number");
+    in = panda_golden_inputs[0];
+    in.q[6] = (panda_real)INFINITY;
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, &error) == PANDA_NOT_FINITE,
+           name, "q is infinite");
+    in = panda_golden_inputs[0];
+    in.n[1] = (panda_real)NAN;
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, &error) == PANDA_NOT_FINITE,
+           name, "n is not a number");
+    in = panda_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, &error) == PANDA_ZERO_DIRECTION,
+           name, "n is zero");
+    in = panda_golden_inputs[0];
+    in.speed = (panda_real)NAN;
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, &error) == PANDA_NOT_FINITE,
+           name, "speed is not a number");
+    in = panda_golden_inputs[0];
+    in.speed = -1.0;
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, &error) == PANDA_OUT_OF_RANGE,
+           name, "speed is -1.0");
+    in = panda_golden_inputs[0];
+    in.speed = 0.0;
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, &error) == PANDA_OUT_OF_RANGE,
+           name, "speed is 0.0");
+    in = panda_golden_inputs[0];
+    in.duration = (panda_real)NAN;
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, &error) == PANDA_NOT_FINITE,
+           name, "duration is not a number");
+    in = panda_golden_inputs[0];
+    in.duration = -1.0;
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, &error) == PANDA_OUT_OF_RANGE,
+           name, "duration is -1.0");
+    in = panda_golden_inputs[0];
+    expect(panda_linear_error(NULL, in.n, in.speed, in.duration, &error) == PANDA_NULL_POINTER,
+           name, "q is NULL");
+    expect(panda_linear_error(in.q, NULL, in.speed, in.duration, &error) == PANDA_NULL_POINTER,
+           name, "n is NULL");
+    expect(panda_linear_error(in.q, in.n, in.speed, in.duration, NULL) == PANDA_NULL_POINTER,
+           name, "error is NULL");
+    expect(is_untouched(&error, sizeof error),
+           name, "nothing written for bad inputs");
+}
+
 /* What a golden impact hits. */
 static int golden_region(const panda_golden_impact *in, panda_region *region)
 {
@@ -1504,6 +1572,7 @@ int main(void)
     test_rotor_influence();
     test_single_joint_giaf();
     test_joint_impulse();
+    test_linear_error();
     test_impacts();
     test_bad_impacts();
     test_selection();

@@ -38,17 +38,7 @@
 #define RMIN_POW(x, y) RMIN_F(pow)(x, y)
 
 /* Sines s and cosines c of finite angles x. */
-#if defined(RMIN_USE_FLOAT)
-void rmin_sines_cosines(const float *x, int count, float *s, float *c);
-#else
-static inline void rmin_sines_cosines(const double *x, int count, double *s, double *c)
-{
-    for (int i = 0; i < count; ++i) {
-        s[i] = sin(x[i]);
-        c[i] = cos(x[i]);
-    }
-}
-#endif
+void rmin_sines_cosines(const rmin_real *x, int count, rmin_real *s, rmin_real *c);
 
 /*
  * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.

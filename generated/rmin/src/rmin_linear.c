@@ -50,7 +50,8 @@ void rmin_backward(int size, rmin_matrix L, rmin_real *x)
 
 #if !RMIN_STRUCTURED
 /*
- * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
+ * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
  * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
  */
 #define TURNED RMIN_R(1e-8)
@@ -94,15 +95,13 @@ static void rotate(int size, rmin_matrix A, rmin_matrix X, int i, int j)
     turn_columns(size, X, i, j, c, s);
 }
 
-bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X, rmin_real noise)
+bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X)
 {
-    const rmin_real none = noise*noise;
     for (int sweep = 0; sweep < SWEEPS; ++sweep) {
         bool turned = false;
         for (int i = 0; i < size; ++i) {
             for (int j = i + 1; j < size; ++j) {
-                const rmin_real square = A[i][j]*A[i][j];
-                if (square > TURNED*RMIN_FABS(A[i][i]*A[j][j]) && square > none) {
+                if (A[i][j]*A[i][j] > TURNED*RMIN_FABS(A[i][i]*A[j][j])) {
                     rotate(size, A, X, i, j);
                     turned = true;
                 }

@@ -176,8 +176,8 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     if (!unit_motions(size, mass, X)) {
         return RMIN_SINGULAR;
     }
-    const rmin_real noise = congruent(size, K, X, A);
-    if (!rmin_diagonalise(size, A, X, noise)) {
+    (void)congruent(size, K, X, A);
+    if (!rmin_diagonalise(size, A, X)) {
         return RMIN_SINGULAR;
     }
     take_over(size, places, A, X, row, modes);
@@ -191,8 +191,8 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
     rmin_real *drift)
 {
     rmin_matrix mass; /* and then X'KX */
-    rmin_matrix K; /* and then eigenvectors of that, its rows */
     rmin_matrix X;
+    rmin_real (*const K)[RMIN_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < RMIN_N; ++i) {
@@ -210,10 +210,10 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
         rmin_real row = RMIN_R(0.0);
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
             rmin_real shape = RMIN_R(0.0);
-            for (int k = j; k < RMIN_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+            for (int k = j; k < RMIN_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
-            modes->shape[i][j] = shape;
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < RMIN_N ? arrival->row[j]*shape : RMIN_R(0.0);
         }
         modes->row[i] = row;
@@ -255,8 +255,8 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     if (!unit_motions(RMIN_SYSTEM, mass, X)) {
         return RMIN_SINGULAR;
     }
-    const rmin_real noise = congruent(RMIN_SYSTEM, K, X, A);
-    if (!rmin_diagonalise(RMIN_SYSTEM, A, X, noise)) {
+    (void)congruent(RMIN_SYSTEM, K, X, A);
+    if (!rmin_diagonalise(RMIN_SYSTEM, A, X)) {
         return RMIN_SINGULAR;
     }
     take_over(RMIN_SYSTEM, places, A, X, row, modes);

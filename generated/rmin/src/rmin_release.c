@@ -2,8 +2,11 @@
 /* What is left of an impact of rmin_ when its motors are let go, in modes of loose motors. */
 #include "rmin_state.h"
 
-/* Level of the first step in contact, a quarter of the longest: the force may bend at once, and other modes stand. */
-#define LET_GO 2
+/*
+ * Level of the first step in contact: where motors are on the links themselves these have another acceleration at
+ * once; behind springs only its second rate is another, and a quarter of the longest step does.
+ */
+#define LET_GO (RMIN_ELASTIC ? 2 : RMIN_LEVELS - 1)
 
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const rmin_state *s, int size, rmin_real *place, rmin_real *rate)

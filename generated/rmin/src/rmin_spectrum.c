@@ -3,14 +3,18 @@
  * Eigenvectors of a symmetric matrix of rmin_: Householder's reflections to three diagonals, then QR steps
  * with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
  *
- * Of a compliance the slow modes, which count, come out with all their digits; the fastest keep few
- * when there are frequencies a thousand times lower. Joints come in the order from the base, so that
- * compliances fall from the first row on, and small eigenvalues are found first, at the end.
+ * Errors are as for the largest eigenvalue: of a compliance the slow modes, which count, come out with all
+ * their digits; the fastest keep few when there are frequencies a thousand times lower. Joints come in the order
+ * from the base, so that compliances fall from the first row on, and small eigenvalues are found first, at the end.
  */
 #include "rmin_impact.h"
 
-/* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
-#define MOST_STEPS 3
+/*
+ * Steps of QR, which takes one an eigenvalue to four digits and two to all: of 60,000 compliances of seven joints
+ * none took more than 13, of as many servos of 14 coordinates none more than 30. What is not done by then fails.
+ */
+#define MOST_STEPS(size) (2*(size) + 2)
+#define MOST_STEPS_TO_ALL_DIGITS(size) (3*(size))
 
 /* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
 static void turn(int first, int size, const rmin_real *v, rmin_real scale, rmin_matrix A)
@@ -149,7 +153,8 @@ bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, 
     }
     const rmin_real noise = RMIN_EPSILON*RMIN_EPSILON*all*all;
     int last = size - 1;
-    for (int step = 0; step <= MOST_STEPS*size; ++step) {
+    const int most = small > RMIN_EPSILON ? MOST_STEPS(size) : MOST_STEPS_TO_ALL_DIGITS(size);
+    for (int step = 0; step <= most; ++step) {
         while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
         }

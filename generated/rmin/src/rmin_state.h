@@ -34,7 +34,6 @@ typedef struct {
     rmin_real f, rise; /* force, and by how much it grew in the last step */
     rmin_real u, u_before; /* deformation of the skin and of what stands */
     rmin_real now; /* depth of the skin */
-    rmin_real root, root_before; /* of it, where it is Hertz's */
     rmin_real rest; /* deflection of the body out of contact */
     rmin_real depth; /* of the skin at the largest force so far */
     rmin_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -56,7 +55,7 @@ typedef struct {
     rmin_real amplitude[RMIN_MODES], rate[RMIN_MODES];
     rmin_real x, v; /* of the contact point without the force at the end */
     rmin_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    rmin_real u, depth, root;
+    rmin_real u, depth;
 } rmin_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */
@@ -64,6 +63,8 @@ void rmin_begin_phase(const rmin_phase *phase, int level, rmin_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate);
+/* Rates of modes, damped until halfway through the next step. */
+void rmin_damp_ahead(const rmin_state *s, rmin_real *rate);
 
 /* Moves all modes by a step without forces. */
 void rmin_glide(const rmin_state *s, rmin_trial *t);

@@ -112,53 +112,31 @@ static void mode_steps(rmin_phase *phase)
     for (int k = RMIN_LEVELS - 1; k >= 0; --k) {
         rmin_level *const level = &phase->level[k];
         const rmin_real per = one/h;
-        rmin_real pushes[2] = {RMIN_R(0.0), RMIN_R(0.0)};
-        rmin_real kicks[2] = {RMIN_R(0.0), RMIN_R(0.0)};
+        rmin_real pushes = RMIN_R(0.0);
+        rmin_real lates = RMIN_R(0.0);
+        rmin_real kicks = RMIN_R(0.0);
         for (int i = 0; i < phase->active; ++i) {
             rmin_mode_step *const step = &level->mode[i];
             const rmin_real row = modes->row[i];
             const rmin_real cosine = one - modes->squared[i]*push[i];
-            const rmin_real kick = push[i]*per;
             step->cosine = cosine;
             step->sine = sine[i];
             step->back = -modes->squared[i]*sine[i];
-            step->push[0] = row*(push[i] - late[i]);
-            step->push[1] = row*late[i];
-            step->kick[0] = row*(sine[i] - kick);
-            step->kick[1] = row*kick;
-            pushes[0] += row*step->push[0];
-            pushes[1] += row*step->push[1];
-            kicks[0] += row*step->kick[0];
-            kicks[1] += row*step->kick[1];
-            late[i] += sine[i]*kick;
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
             push[i] = RMIN_R(2.0)*sine[i]*sine[i];
             sine[i] *= RMIN_R(2.0)*cosine;
         }
-        level->push[0] = pushes[0];
-        level->push[1] = pushes[1];
-        level->kick[0] = kicks[0];
-        level->kick[1] = kicks[1];
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* How dampers act on each other; returns the most that joints and a servo's gains damp, 1/s. */
-static rmin_real damping_rate(rmin_phase *phase)
-{
-    rmin_real rate = RMIN_R(0.0);
-    for (int i = 0; i < RMIN_DAMPERS && phase->damped; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            rmin_real sum = RMIN_R(0.0);
-            for (int k = 0; k < phase->modes.count; ++k) {
-                const rmin_real *const shape = &phase->modes.shape[k][RMIN_SYSTEM - RMIN_DAMPERS];
-                sum += shape[i]*shape[j];
-            }
-            phase->together[i][j] = sum;
-            phase->together[j][i] = sum;
-        }
-        rate = RMIN_FMAX(rate, phase->damping[i]*phase->together[i][i]);
-    }
-    return rate;
 }
 
 void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *phase)
@@ -193,7 +171,7 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
     const rmin_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : RMIN_R(0.0);
     const rmin_real slowest = RMIN_FMAX(RMIN_R(1.0)/time, rise);
-    const rmin_real rate = RMIN_FMAX(slowest, RMIN_FMAX(RMIN_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const rmin_real rate = RMIN_FMAX(slowest, RMIN_FMAX(RMIN_SQRT(rate2), rmin_damping_rate(phase)/SERVO_STEP));
     const rmin_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const rmin_real h = wanted < MOST ? time/(rmin_real)phase->steps : RMIN_R(1.0)/rate;

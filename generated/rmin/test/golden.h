@@ -14,6 +14,7 @@ typedef struct {
     rmin_real speed;
     rmin_real restitution;
     rmin_real other_mobility;
+    rmin_real duration;
 } rmin_golden_input;
 
 extern const rmin_golden_input rmin_golden_inputs[RMIN_GOLDEN_CASES];

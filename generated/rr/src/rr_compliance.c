@@ -38,6 +38,7 @@ static void scale_by_springs(const rr_arrival *arrival, const rr_params *p, spri
         out->b[i] = arrival->row[i]*soft[i];
         for (int j = 0; j <= i; ++j) {
             out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+            out->S[j][i] = out->S[i][j];
         }
     }
 }
@@ -46,7 +47,7 @@ static void scale_by_springs(const rr_arrival *arrival, const rr_params *p, spri
 static int spring_modes(rr_matrix C, const rr_real b[RR_N], rr_modes *modes)
 {
     rr_real squares[RR_N];
-    rr_matrix vectors;
+    rr_real (*const vectors)[RR_SYSTEM] = &modes->shape[modes->rigid];
     rr_real all = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) {
         all += C[i][i];
@@ -63,7 +64,7 @@ static int spring_modes(rr_matrix C, const rr_real b[RR_N], rr_modes *modes)
         rr_real row = RR_R(0.0);
         for (int j = 0; j < RR_N; ++j) {
             row += vectors[i][j]*b[j];
-            modes->shape[at][j] = vectors[i][j]*rate;
+            vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
         modes->row[at] = row*rate;
@@ -78,17 +79,10 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     rr_real *drift)
 {
     spring_scaled s;
-    rr_matrix C;
     scale_by_springs(arrival, p, &s);
-    for (int i = 0; i < RR_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            C[i][j] = s.S[i][j];
-            C[j][i] = s.S[i][j];
-        }
-    }
     *drift = RR_R(1.0);
     modes->rigid = 0;
-    return spring_modes(C, s.b, modes);
+    return spring_modes(s.S, s.b, modes);
 }
 
 int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
@@ -96,9 +90,7 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
 {
     const int end = RR_N - 1;
     spring_scaled s;
-    rr_matrix G; /* from its end to its start: so Cholesky's factors are upper ones, G = U U' */
-    rr_matrix Y; /* columns of U^-1 L', upper triangular as both are */
-    rr_matrix C;
+    rr_matrix G; /* and then C; from its end to its start: so Cholesky's factors are upper ones, G = U U' */
     rr_real z[RR_N];
     scale_by_springs(arrival, p, &s);
     if (!rr_cholesky(RR_N, s.S)) {
@@ -129,26 +121,29 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
         z[i] /= G[end - i][end - i];
     }
     rr_real together = RR_R(0.0);
-    for (int i = 0; i < RR_N; ++i) { /* column i of L' ends at its row i */
+    for (int i = 0; i < RR_N; ++i) {
+        rr_real *const y = s.S[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
         rr_real sum = RR_R(0.0);
         for (int l = i; l >= 0; --l) {
             const rr_real *const U = G[end - l];
-            rr_real rest = s.S[i][l];
+            rr_real rest = y[l];
             for (int m = l + 1; m <= i; ++m) {
-                rest -= U[end - m]*Y[i][m];
+                rest -= U[end - m]*y[m];
             }
-            Y[i][l] = rest/U[end - l];
-            sum += Y[i][l]*z[l];
+            y[l] = rest/U[end - l];
+            sum += y[l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
+    }
+    for (int i = 0; i < RR_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             rr_real entry = RR_R(0.0);
             for (int l = 0; l <= j; ++l) {
-                entry += Y[i][l]*Y[j][l];
+                entry += s.S[i][l]*s.S[j][l];
             }
-            C[i][j] = entry;
-            C[j][i] = entry;
+            G[i][j] = entry;
+            G[j][i] = entry;
         }
     }
     if (!(together > RR_R(0.0) && together <= RR_REAL_MAX)) {
@@ -161,7 +156,7 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     for (int j = 0; j < RR_SYSTEM; ++j) {
         modes->shape[0][j] = RR_R(0.0);
     }
-    return spring_modes(C, carried, modes);
+    return spring_modes(G, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

@@ -38,17 +38,7 @@
 #define RR_POW(x, y) RR_F(pow)(x, y)
 
 /* Sines s and cosines c of finite angles x. */
-#if defined(RR_USE_FLOAT)
-void rr_sines_cosines(const float *x, int count, float *s, float *c);
-#else
-static inline void rr_sines_cosines(const double *x, int count, double *s, double *c)
-{
-    for (int i = 0; i < count; ++i) {
-        s[i] = sin(x[i]);
-        c[i] = cos(x[i]);
-    }
-}
-#endif
+void rr_sines_cosines(const rr_real *x, int count, rr_real *s, rr_real *c);
 
 /*
  * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.

@@ -50,7 +50,8 @@ void rr_backward(int size, rr_matrix L, rr_real *x)
 
 #if !RR_STRUCTURED
 /*
- * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
+ * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
  * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
  */
 #define TURNED RR_R(1e-8)
@@ -94,15 +95,13 @@ static void rotate(int size, rr_matrix A, rr_matrix X, int i, int j)
     turn_columns(size, X, i, j, c, s);
 }
 
-bool rr_diagonalise(int size, rr_matrix A, rr_matrix X, rr_real noise)
+bool rr_diagonalise(int size, rr_matrix A, rr_matrix X)
 {
-    const rr_real none = noise*noise;
     for (int sweep = 0; sweep < SWEEPS; ++sweep) {
         bool turned = false;
         for (int i = 0; i < size; ++i) {
             for (int j = i + 1; j < size; ++j) {
-                const rr_real square = A[i][j]*A[i][j];
-                if (square > TURNED*RR_FABS(A[i][i]*A[j][j]) && square > none) {
+                if (A[i][j]*A[i][j] > TURNED*RR_FABS(A[i][i]*A[j][j])) {
                     rotate(size, A, X, i, j);
                     turned = true;
                 }

@@ -176,8 +176,8 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     if (!unit_motions(size, mass, X)) {
         return RR_SINGULAR;
     }
-    const rr_real noise = congruent(size, K, X, A);
-    if (!rr_diagonalise(size, A, X, noise)) {
+    (void)congruent(size, K, X, A);
+    if (!rr_diagonalise(size, A, X)) {
         return RR_SINGULAR;
     }
     take_over(size, places, A, X, row, modes);
@@ -191,8 +191,8 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
     rr_real *drift)
 {
     rr_matrix mass; /* and then X'KX */
-    rr_matrix K; /* and then eigenvectors of that, its rows */
     rr_matrix X;
+    rr_real (*const K)[RR_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < RR_N; ++i) {
@@ -210,10 +210,10 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
         rr_real row = RR_R(0.0);
         for (int j = 0; j < RR_SYSTEM; ++j) {
             rr_real shape = RR_R(0.0);
-            for (int k = j; k < RR_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+            for (int k = j; k < RR_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
-            modes->shape[i][j] = shape;
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < RR_N ? arrival->row[j]*shape : RR_R(0.0);
         }
         modes->row[i] = row;
@@ -255,8 +255,8 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     if (!unit_motions(RR_SYSTEM, mass, X)) {
         return RR_SINGULAR;
     }
-    const rr_real noise = congruent(RR_SYSTEM, K, X, A);
-    if (!rr_diagonalise(RR_SYSTEM, A, X, noise)) {
+    (void)congruent(RR_SYSTEM, K, X, A);
+    if (!rr_diagonalise(RR_SYSTEM, A, X)) {
         return RR_SINGULAR;
     }
     take_over(RR_SYSTEM, places, A, X, row, modes);

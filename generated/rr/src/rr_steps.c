@@ -112,53 +112,31 @@ static void mode_steps(rr_phase *phase)
     for (int k = RR_LEVELS - 1; k >= 0; --k) {
         rr_level *const level = &phase->level[k];
         const rr_real per = one/h;
-        rr_real pushes[2] = {RR_R(0.0), RR_R(0.0)};
-        rr_real kicks[2] = {RR_R(0.0), RR_R(0.0)};
+        rr_real pushes = RR_R(0.0);
+        rr_real lates = RR_R(0.0);
+        rr_real kicks = RR_R(0.0);
         for (int i = 0; i < phase->active; ++i) {
             rr_mode_step *const step = &level->mode[i];
             const rr_real row = modes->row[i];
             const rr_real cosine = one - modes->squared[i]*push[i];
-            const rr_real kick = push[i]*per;
             step->cosine = cosine;
             step->sine = sine[i];
             step->back = -modes->squared[i]*sine[i];
-            step->push[0] = row*(push[i] - late[i]);
-            step->push[1] = row*late[i];
-            step->kick[0] = row*(sine[i] - kick);
-            step->kick[1] = row*kick;
-            pushes[0] += row*step->push[0];
-            pushes[1] += row*step->push[1];
-            kicks[0] += row*step->kick[0];
-            kicks[1] += row*step->kick[1];
-            late[i] += sine[i]*kick;
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
             push[i] = RR_R(2.0)*sine[i]*sine[i];
             sine[i] *= RR_R(2.0)*cosine;
         }
-        level->push[0] = pushes[0];
-        level->push[1] = pushes[1];
-        level->kick[0] = kicks[0];
-        level->kick[1] = kicks[1];
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* How dampers act on each other; returns the most that joints and a servo's gains damp, 1/s. */
-static rr_real damping_rate(rr_phase *phase)
-{
-    rr_real rate = RR_R(0.0);
-    for (int i = 0; i < RR_DAMPERS && phase->damped; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            rr_real sum = RR_R(0.0);
-            for (int k = 0; k < phase->modes.count; ++k) {
-                const rr_real *const shape = &phase->modes.shape[k][RR_SYSTEM - RR_DAMPERS];
-                sum += shape[i]*shape[j];
-            }
-            phase->together[i][j] = sum;
-            phase->together[j][i] = sum;
-        }
-        rate = RR_FMAX(rate, phase->damping[i]*phase->together[i][i]);
-    }
-    return rate;
 }
 
 void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
@@ -193,7 +171,7 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
     const rr_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : RR_R(0.0);
     const rr_real slowest = RR_FMAX(RR_R(1.0)/time, rise);
-    const rr_real rate = RR_FMAX(slowest, RR_FMAX(RR_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const rr_real rate = RR_FMAX(slowest, RR_FMAX(RR_SQRT(rate2), rr_damping_rate(phase)/SERVO_STEP));
     const rr_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const rr_real h = wanted < MOST ? time/(rr_real)phase->steps : RR_R(1.0)/rate;

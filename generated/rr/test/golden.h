@@ -14,6 +14,7 @@ typedef struct {
     rr_real speed;
     rr_real restitution;
     rr_real other_mobility;
+    rr_real duration;
 } rr_golden_input;
 
 extern const rr_golden_input rr_golden_inputs[RR_GOLDEN_CASES];

@@ -20,6 +20,7 @@ typedef struct {
     ur5e_real speed;
     ur5e_real restitution;
     ur5e_real other_mobility;
+    ur5e_real duration;
     ur5e_real region[4];
     ur5e_real number;
     ur5e_real dq[6];
@@ -177,6 +178,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         memset(&out, 0xA5, sizeof out);
         const int status = ur5e_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out);
         check(status, &out, sizeof out);
+    }
+    {
+        ur5e_real error;
+        memset(&error, 0xA5, sizeof error);
+        const int status = ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error);
+        check(status, &error, sizeof error);
     }
     ur5e_region region;
     if (ur5e_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != UR5E_OK) {

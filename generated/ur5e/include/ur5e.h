@@ -79,7 +79,7 @@ typedef enum {
 } ur5e_motors;
 
 /* What structs and functions look like, in this number type. */
-#define UR5E_LAYOUT (0x3fca0c70u + (unsigned int)sizeof(ur5e_real))
+#define UR5E_LAYOUT (0x7a1f28f0u + (unsigned int)sizeof(ur5e_real))
 
 typedef struct {
     unsigned int layout; /* UR5E_LAYOUT; ur5e_default_params sets it */
@@ -305,6 +305,20 @@ int ur5e_joint_impulse(
     ur5e_real other_mobility,
     const ur5e_params *p,
     ur5e_joint_impulse_t *out);
+
+/*
+ * Share of the force by which the linear robot may be off at an impact.
+ * error: dimensionless; share of the force.
+ * speed: m/s, > 0; of approach along n.
+ * duration: s, >= 0; from first touch to the peak, or to the reaction.
+ * 1691 operations, 24 sines and cosines. Error: 1e-12 in double, 0.0002 in float.
+ */
+int ur5e_linear_error(
+    const ur5e_real q[6],
+    const ur5e_real n[3],
+    ur5e_real speed,
+    ur5e_real duration,
+    ur5e_real *error);
 
 /*
  * A point of a law of contact. From it to the next the force follows the parabola whose tangents at both

@@ -314,6 +314,22 @@ inline result<ur5e_joint_impulse_t> joint_impulse(
     return found;
 }
 
+/* Share of the force by which the linear robot may be off at an impact.
+ * error: dimensionless; share of the force.
+ * speed: m/s, > 0; of approach along n.
+ * duration: s, >= 0; from first touch to the peak, or to the reaction.
+ * 1691 operations, 24 sines and cosines. Error: 1e-12 in double, 0.0002 in float. */
+inline result<real> linear_error(
+    const vector<6> &q,
+    const vector<3> &n,
+    real speed,
+    real duration) noexcept
+{
+    result<real> found;
+    found.status = ur5e_linear_error(q.data(), n.data(), speed, duration, &found.value);
+    return found;
+}
+
 /* Largest force over all contacts with a body region, from first touch to p->horizon.
  * speed: m/s, > 0; of the contact point along n. Joints arrive with the velocities of least norm
  * that move it along n alone; springs are at rest. Motors do as p->motors and p->reaction_time

@@ -23,7 +23,7 @@ pub const UR5E_POINTS: usize = 1;
 pub const UR5E_VERSION: &str = "0.2.0";
 pub const UR5E_MODEL_DIGEST: &str = "40f477935b27b5347d857cf794de085d62bc0c098f5702fa8094214d1cb3bf35";
 /// What structs and functions look like, in this number type.
-pub const UR5E_LAYOUT: c_uint = 0x3fca0c70 + core::mem::size_of::<ur5e_real>() as c_uint;
+pub const UR5E_LAYOUT: c_uint = 0x7a1f28f0 + core::mem::size_of::<ur5e_real>() as c_uint;
 
 pub const UR5E_OK: c_int = 0;
 pub const UR5E_NULL_POINTER: c_int = 1;
@@ -334,6 +334,7 @@ extern "C" {
     pub fn ur5e_rotor_influence(q: *const ur5e_real, p: *const ur5e_params, out: *mut ur5e_rotor_influence_t) -> c_int;
     pub fn ur5e_single_joint_giaf(q: *const ur5e_real, p: *const ur5e_params, giaf: *mut ur5e_real) -> c_int;
     pub fn ur5e_joint_impulse(q: *const ur5e_real, n: *const ur5e_real, speed: ur5e_real, restitution: ur5e_real, other_mobility: ur5e_real, p: *const ur5e_params, out: *mut ur5e_joint_impulse_t) -> c_int;
+    pub fn ur5e_linear_error(q: *const ur5e_real, n: *const ur5e_real, speed: ur5e_real, duration: ur5e_real, error: *mut ur5e_real) -> c_int;
     pub fn ur5e_body_region(part: c_int, clamped: c_int, region: *mut ur5e_region) -> c_int;
     pub fn ur5e_peak_force(q: *const ur5e_real, n: *const ur5e_real, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_peak_force_t) -> c_int;
     pub fn ur5e_peak_force_at(q: *const ur5e_real, point: c_int, n: *const ur5e_real, speed: ur5e_real, region: *const ur5e_region, p: *const ur5e_params, out: *mut ur5e_peak_force_t) -> c_int;

@@ -47,20 +47,21 @@ typedef struct {
     ur5e_real shape[UR5E_MODES][UR5E_SYSTEM];
 } ur5e_modes;
 
-/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+/* One step of a mode: what amplitude, rate and force do. */
 typedef struct {
     ur5e_real cosine, sine; /* cos(wh), sin(wh)/w */
     ur5e_real back; /* -w sin(wh) */
-    ur5e_real push[2]; /* on the amplitude, of the forces at start and end */
-    ur5e_real kick[2]; /* on the rate */
+    ur5e_real push; /* row (1 - cos(wh))/w^2: on the amplitude, of a force that stays */
+    ur5e_real late; /* row (wh - sin(wh))/(w^3 h): the same of one that grows from none */
 } ur5e_mode_step;
 
 /* Steps of one length. */
 typedef struct {
     ur5e_real h; /* s */
     ur5e_real relax; /* what is left of the body's own deflection after a step out of contact */
-    ur5e_real push[2]; /* on the contact point */
-    ur5e_real kick[2];
+    ur5e_real per; /* 1/h */
+    ur5e_real push, late; /* on the contact point */
+    ur5e_real kick; /* on its velocity, of a force that stays; of one that grows it is push/h */
     ur5e_mode_step mode[UR5E_MODES];
 } ur5e_level;
 
@@ -230,6 +231,8 @@ int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real
 /* The same with links and rotors as one; 0 if their mass is not positive definite. */
 ur5e_real ur5e_together(const ur5e_arrival *arrival, const ur5e_params *p);
 
+/* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
+ur5e_real ur5e_damping_rate(ur5e_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *phase);
 
@@ -238,11 +241,8 @@ bool ur5e_cholesky(int size, ur5e_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void ur5e_forward(int size, ur5e_matrix L, ur5e_real *x);
 void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x);
-/*
- * Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi's method). Entries
- * below `noise` count as none. False if that does not end.
- */
-bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X, ur5e_real noise);
+/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X);
 /*
  * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
  * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.

@@ -38,17 +38,7 @@
 #define UR5E_POW(x, y) UR5E_F(pow)(x, y)
 
 /* Sines s and cosines c of finite angles x. */
-#if defined(UR5E_USE_FLOAT)
-void ur5e_sines_cosines(const float *x, int count, float *s, float *c);
-#else
-static inline void ur5e_sines_cosines(const double *x, int count, double *s, double *c)
-{
-    for (int i = 0; i < count; ++i) {
-        s[i] = sin(x[i]);
-        c[i] = cos(x[i]);
-    }
-}
-#endif
+void ur5e_sines_cosines(const ur5e_real *x, int count, ur5e_real *s, ur5e_real *c);
 
 /*
  * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.

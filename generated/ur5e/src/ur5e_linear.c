@@ -50,7 +50,8 @@ void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x)
 
 #if !UR5E_STRUCTURED
 /*
- * Square of an entry, over the product of its diagonal entries, from which on it is rotated away.
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
+ * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
  * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
  */
 #define TURNED UR5E_R(1e-8)
@@ -94,15 +95,13 @@ static void rotate(int size, ur5e_matrix A, ur5e_matrix X, int i, int j)
     turn_columns(size, X, i, j, c, s);
 }
 
-bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X, ur5e_real noise)
+bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X)
 {
-    const ur5e_real none = noise*noise;
     for (int sweep = 0; sweep < SWEEPS; ++sweep) {
         bool turned = false;
         for (int i = 0; i < size; ++i) {
             for (int j = i + 1; j < size; ++j) {
-                const ur5e_real square = A[i][j]*A[i][j];
-                if (square > TURNED*UR5E_FABS(A[i][i]*A[j][j]) && square > none) {
+                if (A[i][j]*A[i][j] > TURNED*UR5E_FABS(A[i][i]*A[j][j])) {
                     rotate(size, A, X, i, j);
                     turned = true;
                 }

@@ -176,8 +176,8 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     if (!unit_motions(size, mass, X)) {
         return UR5E_SINGULAR;
     }
-    const ur5e_real noise = congruent(size, K, X, A);
-    if (!ur5e_diagonalise(size, A, X, noise)) {
+    (void)congruent(size, K, X, A);
+    if (!ur5e_diagonalise(size, A, X)) {
         return UR5E_SINGULAR;
     }
     take_over(size, places, A, X, row, modes);
@@ -191,8 +191,8 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
     ur5e_real *drift)
 {
     ur5e_matrix mass; /* and then X'KX */
-    ur5e_matrix K; /* and then eigenvectors of that, its rows */
     ur5e_matrix X;
+    ur5e_real (*const K)[UR5E_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < UR5E_N; ++i) {
@@ -210,10 +210,10 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
         ur5e_real row = UR5E_R(0.0);
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
             ur5e_real shape = UR5E_R(0.0);
-            for (int k = j; k < UR5E_SYSTEM; ++k) { /* L^-T has nothing below its diagonal */
+            for (int k = j; k < UR5E_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
-            modes->shape[i][j] = shape;
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < UR5E_N ? arrival->row[j]*shape : UR5E_R(0.0);
         }
         modes->row[i] = row;
@@ -255,8 +255,8 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     if (!unit_motions(UR5E_SYSTEM, mass, X)) {
         return UR5E_SINGULAR;
     }
-    const ur5e_real noise = congruent(UR5E_SYSTEM, K, X, A);
-    if (!ur5e_diagonalise(UR5E_SYSTEM, A, X, noise)) {
+    (void)congruent(UR5E_SYSTEM, K, X, A);
+    if (!ur5e_diagonalise(UR5E_SYSTEM, A, X)) {
         return UR5E_SINGULAR;
     }
     take_over(UR5E_SYSTEM, places, A, X, row, modes);

@@ -9,12 +9,12 @@
 #define STRAIGHT UR5E_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS UR5E_R(4.0)
-/* Levels of the shortest step: in contact, out of it, in rough runs. */
+/* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
 #define SHORTEST (UR5E_LEVELS - 1)
 #define SHORTEST_APART 4
 #define SHORTEST_ROUGH 2
-/* Steps in contact after which it is looked whether the rest matters. */
-#define LOOKS 2
+/* Steps of a falling force, or of none, after which it is looked whether the rest matters. */
+#define LOOKS 3
 /* Share of a first step within which the damper has to press the skin in, and the share of that time missed. */
 #define BRIEF UR5E_R(0.3)
 #define MISSED UR5E_R(1.2)
@@ -130,8 +130,6 @@ static outcome step_pressed(ur5e_state *s, ur5e_trial *t, ur5e_real bends, int s
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
-    s->root_before = s->root;
-    s->root = t->root;
     s->x = t->x;
     ++s->past;
     return straight ? TAKEN_AND_STRAIGHT : TAKEN;
@@ -148,8 +146,6 @@ static void touch(ur5e_state *s)
     s->rise = UR5E_R(0.0);
     s->bump = UR5E_R(0.0);
     s->now = UR5E_R(0.0);
-    s->root = UR5E_R(0.0);
-    s->root_before = UR5E_R(0.0);
 }
 
 /* A step out of contact. */
@@ -196,7 +192,6 @@ static void begin(const ur5e_region *region, int longest, ur5e_state *s)
         s->f = share*pushed;
         s->now = ur5e_law_depth(region, s->f);
         s->u = s->now + s->phase->compliance*s->f;
-        s->root = UR5E_SQRT(s->now);
     }
 }
 
@@ -232,11 +227,20 @@ static bool run_phase(ur5e_state *s, ur5e_budget *budget, ur5e_peak *peak)
     const ur5e_real share = rough ? ROUGHLY : UR5E_R(1.0);
     const int shortest = rough ? SHORTEST_ROUGH : SHORTEST;
     ur5e_trial t;
+    int falls = 0; /* steps of a falling force since it was looked whether the rest matters */
     while (s->ticks > 0) {
         if (budget->steps <= 0 || peak->contacts > MOST_CONTACTS) {
             return false;
         }
         --budget->steps;
+        if (falls >= LOOKS) { /* a look takes as long as a step */
+            falls = 0;
+            if (ur5e_is_settled(s, peak->force - s->swings, s->depth, share)) {
+                peak->ended = true;
+                return true;
+            }
+            continue;
+        }
         ur5e_glide(s, &t);
         const outcome was = s->touching ? step_pressed(s, &t, bends, shortest, peak)
             : step_apart(s, &t, rough ? SHORTEST_ROUGH : SHORTEST_APART, peak);
@@ -250,12 +254,11 @@ static bool run_phase(ur5e_state *s, ur5e_budget *budget, ur5e_peak *peak)
                 return true;
             }
         } else if (s->f + s->swings < peak->force) {
-            const bool looks = s->past % LOOKS == 0 || !s->touching;
-            if (peak->force > budget->stop_above || (rough && !s->touching)
-                || (looks && ur5e_is_settled(s, peak->force - s->swings, s->depth, share))) {
+            if (peak->force > budget->stop_above || (rough && !s->touching)) {
                 peak->ended = true;
                 return true;
             }
+            ++falls;
         }
     }
     return true;

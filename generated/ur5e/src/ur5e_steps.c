@@ -112,53 +112,31 @@ static void mode_steps(ur5e_phase *phase)
     for (int k = UR5E_LEVELS - 1; k >= 0; --k) {
         ur5e_level *const level = &phase->level[k];
         const ur5e_real per = one/h;
-        ur5e_real pushes[2] = {UR5E_R(0.0), UR5E_R(0.0)};
-        ur5e_real kicks[2] = {UR5E_R(0.0), UR5E_R(0.0)};
+        ur5e_real pushes = UR5E_R(0.0);
+        ur5e_real lates = UR5E_R(0.0);
+        ur5e_real kicks = UR5E_R(0.0);
         for (int i = 0; i < phase->active; ++i) {
             ur5e_mode_step *const step = &level->mode[i];
             const ur5e_real row = modes->row[i];
             const ur5e_real cosine = one - modes->squared[i]*push[i];
-            const ur5e_real kick = push[i]*per;
             step->cosine = cosine;
             step->sine = sine[i];
             step->back = -modes->squared[i]*sine[i];
-            step->push[0] = row*(push[i] - late[i]);
-            step->push[1] = row*late[i];
-            step->kick[0] = row*(sine[i] - kick);
-            step->kick[1] = row*kick;
-            pushes[0] += row*step->push[0];
-            pushes[1] += row*step->push[1];
-            kicks[0] += row*step->kick[0];
-            kicks[1] += row*step->kick[1];
-            late[i] += sine[i]*kick;
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
             push[i] = UR5E_R(2.0)*sine[i]*sine[i];
             sine[i] *= UR5E_R(2.0)*cosine;
         }
-        level->push[0] = pushes[0];
-        level->push[1] = pushes[1];
-        level->kick[0] = kicks[0];
-        level->kick[1] = kicks[1];
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* How dampers act on each other; returns the most that joints and a servo's gains damp, 1/s. */
-static ur5e_real damping_rate(ur5e_phase *phase)
-{
-    ur5e_real rate = UR5E_R(0.0);
-    for (int i = 0; i < UR5E_DAMPERS && phase->damped; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            ur5e_real sum = UR5E_R(0.0);
-            for (int k = 0; k < phase->modes.count; ++k) {
-                const ur5e_real *const shape = &phase->modes.shape[k][UR5E_SYSTEM - UR5E_DAMPERS];
-                sum += shape[i]*shape[j];
-            }
-            phase->together[i][j] = sum;
-            phase->together[j][i] = sum;
-        }
-        rate = UR5E_FMAX(rate, phase->damping[i]*phase->together[i][i]);
-    }
-    return rate;
 }
 
 void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *phase)
@@ -193,7 +171,7 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
     const ur5e_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : UR5E_R(0.0);
     const ur5e_real slowest = UR5E_FMAX(UR5E_R(1.0)/time, rise);
-    const ur5e_real rate = UR5E_FMAX(slowest, UR5E_FMAX(UR5E_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const ur5e_real rate = UR5E_FMAX(slowest, UR5E_FMAX(UR5E_SQRT(rate2), ur5e_damping_rate(phase)/SERVO_STEP));
     const ur5e_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const ur5e_real h = wanted < MOST ? time/(ur5e_real)phase->steps : UR5E_R(1.0)/rate;

@@ -14,6 +14,7 @@ typedef struct {
     ur5e_real speed;
     ur5e_real restitution;
     ur5e_real other_mobility;
+    ur5e_real duration;
 } ur5e_golden_input;
 
 extern const ur5e_golden_input ur5e_golden_inputs[UR5E_GOLDEN_CASES];
@@ -36,6 +37,7 @@ extern const double ur5e_golden_impact_measure[UR5E_GOLDEN_CASES][9];
 extern const double ur5e_golden_rotor_influence[UR5E_GOLDEN_CASES][14];
 extern const double ur5e_golden_single_joint_giaf[UR5E_GOLDEN_CASES][7];
 extern const double ur5e_golden_joint_impulse[UR5E_GOLDEN_CASES][23];
+extern const double ur5e_golden_linear_error[UR5E_GOLDEN_CASES][2];
 
 typedef struct {
     ur5e_real q[6];

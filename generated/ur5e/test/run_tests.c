@@ -1253,6 +1253,74 @@ static void test_joint_impulse(void)
            name, "nothing written for bad inputs");
 }
 
+static void test_linear_error(void)
+{
+    const char *const name = "ur5e_linear_error";
+    ur5e_real error;
+    double worst = 0.0;
+    for (size_t k = 0; k < LENGTH(ur5e_golden_inputs); ++k) {
+        const ur5e_golden_input *const in = &ur5e_golden_inputs[k];
+        const double *right = ur5e_golden_linear_error[k];
+        expect(ur5e_linear_error(in->q, in->n, in->speed, in->duration, &error) == UR5E_OK,
+               name, "status of a golden case");
+        {
+            double found[1];
+            found[0] = (double)error;
+            worst = fmax(worst, error_of(found, right, LENGTH(found)));
+        }
+    }
+    const double bound = BOUND(1e-12, 0.0002);
+    printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
+    expect(worst <= bound, name, "error within its bound");
+
+    ur5e_golden_input in = ur5e_golden_inputs[0];
+    memset(&error, 0xA5, sizeof error);
+    in.q[0] = (ur5e_real)NAN;
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error) == UR5E_NOT_FINITE,
+           name, "q is not a number");
+    in = ur5e_golden_inputs[0];
+    in.q[5] = (ur5e_real)INFINITY;
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error) == UR5E_NOT_FINITE,
+           name, "q is infinite");
+    in = ur5e_golden_inputs[0];
+    in.n[1] = (ur5e_real)NAN;
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error) == UR5E_NOT_FINITE,
+           name, "n is not a number");
+    in = ur5e_golden_inputs[0];
+    in.n[0] = in.n[1] = in.n[2] = 0;
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error) == UR5E_ZERO_DIRECTION,
+           name, "n is zero");
+    in = ur5e_golden_inputs[0];
+    in.speed = (ur5e_real)NAN;
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error) == UR5E_NOT_FINITE,
+           name, "speed is not a number");
+    in = ur5e_golden_inputs[0];
+    in.speed = -1.0;
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error) == UR5E_OUT_OF_RANGE,
+           name, "speed is -1.0");
+    in = ur5e_golden_inputs[0];
+    in.speed = 0.0;
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error) == UR5E_OUT_OF_RANGE,
+           name, "speed is 0.0");
+    in = ur5e_golden_inputs[0];
+    in.duration = (ur5e_real)NAN;
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error) == UR5E_NOT_FINITE,
+           name, "duration is not a number");
+    in = ur5e_golden_inputs[0];
+    in.duration = -1.0;
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, &error) == UR5E_OUT_OF_RANGE,
+           name, "duration is -1.0");
+    in = ur5e_golden_inputs[0];
+    expect(ur5e_linear_error(NULL, in.n, in.speed, in.duration, &error) == UR5E_NULL_POINTER,
+           name, "q is NULL");
+    expect(ur5e_linear_error(in.q, NULL, in.speed, in.duration, &error) == UR5E_NULL_POINTER,
+           name, "n is NULL");
+    expect(ur5e_linear_error(in.q, in.n, in.speed, in.duration, NULL) == UR5E_NULL_POINTER,
+           name, "error is NULL");
+    expect(is_untouched(&error, sizeof error),
+           name, "nothing written for bad inputs");
+}
+
 /* What a golden impact hits. */
 static int golden_region(const ur5e_golden_impact *in, ur5e_region *region)
 {
@@ -1503,6 +1571,7 @@ int main(void)
     test_rotor_influence();
     test_single_joint_giaf();
     test_joint_impulse();
+    test_linear_error();
     test_impacts();
     test_bad_impacts();
     test_selection();

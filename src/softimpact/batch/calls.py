@@ -264,7 +264,7 @@ def _with_limits(asked: str | Mapping[str, Any], region: NDArray[Any]) -> NDArra
     if isinstance(asked, str):
         limits = limits_of(REGIONS[asked], clamped=True)
         if not limits.permitted:
-            raise InvalidValue("limit", f"'{asked}' is not to be designed for; give a limit [N]")
+            raise InvalidValue("limit", f"'{asked}' may not be hit at all; give a limit [N]")
         assert limits.quasi_static is not None
         region["force_limit"] = limits.transient.force
         region["quasi_static_limit"] = limits.quasi_static.force

@@ -47,7 +47,7 @@ export function writeVerdict(place, found, state) {
   const words = {
     kept: "keeps the limit",
     exceeded: "exceeds the limit",
-    "not permitted": `contact with ${escaped(found.about.title.toLowerCase())} is not to be designed for; limits are for reference`,
+    "not permitted": `contact with ${escaped(found.about.title.toLowerCase())} is not permitted, whatever the force; limits are for reference`,
   }[found.ruling];
   const pressed = found.keeping?.pressed ? "; what presses on the held body decides" : "";
   place.innerHTML =

@@ -79,7 +79,7 @@ def monotone_slopes(depth: Array, force: Array) -> Array:
     """Return slopes at points for a cubic between them that never falls.
 
     Inside the weighted harmonic mean of the slopes beside a point; at the ends the three-point
-    formula, held within what keeps the curve rising.
+    formula, which is below twice the slope beside it, but not where it would fall.
     """
     h, chord = np.diff(depth), np.diff(force) / np.diff(depth)
     if len(chord) == 1:
@@ -88,8 +88,7 @@ def monotone_slopes(depth: Array, force: Array) -> Array:
     inner = (left + right) / (left / chord[:-1] + right / chord[1:])
 
     def end(h_0: float, h_1: float, c_0: float, c_1: float) -> float:
-        slope = ((2 * h_0 + h_1) * c_0 - h_0 * c_1) / (h_0 + h_1)
-        return float(np.clip(slope, 0.0, 3 * c_0))
+        return max(0.0, float((2 * h_0 + h_1) * c_0 - h_0 * c_1) / (h_0 + h_1))
 
     first = end(h[0], h[1], chord[0], chord[1])
     last = end(h[-1], h[-2], chord[-1], chord[-2])

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from softimpact.symbolic import Contact, Curve, InvalidValue, PowerLaw, body_region
+from softimpact.symbolic.body.bodies import BODIES
 from softimpact.symbolic.body.body_file import load_body, load_cover
 from softimpact.symbolic.body.devices import DEVICES, SPRINGS, measuring_device
 from softimpact.symbolic.body.laws import Series
@@ -30,7 +31,25 @@ def test_there_is_a_device_for_every_spring_under_every_pad() -> None:
     assert len(DEVICES) == 24
     device = body_region("device_75_sh30")
     assert (device.stiffness, device.damping, device.skin) == (75e3, 0, PADS["sh30"].law)
+    assert device.plate_mass == 0
     assert Contact(device).law == PADS["sh30"].law
+
+
+def test_every_body_can_be_hit() -> None:
+    for known in BODIES.values():
+        Contact(known).check()
+
+
+@pytest.mark.parametrize("permitted", ["", "[limits]\npermitted = false"])
+def test_a_body_of_a_region_that_is_never_permitted_is_not_either(
+    file: Path, permitted: str
+) -> None:
+    found = body(file, f'name = "helmet"\nregion = "head"\n{permitted}')
+    assert not found.permitted  # type: ignore[attr-defined]
+
+
+def test_a_file_may_say_that_contact_is_permitted_where_it_is(file: Path) -> None:
+    assert body(file, 'name = "a"\nregion = "chest"\n[limits]\npermitted = true') is not None
 
 
 def test_a_device_that_stands_for_a_region_has_its_limits_and_mass() -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
@@ -67,6 +67,11 @@ def test_numbers_are_those_of_the_expression(law: Law) -> None:
     points, depths = points_of(law), np.array([0.0, 1e-5, 1e-3, 2e-3, 4e-3, 8e-3, 8.1e-3])
     found, slope = points.evaluated(depths)
     np.testing.assert_allclose(found, force(law, depths), rtol=1e-4, atol=1e-6)
+    for depth, force_there, slope_there in zip(depths, found, slope, strict=True):
+        one = points.at(depth)
+        assert one[0] == pytest.approx(force_there, rel=1e-12)
+        if depth not in points.depth[1:]:  # at a corner either slope will do
+            assert one[1] == pytest.approx(slope_there, rel=1e-12)
     inside = np.array([1e-5, 1e-3, 4e-3])
     steps = 1e-6 * inside
     rise = (points.evaluated(inside + steps)[0] - points.evaluated(inside - steps)[0]) / (2 * steps)
@@ -94,10 +99,13 @@ def test_a_curve_goes_through_its_points_and_never_falls(curve: Curve) -> None:
     assert (np.diff(force(curve, inside)) >= -1e-9 * curve.reach).all()
 
 
-def test_a_curve_agrees_with_scipy() -> None:
-    depths = np.linspace(0, 8e-3, 101)
-    theirs = PchipInterpolator(FOAM.depths, FOAM.forces)(depths)
-    np.testing.assert_allclose(force(FOAM, depths), theirs, rtol=0, atol=1e-9)
+@given(curves())
+@example(FOAM)
+@example(Curve([0, 1, 2, 3], [0, 0.1, 2, 2.1]))  # whose ends' three-point formulas would fall
+def test_a_curve_agrees_with_scipy(curve: Curve) -> None:
+    depths = np.linspace(0, curve.depths[-1], 101)
+    theirs = PchipInterpolator(curve.depths, curve.forces)(depths)
+    np.testing.assert_allclose(force(curve, depths), theirs, rtol=1e-9, atol=1e-9)
 
 
 def test_beyond_its_points_a_curve_is_as_good_as_solid() -> None:
@@ -155,6 +163,22 @@ def test_a_series_is_softer_than_each_part(curve: Curve, stiffness: float, expon
     both = force(series(curve, skin), depths)
     assert (both <= 1.0001 * np.minimum(force(curve, depths), force(skin, depths)) + 1e-3).all()
     assert (np.diff(both) > 0).all()
+
+
+def test_a_series_rises_from_first_touch_on_however_steep_its_laws() -> None:
+    """Below the least force of its shape, too, where a cubic with the exact slope would fall."""
+    law = series(PowerLaw(1e20, 6.0), FOAM)
+    points = points_of(law)
+    assert (np.diff(force(law, np.linspace(0, points.depth[1], 50))) > 0).all()
+
+
+@pytest.mark.parametrize("name", ["two powers", "foam on skin", "three"])
+def test_a_series_has_few_points_and_one_slope_at_each(name: str) -> None:
+    """Corners are a curve's last point, and what the bisection leaves of a slope."""
+    points = points_of(LAWS[name])
+    assert len(points.depth) < 200
+    jumps = np.abs(points.slope_after[1:-1] / points.slope_before[1:-1] - 1) > 1e-4
+    assert (np.isin(points.forces[1:-1][jumps], FOAM.forces)).all()
 
 
 def test_the_order_of_a_series_does_not_matter() -> None:
