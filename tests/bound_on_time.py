@@ -18,7 +18,7 @@ from longest_path import Budget, LongestPath, Rounds
 STEPS_OF_RUN = 6
 """ROBOT_STEPS_OF_RUN of the runtime."""
 
-ITERATIONS, LEVELS = 4, 7
+ITERATIONS, LEVELS = 3, 7
 """Of ``robot_contact.c`` and ``robot_impact.h``."""
 
 LIBRARY = {"memcpy": 60, "memset": 60, "powf": 150, "expf": 80, "sinf": 600, "cosf": 600}

@@ -10,11 +10,12 @@
 #include "robot_state.h"
 
 /*
- * Halley's iterations, and the relative change after which the next, a fourth of its cube, is nothing. One halves
- * how far a guess is off, or better; the first guess is off by at most (1 + cubic light)^(1/12), 4 at 1e7.
+ * Halley's iterations, and the relative change after which the next, a fourth of its cube, is nothing. The first
+ * guess is 1.1 times the root where body and skin are as human ones, 1.7 times at most for a cubic light of 1e11;
+ * iterations take that to 1.09, 1.0002 and 1.
  */
-#define ITERATIONS 4
-#define CLOSE ROBOT_R(0.03)
+#define ITERATIONS 3
+#define CLOSE ROBOT_R(0.01)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
 
@@ -47,7 +48,8 @@ void robot_glide(const robot_state *s, robot_trial *t)
 static robot_real root_of(robot_real depth, robot_real cubic)
 {
     const robot_real light = ROBOT_SQRT(depth);
-    robot_real u = light/ROBOT_SQRT(ROBOT_SQRT(ROBOT_R(1.0) + cubic*light));
+    const robot_real fourth = ROBOT_SQRT(ROBOT_SQRT(ROBOT_R(1.0) + cubic*light));
+    robot_real u = light/(fourth*ROBOT_SQRT(ROBOT_SQRT(fourth))); /* never below the root, as 5/16 < 1/3 < 1/2 */
     for (int i = 0; i < ITERATIONS; ++i) {
         const robot_real bend = ROBOT_R(1.0) + ROBOT_R(3.0)*cubic*u;
         const robot_real slope = u*(ROBOT_R(1.0) + bend);
