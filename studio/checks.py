@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from softimpact.optimize import Outcome, Study
@@ -48,6 +49,21 @@ def doubts(optimum: float, *simulated: float, of: str = "the winner") -> list[st
         f"simulation finds {largest:.1f} N for {of}, where the optimum has {optimum:.1f} N: "
         "count on the larger; limits, prices and gains rest on the smaller"
     ]
+
+
+def checks_in_words(of: str, checks: Sequence[Check]) -> str:
+    """Return how near simulation comes to the optima, a sentence.
+
+    Args:
+        of: what of each design was simulated, with "of"; empty for the design itself.
+        checks: of some designs.
+    """
+    same = max(abs(check.linearised / check.nlp - 1) for check in checks)
+    above = max((check.full / check.nlp - 1 for check in checks), key=abs)
+    return (
+        f"Check of {f'{of} '.lstrip()}all {len(checks)} points: linearised by SUNDIALS within "
+        f"{100 * same:.3f} % of the optimum, nonlinear at most {100 * above:+.2f} % from it."
+    )
 
 
 def checked(study: Study, outcome: Outcome) -> Check:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import options as o
+from .typed import TypedExecution, TypedStudy
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -33,21 +34,14 @@ ModeNameOption = Annotated[
 
 
 def design(
-    study: o.StudyFileArgument,
+    study: TypedStudy,
+    execution: TypedExecution,
     out: OutOption = None,
     mode: ModeNameOption = "both",
-    region: o.RegionOption = None,
-    speed: o.SpeedOption = None,
-    motors: o.StudyMotorsOption = None,
-    reaction_time: o.ReactionTimeOption = None,
     page: o.ReportOption = None,
-    workers: o.WorkersOption = None,
-    dask: o.DaskOption = None,
-    resume: o.ResumeOption = False,
     json: o.JsonOption = False,
 ) -> None:
     """Find the joint stiffness and the posture of least peak force with Ipopt."""
-    from softimpact.optimize import load_study
     from softimpact.optimize.running.execution import Execution
     from softimpact.symbolic import InvalidValue
 
@@ -59,17 +53,12 @@ def design(
         require_replaceable_results,
         running,
     )
-    from .values import given
 
-    changed = {
-        "impact": given(region=region, speed=speed),
-        "motors": given(kind=motors, reaction_time=reaction_time),
-    }
-    problem = load_study(study, {name: part for name, part in changed.items() if part})
+    problem = study.read()
     folder = out or Path("results") / problem.source.stem
     require_replaceable_results(folder, GENERATOR)
     require_folder_of(page)
-    how = Execution(workers, dask, resume)
+    how = Execution(execution.workers, execution.dask, execution.resume)
     if problem.scenarios is not None:
         if mode != "both":
             raise InvalidValue(
@@ -109,13 +98,15 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
     from .output import failures_as_json, print_json, print_warnings, say, write_json
     from .progress import optimiser_stages
     from .results_folder import RESULTS, replaced_folder, running
-    from .robust_report import designed_model, robust_in_words, robust_record
+    from .robust_report import robust_in_words, robust_record
+    from .scenario_checks import checked_scenarios, designed_model
 
     asked, scenarios = study.scenarios, scenarios_of(study)
     free = isinstance(asked, ScenariosSection) and asked.posture == "free"
     with failures_as_json(json), running(how, folder) as pool, optimiser_stages() as advance:
         found = robust_design(study, scenarios, pool, advance, free=free)
-        record = robust_record(found)
+        checks = checked_scenarios(found)
+        record = robust_record(found, checks)
         with replaced_folder(folder, GENERATOR) as fresh:
             write_json(fresh / RESULTS, record)
             save(figure_of_robust_design(found), fresh / "design.png")
@@ -123,7 +114,7 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
     if page is not None:
         from .report.design_pages import write_robust_report
 
-        write_robust_report(found, page)
+        write_robust_report(found, checks, page)
     print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})

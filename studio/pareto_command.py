@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import options as o
+from .typed import TypedExecution, TypedStudy
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -41,20 +42,15 @@ ObjectivesOption = Annotated[
 
 
 def pareto(
-    study: o.StudyFileArgument,
+    study: TypedStudy,
+    execution: TypedExecution,
     out: OutOption = None,
     points: PointsOption = None,
     objectives: ObjectivesOption = None,
-    region: o.RegionOption = None,
-    speed: o.SpeedOption = None,
     page: o.ReportOption = None,
-    workers: o.WorkersOption = None,
-    dask: o.DaskOption = None,
-    resume: o.ResumeOption = False,
     json: o.JsonOption = False,
 ) -> None:
     """Find designs that no other beats: in force and accuracy, or in objectives of your choice."""
-    from softimpact.optimize import load_study
     from softimpact.optimize.front.trade_off import asks_for_trade_off
     from softimpact.optimize.running.execution import Execution
 
@@ -68,19 +64,13 @@ def pareto(
         require_replaceable_results,
         running,
     )
-    from .values import given
 
     named = None if objectives is None else [n for n in map(str.strip, objectives.split(",")) if n]
-    changed = {
-        "impact": given(region=region, speed=speed),
-        "pareto": given(points=points, objectives=named),
-    }
-    overrides = {name: part for name, part in changed.items() if part}
-    problem = load_study(study, overrides)
+    problem = study.read(pareto={"points": points, "objectives": named})
     folder = out or Path("results") / f"{problem.source.stem}_pareto"
     require_replaceable_results(folder, GENERATOR)
     require_folder_of(page)
-    how = Execution(workers, dask, resume)
+    how = Execution(execution.workers, execution.dask, execution.resume)
     search = _trade_off if asks_for_trade_off(problem) else _of_postures
     with failures_as_json(json), running(how, folder) as pool, optimiser_stages() as advance:
         found = search(problem, pool, advance)

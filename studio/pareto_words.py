@@ -8,8 +8,10 @@ from math import log
 
 from softimpact.optimize import ParetoPoint
 from softimpact.optimize.study.poses import leaves_a_choice
+from softimpact.optimize.units import ratio_in_words
 
 from .answers_in_words import answers_in_words
+from .checks import checks_in_words
 from .design_report import limit_kind, peak_in_words
 from .front_words import FrontWords
 from .output import Cell
@@ -134,10 +136,10 @@ def _trade_off(report: ParetoReport) -> list[str]:
     ]
     if len(points) > 1:
         a, b = max(pairwise(points), key=lambda pair: _slope(*pair))
+        of = "deflection"
         lines.append(
             f"It pays most from {MM * a.deflection:.3g} to {MM * b.deflection:.3g} mm: "
-            f"{a.force - b.force:.1f} N for {100 * (b.deflection / a.deflection - 1):.0f} % more "
-            "deflection."
+            f"{a.force - b.force:.1f} N for {ratio_in_words(b.deflection / a.deflection, of)}."
         )
     bend = report.knee("free")
     if bend is not None:
@@ -223,12 +225,7 @@ def _limit(report: ParetoReport) -> list[str]:
 
 def _check(report: ParetoReport) -> str:
     checks = [checked.check for points in report.fronts.values() for checked in points]
-    same = max(abs(check.linearised / check.nlp - 1) for check in checks)
-    above = max((check.full / check.nlp - 1 for check in checks), key=abs)
-    return (
-        f"Check of all {len(checks)} points: linearised by SUNDIALS within {100 * same:.3f} % of "
-        f"the optimum, nonlinear at most {100 * above:+.2f} % from it."
-    )
+    return checks_in_words("", checks)
 
 
 def _unsolved(report: ParetoReport) -> list[str]:

@@ -89,8 +89,9 @@ def progress_bar() -> Progress:
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        "left",
+        "gone,",
         TimeRemainingColumn(),
+        "left",
     )
     return Progress(*columns, console=console)
 

@@ -3,61 +3,31 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any, Protocol
-
-import casadi as ca
-import numpy as np
+from collections.abc import Sequence
+from typing import Any
 
 from softimpact.optimize import Study
 from softimpact.optimize.answers import by_name
-from softimpact.optimize.evaluation import Kept, equipped
-from softimpact.optimize.impact.impact_program import hertz_in_series
-from softimpact.optimize.machine.hardware import built
+from softimpact.optimize.evaluation import Kept
 from softimpact.optimize.robust.catalogue import Bought
 from softimpact.optimize.robust.certificate import Worst
 from softimpact.optimize.robust.robust import RobustDesign
-from softimpact.optimize.study.scenarios import Scenarios
 from softimpact.optimize.units import figure_in_words
-from softimpact.simulate import Approach, simulate_impact
-from softimpact.symbolic import Contact, ImpactModel, impact_model, with_load
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers_in_words import answers_in_words
 from .cautions import study_warnings
-from .checks import doubts
 from .design_report import GENERATOR, inputs, versions
+from .scenario_checks import (
+    CheckedScenario,
+    Designed,
+    doubts_in_words,
+    place_in_words,
+    scenario_record,
+)
 
 ROUNDING = 1e-6
 """Share of a limit by which a design that is as fast as it allows may pass it."""
-
-
-class Designed(Protocol):
-    """A machine for scenarios, of a robust design or on a front."""
-
-    @property
-    def study(self) -> Study:
-        """The problem."""
-
-    @property
-    def scenarios(self) -> Scenarios:
-        """All impacts that it must bear."""
-
-    @property
-    def springs(self) -> Array:
-        """Joint stiffness, length n [N·m/rad]."""
-
-    @property
-    def others(self) -> Array:
-        """Values of the other variables of the hardware."""
-
-    @property
-    def postures(self) -> Array:
-        """Posture of each pose, P×n [rad]."""
-
-    @property
-    def worst(self) -> Worst:
-        """The worst scenario."""
 
 
 def share_of_limit(design: Designed) -> float:
@@ -70,59 +40,17 @@ def meets_limit(design: Designed) -> bool:
     return share_of_limit(design) <= 1 + ROUNDING
 
 
-def designed_model(design: Designed) -> ImpactModel:
-    """Return the robot with the hardware that was found."""
-    study = design.study
-    hardware = equipped(study, ca.DM(design.springs), design.others)
-    return built(study.with_springs(design.springs), hardware)
-
-
-def _covered(design: Designed, contact: Contact) -> Contact:
-    """Return what is hit as the design's cover makes it."""
-    cover = equipped(design.study, ca.DM(design.springs), design.others).cover
-    if cover is None:
-        return contact
-    own = contact.series_stiffness
-    return replace(contact, cover=None, hertz_stiffness=float(hertz_in_series(own, ca.DM(cover))))
-
-
-def simulated_worst(design: Designed) -> float:
-    """Return the peak force of the worst scenario, by SUNDIALS up to the horizon [N]."""
-    study, scenarios = design.study, design.scenarios
-    one = scenarios[design.worst.index]
-    load = scenarios.payloads[one.payload]
-    model = designed_model(design)
-    robot, point = model.robot, scenarios.points[one.point]
-    if load:
-        robot = with_load(robot, study.model.tip, load)
-    hit = impact_model(robot, point, drives=model.drives)
-    speed = scenarios.speeds[one.speed] * _factor(design, design.worst)
-    approach = Approach(design.postures[one.pose], scenarios.directions[one.direction], speed)
-    motors = scenarios.motors[one.motors]
-    contact = _covered(design, scenarios.contacts[one.contact])
-    return simulate_impact(hit, approach, contact, motors=motors, horizon=study.horizon).peak
-
-
-def _factor(design: Designed, worst: Worst) -> float:
-    """Return the factor on the speed of the worst scenario."""
-    if worst.factors is None:
-        return 1.0
-    own = worst.index // len(design.scenarios.motors) if worst.factors.size > 1 else 0
-    return float(worst.factors[own])
-
-
-def robust_record(design: RobustDesign) -> dict[str, Any]:
-    """Return a robust design as plain data, for ``results.json``."""
+def robust_record(design: RobustDesign, checks: Sequence[CheckedScenario]) -> dict[str, Any]:
+    """Return a robust design as plain data, for ``results.json``; its checks worst first."""
     study, scenarios, worst = design.study, design.scenarios, design.worst
     equal, equal_springs = design.equal
-    simulated = simulated_worst(design)
     names = study.range.names[max(study.groups) + 1 :]
     return {
         "generator": GENERATOR,
         "versions": versions(),
         "study": inputs(study),
         "peak_definition": "peak",
-        "warnings": [*study_warnings(study), *doubts(worst.force, simulated)],
+        "warnings": [*study_warnings(study), *doubts_in_words(design, checks)],
         "objective": {
             "kind": study.objective.kind,
             "unit": study.objective.unit,
@@ -140,12 +68,13 @@ def robust_record(design: RobustDesign) -> dict[str, Any]:
         },
         "worst_force": worst.force,
         "worst_share": worst.share,
-        "worst_scenario": scenario_record(design, worst),
-        "check": {"nlp": worst.force, "linearised": simulated},
+        "worst_scenario": scenario_record(design, worst.index),
+        "check": checks[0].check,
+        "checks": [{**scenario_record(design, each.index), **vars(each.check)} for each in checks],
         "bounds": worst.bounds,
         "before": _other(design, design.before, study.nominal),
         "equal": _other(design, equal, equal_springs),
-        "catalogue": _catalogue(design.bought),
+        "catalogue": catalogue_record(design.bought),
         "indifferent": by_name(study, design.indifferent),
         "prices": design.prices,
         "conflicts": [],
@@ -164,18 +93,11 @@ def robust_record(design: RobustDesign) -> dict[str, Any]:
     }
 
 
-def _catalogue(bought: Bought | None) -> dict[str, Any] | None:
+def catalogue_record(bought: Bought | None) -> dict[str, Any] | None:
+    """Return what springs of a catalogue cost, as plain data; None without one."""
     if bought is None:
         return None
     return {"ideal_springs": bought.ideal, "loss": bought.loss, "tried": bought.tried}
-
-
-def scenario_record(design: Designed, worst: Worst) -> dict[str, object]:
-    """Return the worst scenario in words and numbers, as fast as it is."""
-    one = design.scenarios[worst.index]
-    words = design.scenarios.describe(one)
-    speed = design.scenarios.speeds[one.speed] * _factor(design, worst)
-    return {**words, "speed": speed, "limit": design.scenarios.limit(one)}
 
 
 def _other(design: RobustDesign, worst: Worst, springs: Array) -> dict[str, Any]:
@@ -183,7 +105,7 @@ def _other(design: RobustDesign, worst: Worst, springs: Array) -> dict[str, Any]
         "springs": springs,
         "worst_force": worst.force,
         "worst_share": worst.share,
-        "worst_scenario": scenario_record(design, worst),
+        "worst_scenario": scenario_record(design, worst.index),
         "value": worst.value,
         "deflection": worst.deflection,
         "keeps_bounds": worst.keeps,
@@ -204,7 +126,7 @@ def robust_in_words(design: RobustDesign) -> list[str]:
         *_bought_in_words(design.bought),
         f"{objective.kind.replace('_', ' ').capitalize()}: {worst.value:.4g} {objective.unit}",
         f"Worst: {worst.force:.1f} N, {worst.share:.2f} times its limit: "
-        f"{place_in_words(design, worst)}",
+        f"{place_in_words(design, worst.index)}",
         *(_kept(each) for each in worst.bounds),
         f"Equal proportions, just accurate (k_s = {_range(springs)}): {equal.force:.1f} N, "
         f"{equal.value:.4g} {objective.unit}{_broken(equal)}; the design {gain} {saved:.1f} %",
@@ -252,16 +174,6 @@ def _kept(bound: Kept) -> str:
 def _broken(worst: Worst) -> str:
     broken = [each.name for each in worst.bounds if each.broken]
     return f", which breaks {' and '.join(broken)}" if broken else ""
-
-
-def place_in_words(design: Designed, worst: Worst) -> str:
-    """Return who is hit where in the worst scenario, and how fast."""
-    words = scenario_record(design, worst)
-    direction = np.round(np.array(words["direction"], dtype=float), 3).tolist()
-    return (
-        f"pose {words['pose']}, {words['point']} along {direction} against {words['region']}, "
-        f"{words['payload']:g} kg, {words['speed']:.4g} m/s, motors {words['motors']}"
-    )
 
 
 def _range(springs: Array) -> str:

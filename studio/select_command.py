@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from . import options as o
+from .typed import TypedStudy
 
 ByOption = Annotated[
     str,
@@ -18,14 +19,13 @@ ByOption = Annotated[
 
 
 def select(
-    study: o.StudyFileArgument,
+    study: TypedStudy,
     by: ByOption = "peak_force",
     fidelity: o.FidelityOption = "linearised",
     report: o.ReportOption = None,
     json: o.JsonOption = False,
 ) -> None:
     """Rank the configurations of a study at its nominal joint stiffness."""
-    from softimpact.optimize import load_study
     from softimpact.simulate import Fidelity
 
     from .output import print_json, print_warnings
@@ -34,7 +34,7 @@ def select(
 
     criterion: Criterion = one_of("criterion", by, Criterion)
     model: Fidelity = one_of("impact model", fidelity, Fidelity)
-    problem = load_study(study)
+    problem = study.read()
     ranked = ranking(problem, criterion, model)
     if report is not None:
         from .report.pareto_pages import write_selection_report

@@ -11,10 +11,11 @@ from softimpact.optimize.answers import by_name
 from softimpact.optimize.front.trade_off import TradePoint
 
 from .cautions import study_warnings
-from .checks import doubts
+from .checks import Check, doubts
 from .design_report import inputs, versions
 from .pareto_record import GENERATOR
-from .robust_report import meets_limit, scenario_record, share_of_limit
+from .robust_report import catalogue_record, meets_limit, share_of_limit
+from .scenario_checks import scenario_record
 from .trade_off_report import TradeOffReport, broken_before
 
 FORM = "objectives"
@@ -56,6 +57,7 @@ def trade_off_record(report: TradeOffReport) -> dict[str, Any]:
         },
         "levels_searched": found.searched,
         "levels_out_of_reach": found.out_of_reach,
+        "levels_not_sold": found.not_sold,
         "levels_unsolved": found.unsolved,
         "solver": {
             "compiled": found.compiled,
@@ -69,7 +71,9 @@ def _doubts(report: TradeOffReport) -> list[str]:
     """Return a line for each design whose force simulation contradicts on the unsafe side."""
     pairs = enumerate(zip(report.points, report.checks, strict=True), 1)
     return [
-        line for i, (p, check) in pairs for line in doubts(p.worst.force, check, of=f"design {i}")
+        line
+        for i, (point, check) in pairs
+        for line in doubts(point.worst.force, check.linearised, check.full, of=f"design {i}")
     ]
 
 
@@ -77,7 +81,7 @@ def _values(report: TradeOffReport, values: tuple[float, ...]) -> dict[str, floa
     return dict(zip((view.kind for view in report.views), values, strict=True))
 
 
-def _point(report: TradeOffReport, point: TradePoint, check: float, knee: bool) -> dict[str, Any]:
+def _point(report: TradeOffReport, point: TradePoint, check: Check, knee: bool) -> dict[str, Any]:
     study, worst = point.study, point.worst
     names = study.range.names[max(study.groups) + 1 :]
     poses = (pose.pose.name for pose in point.scenarios.poses)
@@ -89,12 +93,13 @@ def _point(report: TradeOffReport, point: TradePoint, check: float, knee: bool) 
         "postures": dict(zip(poses, point.postures.tolist(), strict=True)),
         "worst_force": worst.force,
         "worst_share": share_of_limit(point),
-        "worst_scenario": scenario_record(point, worst),
+        "worst_scenario": scenario_record(point, worst.index),
         "meets_limit": meets_limit(point),
-        "check": {"nlp": worst.force, "linearised": check},
+        "check": check,
         "bounds": worst.bounds,
         "indifferent": by_name(study, point.indifferent),
         "prices": point.prices,
+        "catalogue": catalogue_record(point.bought),
         "bound": point.bound * point.scenarios.allowed,
         "status": point.status,
     }
@@ -108,7 +113,15 @@ def write_points(report: TradeOffReport, path: Path) -> None:
     joints = study.robot.joint_names
     units = [axis.unit for axis in report.found.axes.all]
     header = [f"{v.kind} [{unit}]" for v, unit in zip(report.views, units, strict=True)]
-    header += ["knee", "worst_force_N", "worst_share", "linearised_N", "meets_limit", "status"]
+    header += [
+        "knee",
+        "worst_force_N",
+        "worst_share",
+        "linearised_N",
+        "full_N",
+        "meets_limit",
+        "status",
+    ]
     header += [f"k_s_{joint}" for joint in study.spring_names] + list(others)
     header += [f"q_{joint} in {pose}" for pose in poses for joint in joints]
     with path.open("w", encoding="utf-8", newline="") as file:
@@ -119,7 +132,8 @@ def write_points(report: TradeOffReport, path: Path) -> None:
                 [
                     *point.values,
                     str(i == report.found.knee).lower(),
-                    *(point.worst.force, share_of_limit(point), check),
+                    *(point.worst.force, share_of_limit(point)),
+                    *(check.linearised, check.full),
                     str(meets_limit(point)).lower(),
                     point.status,
                     *point.springs.tolist(),

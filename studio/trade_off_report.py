@@ -13,7 +13,8 @@ from softimpact.optimize.front.trade_off import TradeOff, TradePoint
 from softimpact.optimize.running.workers import Progress
 from softimpact.optimize.units import SCALES, figure_in_words
 
-from .robust_report import simulated_worst
+from .checks import Check
+from .scenario_checks import checked_worst
 
 
 @dataclass(frozen=True)
@@ -50,12 +51,12 @@ class TradeOffReport:
 
     Attributes:
         found: the front.
-        checks: peak force [N] of each point's worst scenario by SUNDIALS.
+        checks: each point's worst scenario, simulated.
         views: the objectives as they are shown.
     """
 
     found: TradeOff
-    checks: tuple[float, ...]
+    checks: tuple[Check, ...]
     views: tuple[View, ...]
 
     @property
@@ -85,7 +86,7 @@ def trade_off_report(found: TradeOff, on_progress: Progress) -> TradeOffReport:
     checks = []
     for i, point in enumerate(found.points):
         on_progress("simulation of each point", i, len(found.points))
-        checks.append(simulated_worst(point))
+        checks.append(checked_worst(point))
     on_progress("simulation of each point", len(checks), len(checks))
     views = tuple(_view(found, axis) for axis in found.axes.all)
     return TradeOffReport(found, tuple(checks), views)

@@ -50,6 +50,15 @@ class CheckRecord(Part):
 
     nlp: float
     linearised: float
+    full: float = Field(description="of the nonlinear robot")
+
+
+class CatalogueRecord(Part):
+    """What springs that can be bought cost."""
+
+    ideal_springs: list[float] = Field(description="of any stiffness [N·m/rad]")
+    loss: float = Field(description="share of what was sought that the catalogue costs")
+    tried: int = Field(description="combinations")
 
 
 class TradePointRecord(Part):
@@ -70,6 +79,7 @@ class TradePointRecord(Part):
         description="range of each value that costs less than 0.5 %, the others held"
     )
     prices: list[PriceRecord]
+    catalogue: CatalogueRecord | None
     bound: float = Field(description="share of the limit that the scenarios that decide allow")
     status: str = Field(description="Ipopt's")
 
@@ -108,5 +118,6 @@ class ObjectivesResults(Part):
     before: BeforeRecord
     levels_searched: int
     levels_out_of_reach: int
+    levels_not_sold: int = Field(description="that no springs of the catalogue keep")
     levels_unsolved: list[str] = Field(description="Ipopt's statuses where it failed")
     solver: TradeSolverRecord

@@ -8,12 +8,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from softimpact.optimize.front.axes import BoundAxis
+from softimpact.optimize.units import ratio_in_words
 
 from .answers_in_words import answers_in_words
+from .checks import checks_in_words
 from .design_report import peak_in_words
 from .front_words import FrontWords
 from .output import Cell
-from .robust_report import others_in_words, place_in_words
+from .robust_report import others_in_words
+from .scenario_checks import place_in_words
 from .trade_off_report import TradeOffReport, View, broken_before
 
 TABLE = "front.csv"
@@ -86,11 +89,10 @@ def _ends(report: TradeOffReport) -> Iterator[str]:
             continue
         best, loose = ends
         a, b = (report.points[i].values for i in (loose, best))
-        change = 100 * (b[column] / a[column] - 1)
         yield (
             f"{view.label.capitalize()}: {view.words(a[own])} → {view.words(b[own])} takes the "
-            f"{sought.label} from {sought.words(a[column])} to {sought.words(b[column])} "
-            f"({change:+.1f} %)."
+            f"{sought.label} from {sought.words(a[column])} to {sought.words(b[column])}, "
+            f"{ratio_in_words(b[column] / a[column], sought.label)}."
         )
 
 
@@ -130,7 +132,7 @@ def _knee(report: TradeOffReport) -> Iterator[str]:
     yield f"The knee, beyond which all costs more: {values_in_words(report.views, point.values)}."
     springs = ", ".join(f"{k:.0f}" for k in point.springs)
     yield f"There: k_s = [{springs}] N·m/rad{'; ' if others else ''}{', '.join(others)}."
-    yield f"There at worst {point.worst.force:.1f} N: {place_in_words(point, point.worst)}."
+    yield f"There at worst {point.worst.force:.1f} N: {place_in_words(point, point.worst.index)}."
     yield from answers_in_words(point.study, point.indifferent, point.prices)
 
 
@@ -148,18 +150,21 @@ def _before(report: TradeOffReport) -> Iterator[str]:
 
 
 def _check(report: TradeOffReport) -> str:
-    pairs = zip(report.points, report.checks, strict=True)
-    off = max(abs(check / point.worst.force - 1) for point, check in pairs)
-    return (
-        f"Check of all {len(report.points)} points: the worst scenario by SUNDIALS within "
-        f"{100 * off:.3f} % of the optimiser's force."
-    )
+    return checks_in_words("the worst scenario of", report.checks)
 
 
 def _levels(report: TradeOffReport) -> Iterator[str]:
     found = report.found
     if found.out_of_reach:
         yield f"{found.out_of_reach} combinations of levels are beyond what any hardware reaches."
+    losses = [point.bought.loss for point in found.points if point.bought is not None]
+    if losses:
+        yield (
+            f"All springs are of the catalogue, which costs {100 * max(0.0, *losses):.2g} % of the "
+            f"{report.view_of(0)[1].label} at most against springs of any stiffness."
+        )
+    if found.not_sold:
+        yield f"{found.not_sold} combinations of levels are kept by no springs of the catalogue."
     if found.unsolved:
         kinds = ", ".join(sorted(set(found.unsolved)))
         yield f"Ipopt failed at {len(found.unsolved)} combinations within reach ({kinds})."

@@ -6,9 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from inspect import Parameter
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin, get_type_hints
 
 from . import options as o
+
+if TYPE_CHECKING:
+    from softimpact.optimize import Study
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,45 @@ class TypedDrives:
         """Whether anything was said of what motors do, or of how they react."""
         said = (self.motors, self.reaction_time, self.stopping_time)
         return any(value is not None for value in said)
+
+
+@dataclass(frozen=True)
+class TypedStudy:
+    """A study, and the options that stand in place of what it says."""
+
+    file: o.StudyFileArgument
+    region: o.RegionOption = None
+    speed: o.SpeedOption = None
+    motors: o.StudyMotorsOption = None
+    reaction_time: o.ReactionTimeOption = None
+
+    def read(self, **sections: Mapping[str, Any]) -> Study:
+        """Return the study that is meant; raises SoftImpactError.
+
+        Args:
+            sections: by name, what stands in their place, too; None is left as it is.
+        """
+        from softimpact.optimize import load_study
+
+        changed: dict[str, Mapping[str, Any]] = {
+            "impact": {"region": self.region, "speed": self.speed},
+            "motors": {"kind": self.motors, "reaction_time": self.reaction_time},
+            **sections,
+        }
+        told = {
+            name: {field: value for field, value in fields.items() if value is not None}
+            for name, fields in changed.items()
+        }
+        return load_study(self.file, {name: fields for name, fields in told.items() if fields})
+
+
+@dataclass(frozen=True)
+class TypedExecution:
+    """The options that say where a search runs."""
+
+    workers: o.WorkersOption = None
+    dask: o.DaskOption = None
+    resume: o.ResumeOption = False
 
 
 class But:

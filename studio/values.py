@@ -141,8 +141,3 @@ def _number(field: str, value: object, which: str) -> float:
         return float(value)
     except OverflowError:
         raise InvalidValue(field, f"{which} is too large") from None
-
-
-def given(**options: Any) -> dict[str, Any]:
-    """Return the options that were given, by name; others are None."""
-    return {name: value for name, value in options.items() if value is not None}

@@ -18,8 +18,9 @@ Matrix = Any
 """A CasADi matrix: SX, MX or DM, in formulas that mix them with each other and with numbers.
 
 CasADi's types have no common base that can be calculated with, and its stubs refuse SX with MX: a
-union of the three fails a thousand times, so a checker learns nothing here. Public functions of a
-robot say by overloads that they return the kind they are given (``Kind``), and DM for ``Numbers``.
+union of the three fails a thousand times, and a protocol of their operators, which CasADi's
+functions do not take, some 700 times. Public functions of a robot say by overloads that they return
+the kind they are given (``Kind``), and DM for ``Numbers``.
 """
 
 Kind = TypeVar("Kind", ca.SX, ca.MX, ca.DM)

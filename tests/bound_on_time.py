@@ -24,7 +24,10 @@ ITERATIONS, LEVELS = 3, 7
 LIBRARY = {"memcpy": 60, "memset": 60, "powf": 150, "expf": 80, "sinf": 600, "cosf": 600}
 """Instructions of the C library's functions, above what was ever counted."""
 
-NEVER = ("damp", "damp_ahead", "damping_rate", "servo_modes", "pass", "two_body_force", "law_press")
+NEVER = (
+    *("damp", "damp_ahead", "damping_rate", "servo_modes", "pass", "two_body_force", "law_press"),
+    *("force_between", "slip_off"),
+)
 """Functions of servos, of what presses late, of peak forces and of other laws than Hertz's."""
 
 

@@ -41,10 +41,12 @@ before a time counts.
 """
 
 IMPACT = """
-The other contender of impacts is a textbook Runge-Kutta method of order 4 in C (`rk4.c`) on the
-same chain of masses, made by the same package; its steps follow the fastest rate there is, and
-are as long as stability and 0.1 % allow. Its safe speed corrects a guess by limit over force until
-it leaves as much of the limit free as ours does, 1 to 2.3 %.
+Impacts are those of free motors up to a horizon of 0.1 s, the one case that both can compute; what
+the bracket over 0.5 s costs is in [embedded.md](embedded.md). The other contender is a textbook
+Runge-Kutta method of order 4 in C (`rk4.c`) on the same chain of masses, made by the same package;
+its steps follow the fastest rate there is, and are as long as stability and 0.1 % allow. Its safe
+speed corrects a guess by limit over force until it leaves as much of the limit free as ours does, 1
+to 2.3 %.
 
 """
 

@@ -22,7 +22,7 @@ def linear_error(s: Symbols) -> CFunction:
     along = least_velocity(J, s.n)
     velocity, duration = along * s.values["speed"], s.values["duration"]
     error = linearisation_error(s.model, s.q, s.n, velocity, duration)
-    output = Output("error", error, "dimensionless", "share of the force", scale=1.0)
+    output = Output("error", error, "dimensionless", "share of the force", scale=1 + error)
     turn = velocity * duration
     guards = (
         movable(s.robot, s.model.reflected_mass(s.q, s.n)),

@@ -55,6 +55,7 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
     robot_real moved[ROBOT_REACH][ROBOT_N];
     robot_real share[ROBOT_SYSTEM];
     robot_real within = ROBOT_R(0.0);
+    robot_real whole = ROBOT_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < ROBOT_N; ++i) {
         arrival->row[i] = u[0]*J[0][i] + u[1]*J[1][i] + u[2]*J[2][i];
     }
@@ -73,9 +74,15 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
             square[k][l] = sum;
             square[l][k] = sum;
         }
+        whole += square[k][k];
     }
     if (!(within > ROBOT_R(1.0) - OUTSIDE) || !robot_cholesky(ROBOT_REACH, square)) {
         return ROBOT_SINGULAR;
+    }
+    for (int k = 0; k < ROBOT_REACH; ++k) {
+        if (!(square[k][k]*square[k][k] > ROBOT_EPSILON*whole)) {
+            return ROBOT_SINGULAR;
+        }
     }
     robot_forward(ROBOT_REACH, square, share);
     robot_backward(ROBOT_REACH, square, share);

@@ -67,11 +67,11 @@ static int spring_modes(robot_matrix C, const robot_real b[ROBOT_N], robot_modes
             vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
+        modes->noise[at] = ROBOT_R(0.0);
         modes->row[at] = row*rate;
         modes->start[at] = ROBOT_R(0.0);
     }
     modes->count = modes->rigid + ROBOT_N;
-    modes->noise = ROBOT_R(0.0);
     return ROBOT_OK;
 }
 
@@ -151,6 +151,7 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     }
     modes->rigid = 1; /* r */
     modes->squared[0] = ROBOT_R(0.0);
+    modes->noise[0] = ROBOT_R(0.0);
     modes->row[0] = ROBOT_SQRT(together);
     modes->start[0] = ROBOT_R(1.0)/modes->row[0];
     for (int j = 0; j < ROBOT_SYSTEM; ++j) {

@@ -18,6 +18,8 @@
 #define CLOSE ROBOT_R(0.01)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
+/* Parts of a step between which a law through points is looked at. */
+#define PLACES 4
 
 void robot_glide(const robot_state *s, robot_trial *t)
 {
@@ -149,4 +151,42 @@ void robot_take(const robot_trial *t, robot_state *s)
         s->amplitude[i] = t->amplitude[i] - step->push*first - step->late*rise;
         s->rate[i] = t->rate[i] - phase->modes.row[i]*step->sine*first - step->push*slope;
     }
+}
+
+robot_real robot_force_between(const robot_state *s, const robot_trial *t)
+{
+    const robot_region *const region = s->impact->region;
+    const robot_phase *const phase = s->phase;
+    const robot_level *const level = s->step;
+    const robot_real h = level->h;
+    const robot_real first = s->f + t->base - t->share*t->f;
+    const robot_real after = h*(t->v - level->kick*first) - level->push*(t->f - s->f);
+    robot_real before = s->drift;
+    for (int i = 0; i < phase->active; ++i) {
+        before += phase->modes.row[i]*s->rate[i];
+    }
+    before *= h;
+    robot_real most = ROBOT_R(0.0);
+    for (int k = 1; k < PLACES; ++k) { /* x is a cubic, the body's own deflection followed at once */
+        const robot_real share = (robot_real)k/(robot_real)PLACES;
+        const robot_real left = ROBOT_R(1.0) - share;
+        const robot_real even = s->x + share*share*(ROBOT_R(3.0) - share - share)*(t->x - s->x);
+        const robot_real x = even + share*left*(left*before - share*after);
+        const robot_real damper = region->damping/(share*h);
+        const robot_real hold = region->stiffness + damper;
+        const robot_real pressed = hold*x - damper*(s->x - s->u);
+        const robot_real soft = ROBOT_R(1.0) + hold*phase->compliance;
+        robot_real depth;
+        if (pressed > ROBOT_R(0.0)) {
+            most = ROBOT_FMAX(most, robot_law_press(region, hold, soft, pressed, &depth));
+        }
+    }
+    return most;
+}
+
+robot_real robot_slip_off(const robot_state *s, const robot_trial *t)
+{
+    const robot_real rate = (t->u - s->u)*s->step->per;
+    const robot_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
+    return s->impact->region->damping*ROBOT_FABS(rate - before);
 }

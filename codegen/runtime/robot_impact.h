@@ -39,9 +39,9 @@ typedef robot_real robot_matrix[ROBOT_SYSTEM][ROBOT_SYSTEM];
 typedef struct {
     int count;
     int rigid; /* the first ones have no frequency */
-    robot_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
     robot_real fastest; /* largest squared frequency that is known, 1/s^2 */
     robot_real squared[ROBOT_MODES]; /* frequency, 1/s^2 */
+    robot_real noise[ROBOT_MODES]; /* of these, where rounding may matter, 1/s^2 */
     robot_real row[ROBOT_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     robot_real start[ROBOT_MODES]; /* rates at first touch of an approach of 1 m/s */
     robot_real shape[ROBOT_MODES][ROBOT_SYSTEM];

@@ -8,9 +8,6 @@
  */
 #include "robot_impact.h"
 
-/* Share of the largest entry that rounding leaves of one that should be none. */
-#define NOISE (ROBOT_R(8.0)*ROBOT_EPSILON)
-
 /* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
 {
@@ -30,10 +27,9 @@ static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
     return true;
 }
 
-/* A = X'KX of such an X; returns the noise in its entries. */
-static robot_real congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
+/* A = X'KX of such an X. */
+static void congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
 {
-    robot_real largest = ROBOT_R(0.0);
     for (int i = 0; i < size; ++i) {
         robot_real pulled[ROBOT_SYSTEM];
         for (int l = 0; l <= i; ++l) {
@@ -50,17 +46,32 @@ static robot_real congruent(int size, robot_matrix K, robot_matrix X, robot_matr
             A[i][j] = sum;
             A[j][i] = sum;
         }
-        largest = ROBOT_FMAX(largest, ROBOT_FABS(A[i][i]));
     }
-    return NOISE*largest;
 }
 
 #if !ROBOT_STRUCTURED
-/* Takes over the eigenvectors X, over the coordinates `places`. */
-static void take_over(int size, const int *places, robot_matrix A, robot_matrix X, const robot_real *row,
-    robot_modes *modes)
+/*
+ * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
+ * squared sum of these roots' shares in it. False if eigenvectors are not found.
+ */
+static bool find_modes(int size, const int *places, robot_matrix L, robot_matrix A, robot_matrix X,
+    const robot_real *row, robot_modes *modes)
 {
+    robot_real roots[ROBOT_SYSTEM];
     for (int i = 0; i < size; ++i) {
+        roots[i] = ROBOT_SQRT(ROBOT_FABS(A[i][i]));
+    }
+    const bool found = robot_diagonalise(size, A, X);
+    for (int i = 0; i < size; ++i) {
+        robot_real held = ROBOT_R(0.0);
+        for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
+            robot_real share = ROBOT_R(0.0);
+            for (int m = l; m < size; ++m) {
+                share += L[m][l]*X[m][i];
+            }
+            held += roots[l]*ROBOT_FABS(share);
+        }
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
             modes->shape[i][j] = ROBOT_R(0.0);
         }
@@ -69,6 +80,7 @@ static void take_over(int size, const int *places, robot_matrix A, robot_matrix 
             modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
+        modes->noise[i] = ROBOT_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
         modes->start[i] = ROBOT_R(0.0);
@@ -76,6 +88,7 @@ static void take_over(int size, const int *places, robot_matrix A, robot_matrix 
     modes->count = size;
     modes->rigid = 0;
     modes->fastest = ROBOT_REAL_MAX;
+    return found;
 }
 #endif
 
@@ -176,12 +189,10 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     if (!unit_motions(size, mass, X)) {
         return ROBOT_SINGULAR;
     }
-    (void)congruent(size, K, X, A);
-    if (!robot_diagonalise(size, A, X)) {
+    congruent(size, K, X, A);
+    if (!find_modes(size, places, mass, A, X, row, modes)) {
         return ROBOT_SINGULAR;
     }
-    take_over(size, places, A, X, row, modes);
-    modes->noise = ROBOT_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
@@ -202,7 +213,11 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
     if (!unit_motions(ROBOT_SYSTEM, mass, X)) {
         return ROBOT_SINGULAR;
     }
-    modes->noise = congruent(ROBOT_SYSTEM, K, X, mass);
+    congruent(ROBOT_SYSTEM, K, X, mass);
+    robot_real all = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        all += ROBOT_FABS(mass[i][i]);
+    }
     if (!robot_spectrum(ROBOT_SYSTEM, ROBOT_EPSILON*ROBOT_EPSILON, mass, modes->squared, K)) {
         return ROBOT_SINGULAR;
     }
@@ -216,6 +231,7 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < ROBOT_N ? arrival->row[j]*shape : ROBOT_R(0.0);
         }
+        modes->noise[i] = ROBOT_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
         modes->row[i] = row;
         modes->start[i] = ROBOT_R(0.0);
     }
@@ -255,12 +271,10 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     if (!unit_motions(ROBOT_SYSTEM, mass, X)) {
         return ROBOT_SINGULAR;
     }
-    (void)congruent(ROBOT_SYSTEM, K, X, A);
-    if (!robot_diagonalise(ROBOT_SYSTEM, A, X)) {
+    congruent(ROBOT_SYSTEM, K, X, A);
+    if (!find_modes(ROBOT_SYSTEM, places, mass, A, X, row, modes)) {
         return ROBOT_SINGULAR;
     }
-    take_over(ROBOT_SYSTEM, places, A, X, row, modes);
-    modes->noise = ROBOT_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
             modes->start[i] += modes->shape[i][j]*momentum[j];

@@ -2,7 +2,7 @@
 /* What impacts of robot_ are prepared with: modes, mobilities and steps. */
 #include "robot_impact.h"
 
-/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+/* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS ROBOT_R(1.6e-2)
 
 void robot_impact_forget(robot_impact *impact)
@@ -19,6 +19,7 @@ static void take_body_out(robot_phase *phase)
     const int body = phase->active - 1;
     if (phase->has_body && body >= 0 && body <= last) {
         modes->squared[body] = modes->squared[last];
+        modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
         for (int k = 0; k < ROBOT_SYSTEM; ++k) {
@@ -53,7 +54,6 @@ static int modes_of(robot_impact *impact, int which)
     phase->has_body = false;
     phase->drift = ROBOT_R(0.0);
     phase->damped = ROBOT_DAMPED != 0;
-    phase->modes.noise = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_DAMPERS; ++i) {
         phase->damping[i] = ROBOT_R(0.0);
     }
@@ -67,6 +67,30 @@ static int modes_of(robot_impact *impact, int which)
     phase->known = status == ROBOT_OK;
     impact->led = which == ROBOT_LED ? impact->motors : impact->led;
     return status;
+}
+
+/*
+ * What rounding may change of an approach within a time, as a share of it. An entry of a stiffness over modes i and
+ * j errs by about sqrt(n_i n_j) for the noise n of their squared frequencies; it takes start_i t of one motion to
+ * row_j t^2 of the other, or less where one of them swings. What is led starts by what the contact moves.
+ */
+static robot_real blur_of(const robot_impact *impact, const robot_phase *phase, robot_real time)
+{
+    const robot_modes *const modes = &phase->modes;
+    const bool led = phase == &impact->phase[ROBOT_LED];
+    robot_real rows = ROBOT_R(0.0);
+    robot_real starts = ROBOT_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        if (!(modes->noise[i] > ROBOT_R(0.0))) {
+            continue;
+        }
+        const robot_real turns = ROBOT_FABS(modes->squared[i])*time*time;
+        const robot_real off = time*ROBOT_SQRT(modes->noise[i]/ROBOT_FMAX(turns, ROBOT_R(1.0)));
+        const robot_real pulled = led ? ROBOT_FMIN(turns, ROBOT_R(1.0)) : ROBOT_R(1.0);
+        rows += ROBOT_FABS(modes->row[i])*off;
+        starts += ROBOT_FABS(modes->start[i])*pulled*off;
+    }
+    return rows*(led ? ROBOT_FMAX(starts, rows/impact->mobility) : starts);
 }
 
 #if !ROBOT_STRUCTURED
@@ -92,7 +116,7 @@ static void steps_of(robot_impact *impact, int which)
 {
     robot_phase *const phase = &impact->phase[which];
     const robot_real time = time_of(impact, which);
-    phase->blurred = phase->modes.noise*time*time > BLURS;
+    phase->blurred = blur_of(impact, phase, time) > BLURS;
     robot_phase_steps(impact, time, phase);
     const robot_real numbers[2] = {phase->level[0].h, phase->level[ROBOT_LEVELS - 1].h};
     if (robot_check_positive(numbers, 2) != ROBOT_OK) {

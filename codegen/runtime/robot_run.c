@@ -9,6 +9,10 @@
 #define STRAIGHT ROBOT_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS ROBOT_R(4.0)
+/* Share of that by which the force may be larger within a step than at its ends. */
+#define LEAPS ROBOT_R(0.5)
+/* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
+#define BEYOND 2
 /* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
 #define SHORTEST (ROBOT_LEVELS - 1)
 #define SHORTEST_APART 4
@@ -107,7 +111,14 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
     const robot_real bent = ROBOT_R(6.0)*ROBOT_FABS(t->bump);
     const robot_real rise = t->f - s->f;
     const bool parts = !(t->f > ROBOT_R(0.0));
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+    robot_real between = ROBOT_R(0.0); /* nodes of a law through points, where it leaps there */
+    bool slips = false;
+    if (s->impact->region->law != NULL) {
+        const robot_real force = robot_force_between(s, t);
+        between = force > ROBOT_FMAX(s->f, t->f) + LEAPS*allowed ? force : ROBOT_R(0.0);
+        slips = between > ROBOT_R(0.0) || robot_slip_off(s, t) > LEAPS*allowed;
+    }
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
         return TO_BE_SHORTER;
     }
@@ -117,6 +128,9 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
         see(s, t->f, s->step->h, peak);
     } else if (s->past > 0 && s->rise >= ROBOT_R(0.0)) {
         see_top(s, t, peak);
+    }
+    if (between > ROBOT_R(0.0)) {
+        peak->force = ROBOT_FMAX(peak->force, between + s->swings);
     }
     if (parts) {
         s->touching = false;
@@ -283,6 +297,11 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
             return;
         }
         robot_release(&s);
+        goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && impact->region->law != NULL) {
+        s.ticks = BEYOND;
+        change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
     }
     peak->ended = goes_on;

@@ -72,6 +72,15 @@ void robot_glide(const robot_state *s, robot_trial *t);
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
 void robot_press(robot_state *s, robot_trial *t);
 
+/*
+ * Largest force of a law through points within the step, as if it did not slow down robot and body more on the
+ * way: a law that gets stiff between two nodes may press hard there and show at neither.
+ */
+robot_real robot_force_between(const robot_state *s, const robot_trial *t);
+
+/* What the damper's force at the end may be off where the skin gets stiff within the step, as u' is a difference. */
+robot_real robot_slip_off(const robot_state *s, const robot_trial *t);
+
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void robot_take(const robot_trial *t, robot_state *s);
 

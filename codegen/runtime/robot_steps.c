@@ -31,12 +31,15 @@
 static void exchange(robot_modes *modes, int i, int j)
 {
     const robot_real squared = modes->squared[i];
+    const robot_real noise = modes->noise[i];
     const robot_real row = modes->row[i];
     const robot_real start = modes->start[i];
     modes->squared[i] = modes->squared[j];
+    modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
     modes->start[i] = modes->start[j];
     modes->squared[j] = squared;
+    modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
     for (int k = 0; k < ROBOT_SYSTEM; ++k) {
@@ -150,6 +153,7 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
     if (impact->gives_way) {
         const int body = modes->count < ROBOT_MODES ? modes->count : ROBOT_MODES - 1; /* the former */
         modes->squared[body] = ROBOT_R(0.0);
+        modes->noise[body] = ROBOT_R(0.0);
         modes->row[body] = ROBOT_R(1.0)/ROBOT_SQRT(region->effective_mass);
         modes->start[body] = ROBOT_R(0.0);
         for (int k = 0; k < ROBOT_SYSTEM; ++k) {

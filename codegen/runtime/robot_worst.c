@@ -12,8 +12,8 @@
 #define NARROW ROBOT_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
-/* Least error that is stated. */
-#define LEAST_ERROR ROBOT_R(2e-3)
+/* What forces may be too low, added to what the directions were apart. */
+#define OF_FORCES (ROBOT_R(1.0) - ROBOT_KEPT)
 
 typedef struct {
     robot_impact impact;
@@ -121,7 +121,7 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
         }
     }
     out->force = w->force;
-    out->error = ROBOT_FMAX(w->force/seen - ROBOT_R(1.0), LEAST_ERROR);
+    out->error = w->force/seen - ROBOT_R(1.0) + OF_FORCES;
     return w->bounded ? ROBOT_BOUNDED : ROBOT_OK;
 }
 

@@ -24,16 +24,17 @@ TipLoad = tuple[float, float, float]
 class Deflection(AtMost):
     """Largest displacement of the tip by the springs, the motors held, under each load.
 
-    It is linear: δ = J k_s⁻¹ (Jᵀf + τ_g). Of springs that may be off by a share x, each for itself,
-    it is what no choice of them exceeds: |Σδ_i| for the middle of 1/k_s, plus Σ|δ_i| times half
-    the width.
+    It is linear: δ = J k_s⁻¹ (Jᵀf + τ_g), a spring beside a motor being added to k_s. Of springs
+    k_s that may be off by a share x, each for itself, it is what no choice of them exceeds: |Σδ_i|
+    for the middle of 1/k_s, plus Σ|δ_i| times half the width.
 
     Attributes:
         most: displacement [m].
         forces: on the tip, base axes [N].
         moments: on the tip, one for each force [N·m]; none: zero.
         payload: point mass at the tip, whose weight acts beside each force [kg].
-        sag: whether the links' own weight counts, too; else the motors are set so that it does not.
+        sag: whether the links' own weight, and the pull of springs beside motors, counts, too; else
+            the motors are set so that it does not.
     """
 
     kind: ClassVar[str] = "deflection"
@@ -80,6 +81,6 @@ class Deflection(AtMost):
             moments = ca.mtimes(turning.T, ca.DM(self.moments).T)
             torques = torques + onto(machine.model, q, moments)
         if self.sag:  # the weight pulls with the opposite of what holds the links
-            own = machine.gravity_torques(q)
+            own = machine.holding_torques(q)
             torques = torques - ca.repmat(own, 1, torques.shape[1])
         return torques

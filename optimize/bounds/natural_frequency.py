@@ -41,7 +41,7 @@ class NaturalFrequency(AtLeast):
         J = machine.jacobian(q)
         mass = machine.mass_matrix(q) + self.payload * ca.mtimes(J.T, J)
         mass = _on_springs(machine.model, mass)
-        root: Matrix = 1 / ca.sqrt(machine.hardware.springs * (1 - machine.margin))
+        root: Matrix = 1 / ca.sqrt(machine.stiffness(-machine.margin))
         return 1 / (2 * pi * ca.sqrt(largest_eigenvalue(mass * ca.mtimes(root, root.T))))
 
 

@@ -20,6 +20,8 @@ from .bound import AtMost
 class Torque(AtMost):
     """Static torque of each joint over its motor's limit, under the weight of links and loads.
 
+    Springs beside motors count.
+
     A larger gear ratio raises the limit.
 
     Attributes:
@@ -42,7 +44,7 @@ class Torque(AtMost):
         limits = limits[list(machine.model.independent)]
         known = [int(i) for i in np.flatnonzero(np.isfinite(limits))]
         at_tip = ca.DM(self.forces).T - self.payload * ca.DM(STANDARD_GRAVITY)
-        own = ca.repmat(machine.gravity_torques(q), 1, len(self.forces))
+        own = ca.repmat(machine.holding_torques(q), 1, len(self.forces))
         torques = own + ca.mtimes(machine.jacobian(q).T, at_tip)
         strength = at_coordinates(machine.model, machine.hardware.gears) * ca.DM(limits)
         return ca.vec((ca.fabs(torques) / ca.repmat(strength, 1, len(self.forces)))[known, :])

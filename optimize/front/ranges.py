@@ -24,6 +24,10 @@ NO_CHOICE = 1.02
 SAME = 1.05
 """Times a study's own limit up to which another level is not kept beside it."""
 
+LEAST_LEVEL = 1e-6
+"""Share of the loosest value of an objective whose least is zero, in place of that: it is a
+thousandth of what the machine as it is has."""
+
 FEW = 5
 """Levels of each of two objectives that are held, unless a study says how many."""
 
@@ -91,8 +95,10 @@ def _tightest(trade: Trade, i: int) -> float:
         return max(span) if axis.more_is_better else min(span)
     best = best_figure(trade, i)
     wanted = None if ends is None else (max(ends) if axis.more_is_better else min(ends))
-    if wanted is None:
-        return best / LEAST_ROOM if axis.more_is_better else best * LEAST_ROOM
+    if wanted is None and axis.more_is_better:
+        return best / LEAST_ROOM
+    if wanted is None:  # levels are even in their logarithms, and zero has none
+        return max(best * LEAST_ROOM, LEAST_LEVEL * trade.loosest[i])
     if (wanted > best) if axis.more_is_better else (wanted < best):
         side, change = ("largest", "lower") if axis.more_is_better else ("least", "raise")
         raise InvalidValue(

@@ -21,6 +21,7 @@ from ..answers import Price, prices_of, worth_of
 from ..bounds import Deflection
 from ..evaluation import equipped
 from ..impact.timing import Timing, scenario_timing
+from ..robust.catalogue import Bought
 from ..robust.certificate import Hardening, Worst
 from ..robust.robust import indifferent, require_lengths, require_thick_cover
 from ..robust.setting import setting_of
@@ -34,6 +35,7 @@ from ..study.study_scenarios import scenarios_of
 from .axes import Axes, BoundAxis, ObjectiveAxis, asked_axes
 from .dominance import WORTH, knee, undominated
 from .grid import Grid, GridNode, fill, values_at
+from .of_catalogue import bought_designs, within_catalogue
 from .ranges import Levels, levels_of
 from .trade import Trade
 
@@ -58,6 +60,8 @@ class TradePoint(Record):
         indifferent: range of each value of the hardware that costs less than 0.5 %, the others
             held.
         prices: what each binding bound costs.
+        bought: the springs of the catalogue, and what they cost; None without one. ``bound`` and
+            ``prices`` are then those of springs of any stiffness.
     """
 
     UNSHOWN = ("study", "scenarios")
@@ -73,6 +77,7 @@ class TradePoint(Record):
     status: str
     indifferent: Array
     prices: tuple[Price, ...]
+    bought: Bought | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +95,7 @@ class TradeOff(Record):
         before_values: of the objectives.
         searched: levels that were solved.
         out_of_reach: levels that no hardware keeps.
+        not_sold: levels that were solved, but that no springs of the catalogue keep.
         unsolved: statuses of Ipopt at levels within reach where it failed.
         timing: of the impacts.
         compiled: whether they ran as machine code.
@@ -107,6 +113,7 @@ class TradeOff(Record):
     before_values: tuple[float, ...]
     searched: int
     out_of_reach: int
+    not_sold: int
     unsolved: tuple[str, ...]
     timing: Timing
     compiled: bool
@@ -129,7 +136,7 @@ class TradeOff(Record):
 
 def asks_for_trade_off(study: Study) -> bool:
     """Return whether a study's front is one of a machine for scenarios, and not of postures."""
-    more = study.scenarios is not None or study.other_variables
+    more = study.scenarios is not None or study.other_variables or study.catalogue
     return bool(more or study.levels.objectives)
 
 
@@ -149,15 +156,11 @@ def trade_off_front(
         InvalidValue: the objectives make no front, or levels lie where there is nothing to find.
         Infeasible: no hardware keeps the other bounds.
         SolverFailure: no search was solved.
+        Unavailable: no springs of the catalogue keep any level.
     """
-    if study.catalogue:
-        raise InvalidValue(
-            f"{study.source}: hardware.catalogue",
-            "a front has springs of any stiffness; leave it out, or take 'softimpact design'",
-        )
     axes = asked_axes(study, study.levels.objectives or [study.objective.kind, Deflection.kind])
     _require_known_ends(study, axes)
-    study = axes.study(study)
+    study = within_catalogue(axes.study(study))
     scenarios, free = _scenarios(study)
     require_lengths(study, scenarios)
     with workers(cores(), executor) as pool:
@@ -241,6 +244,10 @@ def _timing(study: Study, scenarios: Scenarios, axes: Axes) -> Timing:
 
 def _result(trade: Trade, levels: Levels, grid: Grid) -> TradeOff:
     """Return the designs that no other beats, and what they mean."""
+    searched = len(grid.found)
+    choices: dict[GridNode, Bought] = {}
+    if trade.setting.study.catalogue:
+        grid, choices = bought_designs(trade, levels, grid)
     nodes = list(grid.found)
     values = np.array([trade.values(grid.found[n], values_at(levels, n)) for n in nodes])
     values = values[:, list(trade.axes.order)]
@@ -248,7 +255,9 @@ def _result(trade: Trade, levels: Levels, grid: Grid) -> TradeOff:
     costs = np.where(more, 1 / values, values)
     order = np.lexsort(costs.T[::-1])
     kept = [int(order[i]) for i in undominated(costs[order], WORTH)]
-    points = tuple(_point(trade, levels, grid, nodes[i], values[i]) for i in kept)
+    points = tuple(
+        _point(trade, levels, grid, nodes[i], values[i], choices.get(nodes[i])) for i in kept
+    )
     logs = np.log(costs[kept])
     logs[:, trade.axes.order.index(0)] = costs[kept, trade.axes.order.index(0)]
     held = (1.0 if isinstance(axis, ObjectiveAxis) else 0.0 for axis in trade.axes.held)
@@ -264,7 +273,8 @@ def _result(trade: Trade, levels: Levels, grid: Grid) -> TradeOff:
         knee=knee(logs),
         before=trade.before,
         before_values=tuple(before[i] for i in trade.axes.order),
-        searched=len(nodes),
+        searched=searched,
+        not_sold=searched - len(nodes),
         out_of_reach=len(grid.beyond),
         unsolved=tuple(grid.unsolved.values()),
         timing=setting.timing,
@@ -272,10 +282,19 @@ def _result(trade: Trade, levels: Levels, grid: Grid) -> TradeOff:
     )
 
 
-def _point(trade: Trade, levels: Levels, grid: Grid, node: GridNode, values: Array) -> TradePoint:
+def _point(
+    trade: Trade,
+    levels: Levels,
+    grid: Grid,
+    node: GridNode,
+    values: Array,
+    choice: Bought | None,
+) -> TradePoint:
     setting, state = trade.at(values_at(levels, node)), grid.found[node]
     study = setting.study
     springs, others = setting.limits.parted(state.at.v)
+    if choice is not None:  # their logarithms lose a digit
+        springs = choice.springs
     require_thick_cover(setting, state.worst, equipped(study, ca.DM(springs), others))
     worth = worth_of(study, state.worst.force / state.worst.share * state.unit)
     return TradePoint(
@@ -290,4 +309,5 @@ def _point(trade: Trade, levels: Levels, grid: Grid, node: GridNode, values: Arr
         status=state.best.status,
         indifferent=indifferent(setting, state),
         prices=prices_of(study, state.instance, state.best, worth, setting.program),
+        bought=choice,
     )

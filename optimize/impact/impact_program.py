@@ -32,6 +32,7 @@ from ..machine.coordinates import (
     of_springs,
     rigid,
     sprung,
+    without_beside,
     without_sought,
 )
 from ..machine.hardware import Hardware, Machine, least_motion
@@ -45,7 +46,7 @@ SIZES = {"direction": 3, "speed": 1, "contact": 4, "motors": 5, "payload": 1, "s
 
 NUMBERS = sum(SIZES.values())
 
-PARTS = ("springs", "rotors", "masses", "cover", "speed")
+PARTS = ("springs", "rotors", "masses", "cover", "beside", "speed")
 """What of the hardware an impact feels, and a factor on its speed, in the order of x."""
 
 Parts = tuple[str, ...]
@@ -292,9 +293,8 @@ def _posture(model: ImpactModel, point: str, parts: Parts) -> ca.Function:
         given.append(machine.hardware.cover)
     if model.robot.damping.any():
         given.append(ca.vec(ca.densify(ca.SX(damping))))
-    others = without_sought(machine.model)
-    if _has_potential(others):
-        given.append(ca.vec(others.potential_stiffness(q)))
+    if _has_potential(model, parts):
+        given.append(ca.vec(_potential(machine, q, parts)))
     return ca.Function("posture", [x, p], ca.cse([ca.vertcat(*given)]))
 
 
@@ -328,7 +328,7 @@ def _forces(
     model: ImpactModel, given: Matrix, p: Matrix, nodes: int, substeps: int, parts: Parts
 ) -> Matrix:
     n, R, N = len(model.independent), rigid(model), model.robot.n
-    d, v = n * bool(model.robot.damping.any()), n * _has_potential(without_sought(model))
+    d, v = n * bool(model.robot.damping.any()), n * _has_potential(model, parts)
     sizes = [n * n, n, n, n, n * n, n * len(R), N * ("rotors" in parts), int("cover" in parts)]
     offsets = np.cumsum([0, *sizes, d * d, v * v]).tolist()
     pieces = ca.vertsplit(given, offsets)
@@ -366,9 +366,19 @@ def _joint_damping(model: ImpactModel, entries: Matrix) -> Matrix:
     return drag if model.robot.loops else ca.project(drag, ca.Sparsity.diag(n))
 
 
-def _has_potential(model: ImpactModel) -> bool:
-    """Whether the links' potential energy bends: by gravity, or springs that are not sought."""
-    return model.robot.has_springs or any(model.gravity)
+def _has_potential(model: ImpactModel, parts: Parts) -> bool:
+    """Whether the links' potential energy bends: by gravity, or springs not behind motors."""
+    others = without_sought(model)
+    return others.robot.has_springs or any(model.gravity) or "beside" in parts
+
+
+def _potential(machine: Machine, q: Matrix, parts: Parts) -> Matrix:
+    """Return by how much the links' potential energy bends."""
+    others = without_sought(machine.model)
+    if "beside" not in parts:
+        return others.potential_stiffness(q)
+    rest = ca.densify(ca.SX(without_beside(others).potential_stiffness(q)))
+    return rest + machine.model.congruent(q, ca.diag(machine.beside))
 
 
 def hertz_in_series(first: Matrix, second: Matrix) -> Matrix:

@@ -186,11 +186,15 @@ def _of_study(study: Study, postures: Sequence[Array], direction: Array) -> floa
 
 
 def lightest(study: Study) -> ImpactModel:
-    """Return a study's robot with the lightest links and rotors: none that is sought is faster."""
+    """Return a study's robot with the lightest links and rotors, and the stiffest springs beside.
+
+    None that is sought is faster.
+    """
     if not study.other_variables:
         return study.model
-    least = np.concatenate([each.range(study.model).lower for each in study.other_variables])
-    return built(study.model, equipped(study, ca.DM(study.upper), least))
+    ranges = [(each, each.range(study.model)) for each in study.other_variables]
+    fastest = [own.upper if each.hastens else own.lower for each, own in ranges]
+    return built(study.model, equipped(study, ca.DM(study.upper), np.concatenate(fastest)))
 
 
 def _largest_frequency(model: ImpactModel, springs: Array, q: Array, direction: Array) -> float:

@@ -61,6 +61,22 @@ def springs_of(model: ImpactModel) -> Array:
     )
 
 
+def beside_motors(model: ImpactModel) -> Array:
+    """Return the stiffness of the file's springs from body to body beside motors, length n.
+
+    Those of joints without a motor are ``springs_of``.
+    """
+    return np.array([j.stiffness if j.actuated else 0.0 for j in model.robot.joints])
+
+
+def without_beside(model: ImpactModel) -> ImpactModel:
+    """Return a model without springs beside motors."""
+    if not beside_motors(model).any():
+        return model
+    joints = [replace(j, stiffness=0.0) if j.actuated else j for j in model.robot.joints]
+    return replace(model, robot=replace(model.robot, joints=tuple(joints)))
+
+
 def with_springs(model: ImpactModel, springs: Array) -> ImpactModel:
     """Return a model with springs of other stiffness, one for each that there is [N·m/rad]."""
     drives, joints = np.array(model.drives.springs, dtype=float).ravel(), list(model.robot.joints)

@@ -22,11 +22,14 @@ from softimpact.symbolic.robot.rigid import Array, Inertia
 
 from .coordinates import (
     along,
+    beside_motors,
     is_plain,
     moved_by_motors,
     of_springs,
     onto,
     springs_of,
+    sprung,
+    without_beside,
 )
 
 
@@ -40,6 +43,8 @@ class Hardware:
         gears: ratio of each gear over the present one, length n.
         masses: factor on mass and inertia of each joint's body, length n; None: as they are.
         cover: Hertz stiffness of what the contact point wears [N/m^1.5]; None: nothing.
+        beside: stiffness of springs from body to body beside the motors, length n [N·m/rad]; None:
+            those that the robot's file has.
     """
 
     springs: Matrix
@@ -47,6 +52,7 @@ class Hardware:
     gears: Matrix
     masses: Matrix | None = None
     cover: Matrix | None = None
+    beside: Matrix | None = None
 
     @staticmethod
     def of(model: ImpactModel) -> Hardware:
@@ -105,13 +111,23 @@ class Machine:
         """The rigid robot."""
         return self.model.robot
 
-    def compliance(self, share: float = 0.0) -> Matrix:
-        """Return 1/k_s of each coordinate, zero where there is no spring, length m [rad/(N·m)].
+    @property
+    def beside(self) -> Matrix:
+        """Stiffness of the springs beside the motors, length n [N·m/rad]."""
+        own = self.hardware.beside
+        return ca.DM(beside_motors(self.model)) if own is None else own
+
+    def stiffness(self, share: float = 0.0) -> Matrix:
+        """Return what holds each link that has a spring, its motor held: k_s and what is beside it.
 
         Args:
-            share: by which every spring is stiffer than meant; softer where it is negative.
+            share: by which every k_s is stiffer than meant; softer where it is negative.
         """
-        return ca.mtimes(of_springs(self.model), 1 / (self.hardware.springs * (1 + share)))
+        return self.hardware.springs * (1 + share) + self.beside[list(sprung(self.model))]
+
+    def compliance(self, share: float = 0.0) -> Matrix:
+        """Return 1/``stiffness`` of each coordinate, zero where there is no spring, length m."""
+        return ca.mtimes(of_springs(self.model), 1 / self.stiffness(share))
 
     def jacobian(self, q: Matrix) -> Matrix:
         """Return the tip's translational J over the coordinates, 3×m."""
@@ -141,18 +157,29 @@ class Machine:
         """Return what the rotors add to M(q) where joints are rigid, m×m."""
         return self.model.congruent(q, ca.diag(self.hardware.reflected_rotors))
 
-    def gravity_torques(self, q: Matrix) -> Matrix:
-        """Return the torques that hold the links against gravity, length m [N·m]."""
-        return scaled_by_mass(
+    def holding_torques(self, q: Matrix) -> Matrix:
+        """Return what holds the links against gravity and springs beside motors, length m [N·m]."""
+        weight = scaled_by_mass(
             lambda robot: onto(self.model, q, gravity_torques(robot, q)),
-            self.robot,
+            without_beside(self.model).robot,
             self.hardware.masses,
         )
+        if self.hardware.beside is None and not beside_motors(self.model).any():
+            return weight
+        unbent = ca.DM([joint.spring_reference for joint in self.robot.joints])
+        return weight + onto(self.model, q, self.beside * (q - unbent))
 
 
 def built(model: ImpactModel, hardware: Hardware) -> ImpactModel:
-    """Return a robot with other links and rotors than its own, in numbers; springs stay."""
+    """Return a robot with other links, rotors and springs beside motors than its own, in numbers.
+
+    Springs behind motors stay.
+    """
     robot = model.robot
+    if hardware.beside is not None:
+        stiffness = np.array(ca.DM(hardware.beside)).ravel().tolist()
+        pairs = zip(robot.joints, stiffness, strict=True)
+        robot = replace(robot, joints=tuple(replace(j, stiffness=k) for j, k in pairs))
     if hardware.masses is not None:
         joints = zip(robot.joints, np.array(ca.DM(hardware.masses)).ravel(), strict=True)
         robot = replace(

@@ -23,7 +23,7 @@ from ..answers import Price, indifferent_ranges, prices_of, worth_of
 from ..evaluation import equipped, keeps_bounds
 from ..impact.timing import Timing
 from ..machine.hardware import Hardware
-from ..running.workers import Progress, cores, workers, works_elsewhere
+from ..running.workers import Progress, awake, cores, workers, works_elsewhere
 from ..search.accurate_springs import accurate_springs
 from ..search.minimax import serves
 from ..search.reach import require_reachable
@@ -56,6 +56,7 @@ class RobustDesign(Record):
             the deflection allows; with these springs.
         bound: share of the limit that the NLP says is the least, over its own scenarios.
         active: scenarios that the NLP held in the end.
+        shares: of its limit that the force of each of them is, as the NLP has it.
         rounds: exchanges.
         indifferent: range of each value of the hardware that costs less than 0.5 % over the active
             scenarios, the others held.
@@ -78,6 +79,7 @@ class RobustDesign(Record):
     equal: tuple[Worst, Array]
     bound: float
     active: tuple[int, ...]
+    shares: tuple[float, ...]
     rounds: int
     indifferent: Array
     prices: tuple[Price, ...]
@@ -116,7 +118,9 @@ def robust_design(
         )
     require_lengths(study, scenarios)
     require_reachable(study, scenarios.poses, free=free)
-    with workers(min(max(2, len(scenarios) // SCENARIOS_IN_A_JOB), cores()), executor) as pool:
+    processes = min(max(2, len(scenarios) // SCENARIOS_IN_A_JOB), cores())
+    with workers(processes, executor) as pool:
+        awake(pool, processes)
         elsewhere = works_elsewhere(executor)
         setting = setting_of(study, scenarios, pool, on_progress, elsewhere=elsewhere)
         return _exchanged(setting, free)
@@ -143,7 +147,7 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     state = exchange(setting, first, starts, given, equal_worst.share, free=free, thorough=True)
     choice = None
     if study.catalogue:
-        choice, state = _bought(setting, state)
+        choice, state = with_catalogue(setting, state)
     springs, others = limits.parted(state.at.v)
     if choice is not None:  # their logarithms lose a digit
         springs = choice.springs
@@ -160,6 +164,7 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
         equal=(equal_worst, equal),
         bound=state.bound,
         active=state.active,
+        shares=tuple((state.best.shares * state.unit).tolist()),
         rounds=state.rounds,
         indifferent=indifferent(setting, state),
         prices=prices_of(study, state.instance, state.best, worth, setting.program),
@@ -214,7 +219,11 @@ def indifferent(setting: Setting, state: ExchangeState) -> Array:
     return indifferent_ranges(setting.limits, state.at.v, cost, keeps)
 
 
-def _bought(setting: Setting, state: ExchangeState) -> tuple[Bought, ExchangeState]:
-    """Take springs of the catalogue instead; the postures stay."""
+def with_catalogue(setting: Setting, state: ExchangeState) -> tuple[Bought, ExchangeState]:
+    """Take springs of the catalogue instead, and return these; the postures stay.
+
+    Raises:
+        Unavailable: no combination was found that keeps all bounds.
+    """
     choice = bought(setting, _decisive(setting, state), state.at, state.worst)
     return choice, replace(state, at=choice.at, worst=choice.worst)

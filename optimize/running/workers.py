@@ -79,7 +79,7 @@ def awake(pool: Executor, jobs: int) -> None:
 
 def _load() -> None:
     """Import what searches need, in a worker process."""
-    import_module(".solve", __package__)
+    import_module("..search.solve", __package__)
 
 
 def as_completed(jobs: Iterable[Future[Result]]) -> Iterator[Future[Result]]:

@@ -18,8 +18,8 @@ ENOUGH = 1e-3
 def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
     """Return the softest springs, in the given proportions, that meet the deflection bound.
 
-    Where they break another bound that stiffer ones keep, such as one on a frequency, they are just
-    stiff enough for that. Joints that reach a bound of their stiffness stay there; if the upper
+    Where they break a bound that stiffer ones keep, such as one on a frequency, they are just stiff
+    enough for that. Joints that reach a bound of their stiffness stay there; if the upper
     bounds are too soft, the springs come as near as they can.
 
     Args:
@@ -33,7 +33,7 @@ def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
         if 1 - ENOUGH < share <= 1 + FEASIBLE:
             break
         scaled = np.clip(scaled * share, study.lower, study.upper)
-    return _stiffened(study, q, scaled) if study.other_bounds else scaled
+    return _stiffened(study, q, scaled)
 
 
 def _stiffened(study: Study, q: Array, springs: Array) -> Array:

@@ -106,6 +106,7 @@ def hardware_function(study: Study, parts: Parts) -> ca.Function:
         "rotors": hardware.reflected_rotors,
         "masses": hardware.masses,
         "cover": hardware.cover,
+        "beside": hardware.beside,
     }
     y = ca.vertcat(*[ca.log10(values[part]) for part in parts if part != "speed"])
     return ca.Function("hardware", [v], [y, ca.densify(ca.jacobian(y, v))])

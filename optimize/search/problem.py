@@ -153,6 +153,7 @@ def felt_numbers(
         "rotors": hardware.reflected_rotors,
         "masses": hardware.masses,
         "cover": hardware.cover,
+        "beside": hardware.beside,
         "speed": speed,
     }
     return np.concatenate([np.log10(np.array(felt[part], dtype=float)).ravel() for part in parts])

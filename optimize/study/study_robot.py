@@ -71,7 +71,8 @@ def chain_of(robot: Robot, section: RobotSection) -> Robot:
 def require_held_joints(chain: Robot) -> None:
     """Raise InvalidValue if a study does not know how a joint is held.
 
-    It puts a spring between each motor and its link, or takes a free joint's own.
+    It puts a spring between each motor and its link, beside whose own spring the file may have
+    another one, or takes a free joint's own.
     """
     independent = closed_chain(chain).independent
     for i, joint in enumerate(chain.joints):
@@ -79,8 +80,6 @@ def require_held_joints(chain: Robot) -> None:
         if follows and (spring or joint.actuated):
             fault = "has a spring of its own" if spring else "has a motor"
             fault += ", but follows from others"
-        elif joint.actuated and spring:
-            fault = "has a spring beside its motor"
         elif not (follows or joint.actuated or spring):
             fault = "has no motor and no spring, so that nothing holds it"
         else:

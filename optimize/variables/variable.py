@@ -43,11 +43,13 @@ class Variable(Protocol):
         kind: its name in the table ``[hardware]`` of a study file.
         unit: of its values.
         moves: what of ``Hardware`` it changes.
+        hastens: whether larger values make an arm swing faster; else smaller ones do, or none.
     """
 
     kind: ClassVar[str] = ""
     unit: ClassVar[str] = ""
     moves: ClassVar[tuple[str, ...]] = ()
+    hastens: ClassVar[bool] = False
 
     def range(self, model: ImpactModel) -> Range:
         """Return which values it may take on a robot; raises InvalidValue."""

@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.colors import LogNorm
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from softimpact.optimize.units import ratio_in_words
 from softimpact.studio.trade_off_report import TradeOffReport, View, broken_before
 from softimpact.studio.trade_off_words import best_and_loosest
 
@@ -76,18 +77,16 @@ def _message(report: TradeOffReport) -> str:
     if ends is None:
         return f"{across.label.capitalize()} and {sought.label}: nothing to trade"
     best, loose = (report.points[i].values for i in ends)
-    change = 100 * (best[y] / loose[y] - 1)
-    words = "less" if change < 0 else "more"
     return (
         f"From {across.words(loose[x])} to {across.words(best[x])} of {across.label}: "
-        f"{abs(change):.0f} % {words} {sought.label}"
+        f"{ratio_in_words(best[y] / loose[y], sought.label)}"
     )
 
 
 def _lines(axes: Any, values: Any) -> None:
     """Join the points that have the third objective alike."""
-    levels = np.round(np.log(values[:, 2]), 3)
     colour, norm = colormaps[COLOURS], shades(values[:, 2])
+    levels = np.round(np.array(norm(values[:, 2]), dtype=float), 3)
     for level in np.unique(levels):
         alike = values[levels == level]
         along = alike[np.argsort(alike[:, 0])]
@@ -96,8 +95,10 @@ def _lines(axes: Any, values: Any) -> None:
 
 
 def shades(values: Any) -> Any:
-    """Return how values become colours."""
+    """Return how values become colours: by their logarithms, where they have some."""
     low, high = float(values.min()), float(values.max())
+    if low <= 0:
+        return Normalize(low, high)
     return LogNorm(low, high if high > low else 1.01 * low)
 
 
@@ -142,7 +143,7 @@ def _limit(axes: Any, sought: View, handles: list[Any]) -> None:
 
 def wide_as_logarithm(axes: Any, name: str, values: Any) -> None:
     """Make an axis of a wide range logarithmic, with plain numbers."""
-    if values.max() < WIDE * values.min():
+    if values.min() <= 0 or values.max() < WIDE * values.min():
         return
     getattr(axes, f"set_{name}scale")("log")
     axis = getattr(axes, f"{name}axis")

@@ -38,9 +38,10 @@ def write_trade_off_report(report: TradeOffReport, path: Path) -> Path:
     )
     heads = [column.replace("\n", " ") for column in columns(report)]
     checks = [
-        (str(i + 1), p.worst.force, check)
+        (str(i + 1), p.worst.force, check.linearised, check.full)
         for i, (p, check) in enumerate(zip(report.points, report.checks, strict=True))
     ]
+    heads_of_checks = ("design", "optimiser N", "linearised N", "nonlinear N")
     sections = [
         Section(
             "The front",
@@ -58,7 +59,7 @@ def write_trade_off_report(report: TradeOffReport, path: Path) -> Path:
         Section(
             "How far to trust it",
             words=["The worst scenario of each design, integrated independently."],
-            tables=[TableOfNumbers("By model", ("design", "optimiser N", "linearised N"), checks)],
+            tables=[TableOfNumbers("By model", heads_of_checks, checks)],
         ),
     ]
     good = any(meets_limit(p) for p in report.points)

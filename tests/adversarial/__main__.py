@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Look for safe speeds that are none: random and hill-climbed inputs against the tests' integrator.
 
-Usage: PYTHONPATH=tests python -m adversarial [--inputs N] [--workers N] [--journal FILE]
-           [--out FILE] [ROBOT ...]
+Usage: PYTHONPATH=tests python -m adversarial [--inputs N] [--questions NAME ...] [--workers N]
+           [--journal FILE] [--out FILE] [ROBOT ...]
 
-Each round looks at ``COUNT`` random inputs of one robot and build, and climbs ``TURNS`` times from
-the ``CLIMBS`` worst of them; drives and bodies are those there are, or (wide) of many decades. The
-safe speed and three lower ones of each input are integrated (``oracle.c``), those that come near
-the limit once more in finer steps. Rounds that are done stand in the journal, with a digest of what
-they looked at: started again, the search goes on. Ends with 1 if a force exceeds its limit.
+Each round puts one question (``questions.py``) to one robot and build, of ``COUNT`` random inputs,
+and climbs ``TURNS`` times from the ``CLIMBS`` worst of them; drives and bodies are those there are,
+or (wide) of many decades. The speed answered and slower ones of each input are integrated
+(``oracle/``), those that come near the limit once more in finer steps. Rounds that are done stand
+in the journal, with a digest of what they looked at: started again, the search goes on. Ends with 1
+if a force exceeds its limit.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ from typing import Any
 from compiled_packages import KINDS, Generated
 
 from .impacts import Robot
-from .robots import ROBOTS, package_of
+from .questions import QUESTIONS
+from .robots import CLOSED, ROBOTS, package_of
 from .search import TURNS, Found, look
 
 COUNT, CLIMBS = 2000, 50
@@ -37,6 +39,9 @@ COUNT, CLIMBS = 2000, 50
 
 WIDTHS = ("plain", "wide")
 """Of what is drawn: what arms and bodies have, or many decades."""
+
+KEYS = ("question", "robot", "real", "wide", "seed", "of")
+"""What tells a round from others."""
 
 HERE = Path(__file__).parent
 
@@ -64,15 +69,25 @@ def digest(package: Generated) -> str:
     files = [
         *package.folder.glob("src/*"),
         *package.folder.glob("include/*"),
-        *HERE.glob("*.[cp]*"),
+        *HERE.glob("*.py"),
+        *HERE.glob("oracle/*"),
     ]
     texts = (path.read_bytes() for path in sorted(files) if path.is_file())
     return hashlib.sha256(b"\0".join(texts)).hexdigest()[:16]
 
 
-def round_of(root: Path, name: str, real: str, wide: bool, seed: int) -> Found:
+def round_of(root: Path, job: Mapping[str, Any]) -> Found:
     """Do one round."""
-    return look(robot_of(root, name), real, seed, COUNT, CLIMBS, wide=wide)
+    question = QUESTIONS[job["question"]]
+    count, climbs = (int(number * question.share) for number in (COUNT, CLIMBS))
+    asked = {"wide": job["wide"], "question": question}
+    return look(robot_of(root, job["robot"]), job["real"], job["seed"], count, climbs, **asked)
+
+
+def size(question: str) -> int:
+    """Return the number of inputs of a round."""
+    share = QUESTIONS[question].share
+    return int(COUNT * share) + int(CLIMBS * share) * TURNS
 
 
 def main() -> int:
@@ -81,14 +96,22 @@ def main() -> int:
     parser.add_argument("robots", nargs="*", default=[*ROBOTS], metavar="ROBOT")
     parser.add_argument("--inputs", type=int, default=1_000_000)
     parser.add_argument("--widths", nargs="+", choices=WIDTHS, default=WIDTHS)
+    parser.add_argument("--questions", nargs="+", choices=QUESTIONS, default=[*QUESTIONS])
     parser.add_argument("--seed", type=int, default=1, help="of the first round")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--journal", type=Path, default=Path("results/adversarial.jsonl"))
     parser.add_argument("--out", type=Path, help="for the sums, JSON")
     told = parser.parse_args()
     widths = [width == "wide" for width in told.widths]
-    kinds = [(name, real, wide) for name in told.robots for real in KINDS for wide in widths]
-    rounds = -(-told.inputs // (len(kinds) * (COUNT + CLIMBS * TURNS)))
+    kinds = [
+        (question, name, real, wide)
+        for question in told.questions
+        for name in told.robots
+        for real in KINDS
+        for wide in widths
+        if not (QUESTIONS[question].elsewhere and name in CLOSED)
+    ]
+    rounds = -(-told.inputs // sum(size(question) for question, *_ in kinds))
     told.journal.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
@@ -99,10 +122,11 @@ def main() -> int:
                 package.load(real)
         digests = {name: digest(package) for name, package in made.items()}
         asked = [
-            {"robot": name, "real": real, "wide": wide, "seed": told.seed + k, "of": digests[name]}
+            {"question": question, "robot": name, "real": real, "wide": wide,
+             "seed": told.seed + k, "of": digests[name]}
             for k in range(rounds)
-            for name, real, wide in kinds
-        ]
+            for question, name, real, wide in kinds
+        ]  # fmt: skip
         done = read(told.journal)
         left = [job for job in asked if key(job) not in done]
         print(f"{len(asked)} rounds, {len(asked) - len(left)} done before", flush=True)
@@ -111,10 +135,7 @@ def main() -> int:
             ProcessPoolExecutor(told.workers, initializer=prepare, initargs=(root, made)) as pool,
             told.journal.open("a", encoding="utf-8") as journal,
         ):
-            futures = {
-                pool.submit(round_of, root, j["robot"], j["real"], j["wide"], j["seed"]): j
-                for j in left
-            }
+            futures = {pool.submit(round_of, root, job): job for job in left}
             for n, future in enumerate(as_completed(futures), 1):
                 job, result = futures[future], asdict(future.result())
                 journal.write(json.dumps({**job, "found": result}) + "\n")
@@ -127,7 +148,7 @@ def main() -> int:
 
 def key(job: Mapping[str, Any]) -> str:
     """Return what tells a round from others."""
-    return json.dumps([job[name] for name in ("robot", "real", "wide", "seed", "of")])
+    return json.dumps([job[name] for name in KEYS])
 
 
 def read(journal: Path) -> dict[str, dict[str, Any]]:
@@ -141,7 +162,8 @@ def say(job: Mapping[str, Any], found: Mapping[str, Any], progress: str) -> None
     """Print a line about a round, and what exceeds its limit."""
     width = "wide" if job["wide"] else "plain"
     print(
-        f"{progress}: {job['robot']}, {job['real']}, {width}, seed {job['seed']}: "
+        f"{progress}: {job['question']}, {job['robot']}, {job['real']}, {width}, "
+        f"seed {job['seed']}: "
         f"{found['inputs']} inputs, {found['answered']} answered ({found['bounded']} by a bound), "
         f"worst {found['worst']:.5f} of the limit, slower {found['below']:.5f}, "
         f"{found['slower']:.5f} of the force at the safe speed",
@@ -152,11 +174,11 @@ def say(job: Mapping[str, Any], found: Mapping[str, Any], progress: str) -> None
 
 
 def conclude(rows: list[tuple[Mapping[str, Any], Mapping[str, Any]]], out: Path | None) -> int:
-    """Print the sums of robots and builds; return 1 if a force exceeds its limit."""
+    """Print the sums of questions; return 1 if a force exceeds its limit."""
     sums: dict[str, Found] = {}
     for job, found in rows:
         width = "wide" if job["wide"] else "plain"
-        for name in (f"{job['robot']}, {job['real']}, {width}", "all"):
+        for name in (f"{job['question']}, {width}", "all"):
             sums[name] = sums.get(name, Found()).joined(Found(**found))
     for name, total in sums.items():
         print(

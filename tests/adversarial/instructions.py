@@ -25,8 +25,10 @@ from measured_costs import FEW_STEPS, Call
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .cases import Draw
-from .impacts import FIELDS, Cases, Robot
+from .cases import Cases
+from .draw import Draw
+from .impacts import Robot
+from .questions import FIELDS
 from .robots import package_of
 from .search import pick
 

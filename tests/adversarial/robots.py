@@ -9,7 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from compiled_packages import Generated
+from mechanisms import FIVE_BAR, robot_of
 from oracles import example_urdf
+from small_arm import ARM
 
 from softimpact.codegen import generate_package
 from softimpact.symbolic import Robot, arm_of, drives, load_robot
@@ -37,6 +39,28 @@ def solo12() -> Robot:
     return replace(leg, tip="FL_FOOT")
 
 
+def cold() -> Robot:
+    """Return an arm of three joints, which damp as much as gears with cold grease."""
+    dampings = {"turn": 8.0, "lift": 3.0, "bend": 0.5}
+    text = ARM
+    for name, damping in dampings.items():
+        text = text.replace(f"name='{name}'", f"name='{name}' damping='{damping}'", 1)
+    return _arm(text)
+
+
+def _arm(text: str) -> Robot:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "arm.xml")
+        path.write_text(text, encoding="utf-8")
+        return replace(load_robot(path), tip="tool")
+
+
+def five_bar() -> Robot:
+    """Return two motors that move a point in a plane through a closed chain."""
+    with tempfile.TemporaryDirectory() as folder:
+        return robot_of(Path(folder), FIVE_BAR)
+
+
 ROBOTS: dict[str, Callable[[], Robot]] = {
     "panda": lambda: load_robot("panda"),
     "ur5e": lambda: load_robot("ur5e"),
@@ -47,13 +71,22 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
     "gen3": lambda: load_robot("gen3"),
     "iiwa14": lambda: load_robot("iiwa14"),
     "xarm7": lambda: load_robot("xarm7"),
+    "hanging": lambda: load_robot("ur5e"),
+    "cold": cold,
+    "five_bar": five_bar,
 }
-"""By name: elastic arms, a leg, two links in a plane, passive joints, closed loops."""
+"""By name: elastic arms, a leg, two links in a plane, passive joints, closed loops, gravity, joints
+that damp."""
+
+
+CLOSED = ("rmin", "five_bar")
+"""Robots whose links' frames packages do not know."""
 
 
 def package_of(name: str, folder: Path) -> Generated:
     """Return the package of a robot by name, generated anew."""
     robot = ROBOTS[name]()
     known = drives(robot, rotor_inertia=0.1) if name == "solo12" else None
-    manifest = generate_package(robot, folder, name=name, drives=known)
+    pull = (0.0, 0.0, -9.81) if name == "hanging" else None
+    manifest = generate_package(robot, folder, name=name, drives=known, gravity=pull)
     return Generated(robot, str(robot.tip), folder, manifest)

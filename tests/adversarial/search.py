@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from softimpact.symbolic.robot.rigid import Array
 
-from .cases import Draw
-from .forces import forces as forces_of
-from .impacts import Cases, Robot
+from .cases import Cases
+from .draw import Draw
+from .forces import both_forces
+from .impacts import Robot
+from .questions import QUESTIONS, Question
 
 TURNS = 40
 """Of a climb."""
@@ -76,46 +78,70 @@ class Search:
         self.robot, self.real, self.draw = robot, real, draw
         self.found = Found()
 
+    def tried(self, count: int) -> Array:
+        """Return the speeds that are tried over the safe one: it, and slower ones."""
+        slower, random = self.draw.question.slower, self.draw.random
+        near = (2 * slower + 1) // 3
+        parts = [np.ones((count, 1)), random.uniform(0.5, 1, (count, near))]
+        return np.hstack([*parts, 10 ** random.uniform(-2, -0.3, (count, slower - near))])
+
     def shares(self, cases: Cases) -> Array:
-        """Return the largest force over its limit up to the safe speed of each input."""
-        status, speeds = self.robot.answers("safe_speed", cases, cases.limit, self.real)
-        answered = np.flatnonzero((status == OK) | (status == BOUNDED))
+        """Return the largest force over its limit up to the safe speed of each input.
+
+        Where that is looked for, only of speeds below it.
+        """
+        question = self.draw.question
+        told = self.robot.answers(question, cases, self.real)
+        answered = np.flatnonzero((told.status == OK) | (told.status == BOUNDED))
         out = np.zeros(len(cases))
         if len(answered) == 0:
             self.found = self.found.joined(Found(inputs=len(cases)))
             return out
-        asked = cases.take(answered)
-        random = self.draw.random
-        shares = np.ones((len(answered), 4))
-        shares[:, 1:3] = random.uniform(0.5, 1, (len(answered), 2))
-        shares[:, 3] = 10 ** random.uniform(-2, -0.3, len(answered))
-        tried = speeds[answered, None] * shares
-        forces = forces_of(self.robot, asked, tried)
-        near = forces.max(axis=1) > NEAR * asked.limit
-        if near.any():
-            forces[near] = forces_of(self.robot, asked.take(near), tried[near], FINER)
-        over = forces / asked.limit[:, None]
-        worst, below = over.max(axis=1), over[:, 1:].max(axis=1)
-        out[answered] = worst
+        asked, limits = cases.take(answered), told.limit[answered]
+        speeds, status = told.speed[answered], told.status[answered]
+        over, forces = self.over(asked, speeds, limits)
+        worst, slower = over.max(axis=1), over[:, 1:].max(axis=1, initial=0.0)
+        out[answered] = slower if question.climbs else worst
         hardest = [
-            {"share": float(worst[k]), "status": int(status[answered[k]]),
-             "speed": float(speeds[answered[k]]), **asked.row(k)}
+            {"share": float(worst[k]), "status": int(status[k]), "answer": float(speeds[k]),
+             "at": float(self.at[k]), **asked.row(k)}
             for k in np.argsort(-worst)[:KEPT]
         ]  # fmt: skip
+        ratio = forces[:, 1:].max(axis=1, initial=0.0) / np.maximum(forces[:, 0], 1e-9)
         self.found = self.found.joined(
             Found(
                 inputs=len(cases),
                 answered=len(answered),
                 bounded=int((status == BOUNDED).sum()),
-                integrated=forces.size,
+                integrated=over.size,
                 above=int((worst > 1).sum()),
                 worst=float(worst.max()),
-                below=float(below.max()),
-                slower=float((forces[:, 1:].max(axis=1) / forces[:, 0]).max()),
+                below=float(slower.max()),
+                slower=float(ratio.max()),
                 hardest=hardest,
             )
         )
         return out
+
+    def over(self, asked: Cases, speeds: Array, limits: Array) -> tuple[Array, Array]:
+        """Return forces at a speed and below it, over their limits, and these forces."""
+        presses = self.draw.question.presses
+        shares = self.tried(len(asked))
+        tried = speeds[:, None] * shares
+        forces, late = both_forces(self.robot, asked, tried, late=presses)
+        held = asked.pressing[:, None]
+
+        def most() -> Array:
+            return np.maximum(forces / limits[:, None], late / held if presses else 0.0)
+
+        near = most().max(axis=1) > NEAR
+        if near.any():
+            forces[near], late[near] = both_forces(
+                self.robot, asked.take(near), tried[near], FINER, late=presses
+            )
+        found = most()
+        self.at = shares[np.arange(len(asked)), found.argmax(axis=1)]
+        return found, forces
 
     def climb(self, cases: Cases, best: Array) -> None:
         """Climb from each input, by whatever brings its force nearer to its limit."""
@@ -138,10 +164,19 @@ def pick(which: NDArray[np.bool_], those: Cases, others: Cases) -> Cases:
     )
 
 
-def look(robot: Robot, real: str, seed: int, count: int, climbs: int, *, wide: bool) -> Found:
+def look(
+    robot: Robot,
+    real: str,
+    seed: int,
+    count: int,
+    climbs: int,
+    *,
+    wide: bool,
+    question: Question = QUESTIONS["limit"],
+) -> Found:
     """Look at some random inputs and climb from the worst of them."""
     random = np.random.default_rng([seed, int(wide), int(real == "float")])
-    search = Search(robot, real, Draw(robot, random, wide=wide))
+    search = Search(robot, real, Draw(robot, random, wide=wide, question=question))
     cases = search.draw.cases(count)
     shares = search.shares(cases)
     first = np.argsort(-shares)[:climbs]

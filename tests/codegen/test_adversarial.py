@@ -5,17 +5,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import impact_search
 import numpy as np
 import pytest
 from adversarial.__main__ import key, read
-from adversarial.cases import WIDE_ROTORS, Draw
+from adversarial.cases import Cases, stacked
+from adversarial.draw import WIDE_ROTORS, Draw
 from adversarial.forces import forces
-from adversarial.impacts import Cases, Robot
+from adversarial.impacts import Robot
+from adversarial.plain import plain_forces
+from adversarial.questions import QUESTIONS, Answers, Question
 from adversarial.robots import ROBOTS, package_of
 from adversarial.search import Search, look
 from compiled_impacts import BOUNDED, DRIVEN, FREE, OK, SERVO, SINGULAR
@@ -24,8 +26,6 @@ from independent_impacts import arm_of, force_by_scipy
 
 from softimpact.simulate import Approach
 from softimpact.symbolic import REGIONS, Contact, Drives, Motors, impact_model
-from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
-from softimpact.symbolic.robot.rigid import Array
 
 FOUND = json.loads((Path(__file__).parents[1] / "adversarial/found.json").read_text())
 """Inputs that once had safe speeds that were none (``was``: the force over its limit)."""
@@ -40,34 +40,15 @@ def robot_of(package: Callable[[str], Generated], name: str, folder: Path) -> Ro
     return Robot(package(name) if built_in else package_of(name, folder / name), folder)
 
 
-def stacked(rows: list[dict[str, Any]]) -> Cases:
-    """Return inputs from rows as they are written down."""
-    kinds = {"motors": np.int32, "steps": np.int32}
-    columns: dict[str, Any] = {
-        f.name: np.array([row[f.name] for row in rows], kinds.get(f.name, np.float64))
-        for f in fields(Cases)
-    }
-    return Cases(**columns)
-
-
-def drawn(robot: Robot, folder: Path, count: int) -> tuple[list[impact_search.Case], Cases]:
-    """Return the same random inputs for the plain integrator and for this one."""
-    one = impact_search.Robot(robot.package, folder)
-    random = np.random.default_rng(61)
-    singles = [impact_search.draw(one, random) for _ in range(count)]
-    more = {"skin": HERTZ_STIFFNESS, "steps": 8000}
-    return singles, stacked([{**vars(c), "mass": c.mass, **more} for c in singles])
-
-
 def test_integrator_agrees_with_runge_and_kutta(
     package: Callable[[str], Generated], tmp_path: Path
 ) -> None:
-    robot = robot_of(package, "panda", tmp_path)
-    (tmp_path / "plain").mkdir()
-    plain = impact_search.Robot(robot.package, tmp_path / "plain")
-    singles, cases = drawn(robot, tmp_path / "plain", 12)
-    speeds = 10 ** np.random.default_rng(62).uniform(-1.3, 0.3, len(cases))
-    right = [plain.right_force(c, float(v)) for c, v in zip(singles, speeds, strict=True)]
+    robot, count = robot_of(package, "panda", tmp_path), 12
+    random = np.random.default_rng(62)
+    cases = Draw(robot, random, wide=False).cases(count)
+    cases = replace(cases, horizon=np.full(count, 0.1))
+    speeds = 10 ** random.uniform(-1.3, 0.3, count)
+    right = plain_forces(robot, cases, speeds)
     np.testing.assert_allclose(forces(robot, cases, speeds[:, None])[:, 0], right, rtol=2e-4)
     finer = forces(robot, cases, speeds[:, None], 4.0)[:, 0]
     np.testing.assert_allclose(finer, right, rtol=3e-5)
@@ -126,7 +107,7 @@ def test_what_was_found_once_keeps_its_limit(
     robot = robot_of(package, name, tmp_path)
     for row in (row for row in FOUND if row["robot"] == name):
         cases = stacked([row])
-        status, speed = robot.answers("safe_speed", cases, cases.limit, row["real"])
+        status, speed = robot.speeds(cases, row["real"])
         if row["was"] > SINGULAR_ONCE:
             assert status[0] == SINGULAR, row
             continue
@@ -150,7 +131,7 @@ def test_float_finds_what_double_does_where_slow_modes_carry_the_motion(
         steps=np.full(count, 8000, np.int32),
         **{name: np.full(count, number) for name, number in numbers.items()},
     ).rounded()
-    found = [robot.answers("peak_force", cases, np.full(count, 10.0), real) for real in KINDS]
+    found = [robot.peaks(cases, np.full(count, 10.0), real) for real in KINDS]
     (status, double), (_, single) = found
     assert (status == OK).all()
     np.testing.assert_allclose(single, double, rtol=1e-3)
@@ -170,11 +151,24 @@ def test_a_search_finds_no_safe_speed_above_its_limit(
     assert found.slower < 1.001
 
 
+@pytest.mark.parametrize("name", mostly_slow([*QUESTIONS][1:], ["laws", "pressing"]))
+def test_no_question_is_answered_beyond_its_limit(
+    package: Callable[[str], Generated], name: str, tmp_path: Path
+) -> None:
+    """Laws by table, what presses later, points and velocities given, the hardest direction."""
+    robot, question = robot_of(package, "panda", tmp_path), QUESTIONS[name]
+    for real, wide in (("float", False), ("double", True)):
+        count = int(150 * question.share)
+        found = look(robot, real, 8, count, 2, wide=wide, question=question)
+        assert found.answered > count // 2
+        assert found.above == 0, found.hardest[0]
+
+
 def test_a_search_would_find_one(package: Callable[[str], Generated], tmp_path: Path) -> None:
     class Hasty(Robot):
-        def answers(self, function: str, cases: Cases, numbers: Array, real: str) -> Any:
-            status, speeds = super().answers(function, cases, numbers, real)
-            return status, 1.03 * speeds
+        def answers(self, question: Question, cases: Cases, real: str) -> Answers:
+            told = super().answers(question, cases, real)
+            return replace(told, speed=1.03 * told.speed)
 
     robot = Hasty(package("panda"), tmp_path)
     search = Search(robot, "double", Draw(robot, np.random.default_rng(64), wide=False))
@@ -198,7 +192,8 @@ def test_inputs_are_exact_in_float_and_reach_every_corner(
 
 
 def test_a_journal_may_end_within_a_line(tmp_path: Path) -> None:
-    row = {"robot": "panda", "real": "float", "wide": True, "seed": 3, "of": "a", "found": {"a": 1}}
+    job = {"question": "limit", "robot": "panda", "real": "float", "wide": True, "seed": 3}
+    row = {**job, "of": "a", "found": {"a": 1}}
     path = tmp_path / "journal"
     assert read(path) == {}
     path.write_text(json.dumps(row) + "\n" + json.dumps({**row, "seed": 4})[:-9])

@@ -4,18 +4,18 @@
 from __future__ import annotations
 
 import json
-import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from adversarial.draw import Draw
+from adversarial.impacts import Robot
+from adversarial.instructions import Counter
 from compiled_impacts import BOUNDED, DRIVEN
 from compiled_packages import COMMITTED, Generated, missing, tool
-from cross_compiled import BOARD, build, compile_one, link, run_image
-from impact_search import Case, Robot, draw
-from measured_costs import FEW_STEPS, Call, compiler_version, measure, stacks_of
+from measured_costs import FEW_STEPS, compiler_version, measure, stacks_of
 
 from softimpact.codegen import costs as costs_module
 from softimpact.codegen import generate_package
@@ -28,7 +28,6 @@ from softimpact.codegen.costs import (
     stored_costs,
 )
 from softimpact.symbolic import load_robot
-from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 
 AGAIN = "run `make bench-c`"
 FILES = {
@@ -105,56 +104,19 @@ def test_no_input_exceeds_the_stated_bound_on_time(
     """Inputs that use up the budget, from where the adversarial search draws its own."""
     tool("qemu-system-arm")
     tool("arm-none-eabi-gcc")
-    generated = package("panda")
-    robot, random = Robot(generated, tmp_path), np.random.default_rng(51)
-    rows: list[str] = []
-    while len(rows) < 200:
-        case = replace(draw(robot, random, DRIVEN), reaction=0.02)
-        status = robot.call("safe_speed", case, case.limit, "float", FEW_STEPS)[0]
-        if status == BOUNDED:
-            rows.append(_in_c(case))
-    (tmp_path / "hard.h").write_text(HARD.replace("ROWS", ",\n".join(rows)))
-    text = (
-        "panda_safe_speed(in->q, in->n, in->limit, &in->region, &in->p, &(panda_safe_speed_t){0})%9"
+    generated, count = package("panda"), 2000
+    robot = Robot(generated, tmp_path)
+    alike = {"motors": DRIVEN, "steps": FEW_STEPS, "reaction": 0.02, "horizon": 0.1}
+    cases = Draw(robot, np.random.default_rng(51), wide=False).cases(count)
+    cases = replace(
+        cases, **{k: np.full(count, v, getattr(cases, k).dtype) for k, v in alike.items()}
     )
-    include = f"-include{tmp_path / 'hard.h'}"
-    objects = build(generated, "m7", "float", tmp_path)
-    call = Call("panda_safe_speed", text, "hard", rounds=2)
-    counter = compile_one(
-        generated, "m7", "float", tmp_path, BOARD / "count.c", *call.defines, include
-    )
-    said = run_image(link("m7", [*objects, counter], tmp_path), "m7")
-    most = re.search(r"at most (\d+)", said)
-    assert most, said
+    hard = np.flatnonzero(robot.speeds(cases, "float")[0] == BOUNDED)[:200]
+    assert len(hard) == 200
+    most = Counter(generated, tmp_path)(cases.take(hard)).max()
     stated = panda_costs(package)["safe_speed (driven)"].bound
     assert stated is not None
-    assert 120_000 < int(most[1]) <= min(240_000, stated)
-
-
-HARD = """#include "panda.h"
-static const struct {
-    panda_real q[7], n[3], limit;
-    panda_region region;
-    panda_params p;
-} hard[] = {
-ROWS
-};
-"""
-
-
-def _in_c(case: Case) -> str:
-    def row(values: Iterable[float]) -> str:
-        return "{" + ", ".join(f"{float(x)!r}f" for x in values) + "}"
-
-    numbers = [case.stiffness, case.damping, case.mass or 1.0, HERTZ_STIFFNESS, 0.0, case.limit]
-    region = ", ".join(f"{x!r}f" for x in numbers)
-    drives = ", ".join(row(x) for x in (case.springs, case.rotors, case.gains, case.damping_gains))
-    motion = f"{case.reaction!r}f, {case.horizon!r}f, {case.motors}, {FEW_STEPS}"
-    body = f"{{ {region}, 0, 0, {int(case.clamped)} }}"
-    return (
-        f"{{ {row(case.q)}, {row(case.n)}, {case.limit!r}f, {body}, "
-        f"{{ PANDA_LAYOUT, {drives}, {motion} }} }}"
-    )
+    assert 120_000 < most <= min(240_000, stated)
 
 
 def test_costs_come_back_for_their_sources_only(

@@ -11,9 +11,11 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
+from adversarial.cases import stacked
+from adversarial.impacts import Robot
+from adversarial.plain import plain_forces
 from compiled_impacts import FREE_OR_DRIVEN
 from compiled_packages import WARNINGS, Generated, run, tool
-from impact_search import Case, Robot
 
 from softimpact.symbolic import body_region, load_robot
 
@@ -67,17 +69,19 @@ def test_states_from_a_file_get_the_speed_that_an_integrator_allows(
     ((time, planned, allowed, share, first),) = rows(done.stdout)
 
     panda, chest = load_robot("panda"), body_region("chest")
-    manifest = Mock(name="panda", tip="hand_tcp")
+    manifest = Mock(name="panda", tip="hand_tcp", gravity=(0.0, 0.0, 0.0))
     robot = Robot(Generated(panda, str(panda.tip), PACKAGE, manifest), tmp_path)
-    velocity = np.array(robot.model(q)[1]) @ rate
-    none = np.zeros(7)
-    case = Case(
-        q, velocity, np.full(7, 3e3), panda.armature, none, none, FREE_OR_DRIVEN, 0.02, 0.1,
-        "chest", False, chest.stiffness, chest.damping, chest.force_limit,
-    )  # fmt: skip
+    velocity = robot.jacobians(q[None])[0] @ rate
+    case = stacked([{
+        "q": q, "n": velocity, "springs": [3e3] * 7, "rotors": panda.armature, "gains": [0.0] * 7,
+        "damping_gains": [0.0] * 7, "motors": FREE_OR_DRIVEN, "reaction": 0.02, "horizon": 0.1,
+        "stiffness": chest.stiffness, "damping": chest.damping, "mass": chest.effective_mass,
+        "limit": chest.force_limit,
+    }])  # fmt: skip
     assert time == 0.5
     assert planned == pytest.approx(np.linalg.norm(velocity), abs=1e-3)
-    assert 0.97 < robot.right_force(case, allowed) / chest.force_limit < 1.001  # of 3 decimals
+    force = plain_forces(robot, case, np.array([allowed]))[0]
+    assert 0.97 < force / chest.force_limit < 1.001  # of 3 decimals
     assert first == pytest.approx(share * rate[0], abs=2e-3)
 
 

@@ -12,6 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from adversarial.cases import Cases, stacked
+from adversarial.draw import Draw
+from adversarial.impacts import Robot
+from adversarial.plain import plain_forces
 from compiled_impacts import (
     BOUNDED,
     DRIVEN,
@@ -26,10 +30,10 @@ from compiled_impacts import (
     packed_params,
 )
 from compiled_packages import KINDS, Generated
-from impact_search import Case, Robot, climb, draw, rounded
 
 from softimpact.codegen.inputs import parameters_of
 from softimpact.symbolic import REGIONS, Contact, body_region
+from softimpact.symbolic.robot.rigid import Array
 
 ACCURACY = 2e-3
 """The design's bound of a peak force's error."""
@@ -41,26 +45,32 @@ CHATTERS = 8e-3
 """Most that a force is off after many contacts, each of which doubles small errors."""
 
 
-def errors(robot: Robot, count: int, seed: int) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return the errors of random peak forces of both builds against the tests' integrator."""
+def drawn(robot: Robot, random: np.random.Generator, count: int, **fields: Any) -> Cases:
+    """Return random inputs whose forces count for 0.1 s, some fields alike."""
+    cases = Draw(robot, random, wide=False).cases(count)
+    alike = {"horizon": 0.1, "steps": 100_000} | fields
+    return replace(
+        cases, **{k: np.full(count, v, getattr(cases, k).dtype) for k, v in alike.items()}
+    )
+
+
+def errors(robot: Robot, count: int, seed: int) -> Array:
+    """Return the errors of random peak forces of both builds against Runge and Kutta's method."""
     random = np.random.default_rng(seed)
+    cases = drawn(robot, random, count)
+    speeds = (10 ** random.uniform(-1.3, 0.3, count)).astype(np.float32).astype(float)
+    found = {real: robot.peaks(cases, speeds, real) for real in KINDS}
+    regular = np.all([status != SINGULAR for status, _ in found.values()], axis=0)
+    right = plain_forces(robot, cases, speeds)
     off = []
-    for _ in range(count):
-        case = draw(robot, random)
-        speed = float(np.float32(10 ** random.uniform(-1.3, 0.3)))
-        found = [robot.call("peak_force", case, speed, real, 100_000) for real in KINDS]
-        if SINGULAR in [status for status, _ in found]:
-            continue
-        right = robot.right_force(case, speed)
-        for (status, out), real in zip(found, KINDS, strict=True):
-            if status == BOUNDED:  # too few digits: a servo on stiff springs, a hard damper
-                assert real == "float", case
-                assert case.motors == SERVO or case.damping > HARD, case
-                assert out[0] >= right, case
-                continue
-            assert status == OK, case
-            off.append(out[0] / right - 1)
-    return np.array(off)
+    for real, (status, force) in found.items():
+        bounded = regular & (status == BOUNDED)  # too few digits: stiff springs, a hard damper
+        assert real == "float" or not bounded.any()
+        assert ((cases.motors == SERVO) | (cases.damping > HARD))[bounded].all()
+        assert (force >= right)[bounded].all()
+        assert (status[regular & ~bounded] == OK).all()
+        off.append((force / right - 1)[regular & ~bounded])
+    return np.concatenate(off)
 
 
 @pytest.mark.parametrize("name", ["panda", pytest.param("ur5", marks=pytest.mark.slow)])
@@ -85,39 +95,20 @@ def test_many_peak_forces_are_right(
     assert off.max() < 2 * CHATTERS
 
 
-def excess(robot: Robot, case: Case, real: str, random: np.random.Generator) -> float:
-    """Return the largest force up to a safe speed over its limit, by the tests' integrator."""
-    status, (speed, _) = robot.call("safe_speed", case, case.limit, real)
-    if status not in (OK, BOUNDED):
-        return 0.0
-    shares = [1.0, *random.uniform(0.5, 1, 2)]
-    return max(robot.right_force(case, speed * share) for share in shares) / case.limit
-
-
 @pytest.mark.parametrize("name", ["panda", "ur5"])
+@pytest.mark.parametrize("real", KINDS)
 def test_no_speed_up_to_the_safe_one_exceeds_the_limit(
-    package: Callable[[str], Generated], name: str, tmp_path: Path
-) -> None:
-    robot, random = Robot(package(name), tmp_path), np.random.default_rng(33)
-    found = [
-        excess(robot, draw(robot, random), ("double", "float")[k % 2], random) for k in range(60)
-    ]
-    assert max(found) <= 1
-    assert np.median(found) > 0.98  # and no slower than need be
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["panda", "ur5", "ur5e"])
-@pytest.mark.parametrize("real", ["double", "float"])
-def test_hill_climbing_finds_no_safe_speed_above_its_limit(
     package: Callable[[str], Generated], name: str, real: str, tmp_path: Path
 ) -> None:
-    robot, random = Robot(package(name), tmp_path), np.random.default_rng(34)
-    for _ in range(12):
-        start = draw(robot, random)
-        score = lambda case: excess(robot, case, real, random)  # noqa: E731
-        worst = [found for found, _ in climb(robot, start, score, random, 40)][-1]
-        assert worst <= 1
+    robot, random = Robot(package(name), tmp_path), np.random.default_rng(33)
+    cases = drawn(robot, random, 30)
+    status, speeds = robot.speeds(cases, real)
+    kept = (status == OK) | (status == BOUNDED)
+    cases, speeds = cases.take(kept), speeds[kept]
+    shares = [np.ones(len(cases)), *random.uniform(0.5, 1, (2, len(cases)))]
+    found = [plain_forces(robot, cases, speeds * share) / cases.limit for share in shares]
+    assert np.max(found) <= 1
+    assert np.median(found[0]) > 0.98  # and no slower than need be
 
 
 def test_bracket_is_the_worse_of_free_and_driven(package: Callable[[str], Generated]) -> None:
@@ -168,21 +159,20 @@ def test_a_stiff_servo_is_a_motor_that_drives_on(package: Callable[[str], Genera
 def test_bound_holds_where_the_budget_ends(
     package: Callable[[str], Generated], real: str, tmp_path: Path
 ) -> None:
-    robot, random, seen = Robot(package("panda"), tmp_path), np.random.default_rng(35), set()
-    for k in range(40):
-        case = draw(robot, random)
-        steps = int(10 ** random.uniform(0, 2.3))
-        speed = float(np.float32(10 ** random.uniform(-1.3, 0.3)))
-        status, (force, _) = robot.call("peak_force", case, speed, real, steps)
-        if status == SINGULAR:
-            continue
-        assert status in (OK, BOUNDED)
-        assert force >= robot.right_force(case, speed) * (1 - CHATTERS if status == OK else 1), case
-        status, (safe, _) = robot.call("safe_speed", case, case.limit, real, steps)
-        assert status in (OK, BOUNDED)
-        assert robot.right_force(case, safe) <= case.limit, case
-        seen.add((k % 2, status))
-    assert {(0, BOUNDED), (1, BOUNDED)} <= seen
+    robot, random, count = Robot(package("panda"), tmp_path), np.random.default_rng(35), 20
+    steps = (10 ** random.uniform(0, 2.3, count)).astype(np.int32)
+    cases = replace(drawn(robot, random, count), steps=steps)
+    speeds = (10 ** random.uniform(-1.3, 0.3, count)).astype(np.float32).astype(float)
+    status, force = robot.peaks(cases, speeds, real)
+    found, safe = robot.speeds(cases, real)
+    for one in (status, found):
+        assert set(one) <= {OK, BOUNDED, SINGULAR}
+        assert BOUNDED in one
+    kept = np.where(status == OK, 1 - CHATTERS, 1.0)
+    regular = status != SINGULAR
+    right = plain_forces(robot, cases, speeds)
+    assert (force >= right * kept)[regular].all()
+    assert (plain_forces(robot, cases, safe) <= cases.limit)[found != SINGULAR].all()
 
 
 def test_more_steps_than_its_budget_no_call_takes(package: Callable[[str], Generated]) -> None:
@@ -200,24 +190,24 @@ def test_float_is_as_right_as_double_where_rotors_are_heavy_and_springs_stiff(
 ) -> None:
     """An arm whose last links weigh next to nothing beside their rotors."""
     robot = Robot(package("ur5e"), tmp_path)
-    chosen = [-0.12, 1.13, 0.91, -1.85, -0.01, -1.87]
     rotors = np.array(robot.package.robot.armature)
-    rotors = np.where(rotors > 0, rotors, 0.3)
-    for stiffness in (1e4, 1e5, 1e6):
-        for motors in (FREE, DRIVEN, FREE_OR_DRIVEN):
-            case = rounded(
-                Case(
-                    np.array(chosen), np.array([-0.99, -0.79, 0.96]), np.full(6, stiffness), rotors,
-                    np.zeros(6), np.zeros(6), motors, 0.02, 0.1, "abdomen", True, 1e4, 10.0, 220.0,
-                )
-            )  # fmt: skip
-            speeds = []
-            for real in KINDS:
-                status, (speed, _) = robot.call("safe_speed", case, case.limit, real)
-                assert status == OK
-                assert robot.right_force(case, speed) <= case.limit
-                speeds.append(speed)
-            assert speeds[0] == pytest.approx(speeds[1], rel=0.02)
+    usual = {
+        "q": [-0.12, 1.13, 0.91, -1.85, -0.01, -1.87], "n": [-0.99, -0.79, 0.96],
+        "rotors": np.where(rotors > 0, rotors, 0.3), "gains": [0.0] * 6, "damping_gains": [0.0] * 6,
+        "reaction": 0.02, "horizon": 0.1, "stiffness": 1e4, "damping": 10.0, "mass": 0.0,
+        "limit": 220.0,
+    }  # fmt: skip
+    cases = stacked([
+        {**usual, "springs": [stiffness] * 6, "motors": motors}
+        for stiffness in (1e4, 1e5, 1e6) for motors in (FREE, DRIVEN, FREE_OR_DRIVEN)
+    ]).rounded()  # fmt: skip
+    speeds = []
+    for real in KINDS:
+        status, found = robot.speeds(cases, real)
+        assert (status == OK).all()
+        assert (plain_forces(robot, cases, found) <= cases.limit).all()
+        speeds.append(found)
+    np.testing.assert_allclose(speeds[0], speeds[1], rtol=0.02)
 
 
 def test_force_grows_with_speed_between_a_linear_and_a_hertz_contact(
@@ -247,17 +237,17 @@ def test_regions_are_those_of_the_model(package: Callable[[str], Generated]) -> 
         assert ours.hertz_stiffness == Contact(theirs).hertz_stiffness
 
 
-@pytest.mark.parametrize("stiffness", [1e3, 1e5, 1e8])
-@pytest.mark.parametrize("motors", [FREE, DRIVEN, SERVO])
 def test_impacts_on_bodies_of_any_stiffness_are_right(
-    package: Callable[[str], Generated], stiffness: float, motors: int, tmp_path: Path
+    package: Callable[[str], Generated], tmp_path: Path
 ) -> None:
-    robot = Robot(package("panda"), tmp_path)
-    case = draw(robot, np.random.default_rng(3), motors)
-    case = rounded(replace(case, stiffness=stiffness, damping=0.0, clamped=True, reaction=0.02))
-    status, (force, _) = robot.call("peak_force", case, 0.5, "double")
-    assert status == OK
-    assert force == pytest.approx(robot.right_force(case, 0.5), rel=ACCURACY)
+    robot, count = Robot(package("panda"), tmp_path), 9
+    cases = drawn(robot, np.random.default_rng(3), count, damping=0.0, mass=0.0, reaction=0.02)
+    kinds = np.array([FREE, DRIVEN, SERVO] * 3, np.int32)
+    cases = replace(cases, stiffness=np.repeat([1e3, 1e5, 1e8], 3), motors=kinds)
+    speeds = np.full(count, 0.5)
+    status, force = robot.peaks(cases, speeds, "double")
+    assert (status == OK).all()
+    np.testing.assert_allclose(force, plain_forces(robot, cases, speeds), rtol=ACCURACY)
 
 
 @pytest.mark.parametrize("real", ["double", "float"])

@@ -211,7 +211,7 @@ def test_header_serves_cplusplus(package: Callable[[str], Generated], tmp_path: 
     )
     include = f"-I{generated.folder / 'include'}"
     objects = []
-    for file in ("panda_reflected_mass", "panda_common"):
+    for file in ("panda_reflected_mass", "panda_common", "panda_sines"):
         objects.append(tmp_path / f"{file}.o")
         run(tool("gcc"), *generated.flags("double"), "-c",
             generated.folder / f"src/{file}.c", "-o", objects[-1])  # fmt: skip

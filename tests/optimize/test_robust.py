@@ -19,7 +19,9 @@ from softimpact.optimize.posture.tip_pose import tip_pose
 from softimpact.optimize.robust.robust import RobustDesign, robust_design
 from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.simulate import Approach, simulate_impact
+from softimpact.studio.checks import Check
 from softimpact.studio.figures.robust import figure_of_robust_design
+from softimpact.studio.scenario_checks import CheckedScenario, doubts_in_words
 from softimpact.symbolic import InvalidValue, impact_model, limits_of, with_load
 from softimpact.symbolic.robot.rigid import Array
 
@@ -281,6 +283,24 @@ def test_the_figure_marks_a_machine_that_breaks_bounds(found: RobustDesign) -> N
         box, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
         assert 0 <= box.x0 < box.x1 <= width
         assert 0 <= box.y0 < box.y1 <= height
+
+
+def test_scenarios_that_simulation_finds_worse_are_told(found: RobustDesign) -> None:
+    """The worst may be another scenario of the nonlinear robot, against another limit."""
+    at, scenarios = found.worst.index, found.scenarios
+    other = next(i for i in found.active if i != at)
+    limits = [scenarios.limit(scenarios[i]) for i in (at, other)]
+    allowed = [found.worst.share * limit for limit in limits]
+    agreed = CheckedScenario(at, limits[0], Check(*(3 * [allowed[0]])))
+
+    def told(full: float) -> list[str]:
+        more = CheckedScenario(other, limits[1], Check(allowed[1], allowed[1], full))
+        return doubts_in_words(found, [agreed, more])
+
+    assert told(1.005 * allowed[1]) == []
+    (line,) = told(1.03 * allowed[1])
+    assert f"simulation finds {1.03 * allowed[1]:.1f} N for the winner (pose " in line
+    assert str(scenarios.describe(scenarios[other])["pose"]) in line
 
 
 def test_what_is_indifferent_costs_little_in_every_scenario(found: RobustDesign) -> None:

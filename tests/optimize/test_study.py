@@ -272,19 +272,20 @@ def test_direction_in_which_a_pose_cannot_move(tmp_path: Path) -> None:
     refused(path, "impact.direction", "there", "cannot move")  # along +y only at angle zero
 
 
-@pytest.mark.parametrize(
-    ("joint", "actuators"),
-    [("stiffness='100'", ""), ("", "<actuator><motor joint='other'/></actuator>")],
-)
-def test_joints_with_springs_or_without_motors(tmp_path: Path, joint: str, actuators: str) -> None:
+@pytest.mark.parametrize(("joint", "held"), [("stiffness='100'", True), ("", False)])
+def test_what_has_neither_motor_nor_spring_is_refused(
+    tmp_path: Path, joint: str, held: bool
+) -> None:
     body = "<inertial mass='1' pos='0.3 0 0' diaginertia='1 1 1'/>"
     (tmp_path / "loose.xml").write_text(
         "<mujoco><worldbody><body><joint name='other' armature='0.1'/>"
         f"{body}<body><joint name='loose' armature='0.1' {joint}/>{body}"
-        f"<site name='end' pos='0.5 0 0'/></body></body></worldbody>{actuators}</mujoco>"
+        "<site name='end' pos='0.5 0 0'/></body></body></worldbody>"
+        "<actuator><motor joint='other'/></actuator></mujoco>"
     )
     study = changed({"robot": {"model": "loose.xml", "tip": "end"}})
-    refused(written(tmp_path, study), "robot.model", "'loose'")
+    what = "robot.rotor_inertia: unknown" if held else "robot.model: joint 'loose'"
+    refused(written(tmp_path, study), what)
 
 
 def test_a_misspelt_field_is_named_before_the_missing_one(tmp_path: Path) -> None:

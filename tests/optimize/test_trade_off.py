@@ -125,6 +125,36 @@ def test_no_springs_of_a_grid_beat_a_point(found: TradeOff) -> None:
 
 
 @pytest.mark.slow
+def test_a_front_of_springs_that_can_be_bought(tmp_path: Path) -> None:
+    """No two springs of the catalogue beat a point; every point's can be bought."""
+    entries = [1000.0, 2500.0, 5000.0, 9000.0, 20000.0]
+    study = small_study(tmp_path, TWO + f"catalogue = {entries}")
+    found = trade_off_front(asked(study, "force", "accuracy", points=4), InProcess())
+    timing, scenarios = found.timing, found.scenarios
+    program = impact_program(study.model, timing.nodes, timing.substeps, compiled=False)
+    assert found.points
+    assert found.searched - found.not_sold >= len(found.points)
+    for point in found.points:
+        assert set(point.springs) <= set(entries)
+        assert point.bought is not None
+        assert point.bought.loss > -SAME
+        assert point.worst.keeps
+        assert point.values[0] == point.worst.share
+    rows = np.array([point.values for point in found.points])
+    for large in entries:
+        for small in entries:
+            springs = np.array([large, small, small])
+            worst, bent = 0.0, 0.0
+            for i in range(len(scenarios)):
+                q = scenarios.poses[scenarios[i].pose].q
+                bent = max(bent, float(figures(study.deflection, study, q, springs).max()))
+                row = scenarios.numbers(scenarios[i], timing.step)
+                peak = np.array(program["forces"](np.r_[q, np.log10(springs)], row)).max()
+                worst = max(worst, float(peak / scenarios.limit(scenarios[i])))
+            assert not np.any(np.all([worst, bent] < rows * (1 - SAME), axis=1)), springs
+
+
+@pytest.mark.slow
 def test_prices_are_slopes(found: TradeOff) -> None:
     """One per cent more deflection, sought again, saves a tenth of what a price says of ten."""
     point = next(

@@ -14,8 +14,13 @@ from studies import InProcess
 
 from softimpact.optimize import Study, load_study
 from softimpact.optimize import variables as package
-from softimpact.optimize.evaluation import equipped, largest_share
-from softimpact.optimize.impact.impact_program import impact_program
+from softimpact.optimize.evaluation import (
+    equipped,
+    figures,
+    largest_deflection,
+    largest_share,
+)
+from softimpact.optimize.impact.impact_program import PARTS, impact_program
 from softimpact.optimize.impact.timing import impact_timing, scenario_timing
 from softimpact.optimize.machine.hardware import built
 from softimpact.optimize.members import kinds_in
@@ -24,8 +29,16 @@ from softimpact.optimize.search.problem import felt_numbers, sought_parts, study
 from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.optimize.variables import Variable
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.studio.robust_report import simulated_worst
-from softimpact.symbolic import InvalidValue, PowerLaw, drives, impact_model, mass_matrix
+from softimpact.studio.scenario_checks import checked_worst
+from softimpact.symbolic import (
+    InvalidValue,
+    PowerLaw,
+    Robot,
+    drives,
+    gravity_torques,
+    impact_model,
+    mass_matrix,
+)
 from softimpact.symbolic.robot.rigid import Array, Inertia
 
 Q = np.array([0.3, -0.6, 1.1])
@@ -88,11 +101,21 @@ def test_link_masses(tmp_path: Path) -> None:
     assert peak(study, masses) == pytest.approx(simulated(study, robot=robot), rel=1e-3)
 
 
-@pytest.mark.parametrize("kind", ["rotor_inertia", "link_mass"])
-def test_time_steps_follow_the_lightest_machine(tmp_path: Path, kind: str) -> None:
+@pytest.mark.parametrize(
+    ("kind", "lower", "upper", "fastest"),
+    [
+        ("rotor_inertia", 1e-3, 1.0, 1e-3),
+        ("link_mass", 1e-3, 1.0, 1e-3),
+        ("parallel_spring", 1.0, 1e5, 1e5),
+    ],
+)
+def test_time_steps_follow_the_fastest_machine(
+    tmp_path: Path, kind: str, lower: float, upper: float, fastest: float
+) -> None:
     """What is far lighter than the machine as it is moves faster; a leapfrog would blow up."""
-    study = small_study(tmp_path, f"[hardware.{kind}]\nlower = 1e-3\nupper = 1.0", motors="free")
-    others, springs = np.full(3, 1e-3), study.upper
+    text = f"[hardware.{kind}]\nlower = {lower}\nupper = {upper}"
+    study = small_study(tmp_path, text, motors="free")
+    others, springs = np.full(3, fastest), study.upper
     for timing in (scenario_timing(study, scenarios_of(study)), impact_timing(study, [Q])):
         parts = sought_parts(study)
         program = impact_program(
@@ -110,6 +133,46 @@ def test_time_steps_follow_the_lightest_machine(tmp_path: Path, kind: str) -> No
             horizon=timing.duration,
         ).peak
         assert found == pytest.approx(expected, rel=1e-2)
+
+
+BESIDE = np.array([900.0, 400.0, 150.0])
+
+
+def with_springs_beside_motors(study: Study) -> Robot:
+    """Return the arm with springs beside its motors, unbent at 0.4 rad."""
+    joints = zip(study.robot.joints, BESIDE, strict=True)
+    bent = (replace(j, stiffness=float(k), spring_reference=0.4) for j, k in joints)
+    return replace(study.robot, joints=tuple(bent))
+
+
+def test_springs_beside_motors(tmp_path: Path) -> None:
+    """Sought, and as a file has them, they give the force of a robot that is built so."""
+    text = "[hardware.parallel_spring]\nlower = 1.0\nupper = 2000.0"
+    sought = small_study(tmp_path, text)
+    robot = with_springs_beside_motors(sought)
+    expected = simulated(sought, robot=robot)
+    assert peak(sought, BESIDE) == pytest.approx(expected, rel=1e-3)
+    assert abs(expected / simulated(sought) - 1) > 1e-3
+    plain = small_study(tmp_path)
+    given = replace(plain, model=replace(plain.model, robot=robot))
+    assert peak(given, np.empty(0)) == pytest.approx(expected, rel=1e-3)
+
+
+def test_bounds_count_springs_beside_motors(tmp_path: Path) -> None:
+    """A link, its motor held, has both springs; its motor holds what the one beside it pulls."""
+    plain = small_study(tmp_path, "[bounds.torque]\nmost = 1.0")
+    robot = with_springs_beside_motors(plain)
+    study = replace(plain, model=replace(plain.model, robot=robot))
+    J = np.array(study.model.jacobian(Q))
+    pressed = (J.T @ study.forces.T).T
+    held = np.array(gravity_torques(plain.robot, Q)).ravel() + BESIDE * (Q - 0.4)
+    for case, torques in ((study, pressed), (replace(study, sag=True), pressed - held)):
+        moved = J @ (torques / (SPRINGS + BESIDE)).T
+        expected = np.linalg.norm(moved, axis=0).max()
+        assert largest_deflection(case, Q, SPRINGS) == pytest.approx(expected)
+    torque = next(bound for bound in study.bounds if bound.kind == "torque")
+    shares = abs(held) / np.array(plain.robot.torque_limits)
+    np.testing.assert_allclose(figures(torque, study, Q, SPRINGS), shares)
 
 
 def test_cover(tmp_path: Path) -> None:
@@ -138,7 +201,7 @@ def test_more_variables_never_hurt_and_what_is_found_is_as_simulated(tmp_path: P
     alone, more = (small_study(tmp_path, text, motors="free") for text in ("", ALL))
     springs, all_ = (robust_design(s, scenarios_of(s), InProcess()) for s in (alone, more))
     assert all_.worst.share < 0.97 * springs.worst.share
-    assert simulated_worst(all_) == pytest.approx(all_.worst.force, rel=1e-3)
+    assert checked_worst(all_).linearised == pytest.approx(all_.worst.force, rel=1e-3)
     lower, upper = more.range.lower[3:], more.range.upper[3:]
     assert np.all(lower * (1 - 1e-9) <= all_.others)
     assert np.all(all_.others <= upper * (1 + 1e-9))
@@ -179,7 +242,7 @@ def test_every_variable_says_what_it_is() -> None:
     for kind, variable in kinds_in(package, Variable).items():
         assert variable.__doc__, kind
         assert getattr(variable, "unit", ""), kind
-        assert set(getattr(variable, "moves", ())) <= {"springs", "rotors", "masses", "cover"}
+        assert set(getattr(variable, "moves", ())) <= {*PARTS}
 
 
 @pytest.mark.parametrize(

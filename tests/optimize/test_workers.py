@@ -12,14 +12,15 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from studies import InProcess
 
-from softimpact.optimize.running.workers import WorkerLost, as_completed, workers
+from softimpact.optimize.running.workers import WorkerLost, as_completed, awake, workers
 
 SCRIPT = """
 import os
@@ -117,3 +118,16 @@ def test_the_callers_executor_stays_open() -> None:
     with workers(2, mine) as pool:
         assert pool is mine
     assert mine.submit(int).result() == 0
+
+
+def test_workers_that_wake_load_what_searches_need() -> None:
+    """What fails there would be lost: nobody waits for it."""
+    jobs: list[Future[None]] = []
+
+    class Kept(InProcess):
+        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+            jobs.append(super().submit(fn, *args, **kwargs))
+            return jobs[-1]
+
+    awake(Kept(), 1)
+    assert [job.exception() for job in jobs] == [None]

@@ -333,6 +333,15 @@ def test_folder_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
     assert refusal("analyze", *PANDA) == "error: /data/out: No space left on device\n"
 
 
+def test_a_full_disk_behind_stdout_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("softimpact.studio.output.print_json", full)
+    lost = "error: the result cannot be written: No space left on device\n"
+    assert refusal("analyze", *PANDA, "--json") == lost
+
+
 def test_main_reads_the_process_arguments(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["softimpact", "analyze", "pandora"])
     assert cli.main() == 2

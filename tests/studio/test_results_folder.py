@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 from pathlib import Path
 
@@ -45,6 +46,24 @@ def test_a_failure_keeps_the_older_ones(tmp_path: Path, failure: type[BaseExcept
         fail()
     assert names(tmp_path / "out") == ["first.txt", RESULTS]
     assert names(tmp_path) == ["out"]
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (OSError(errno.ENOSPC, "No space left on device"), "out: cannot be written .No space left"),
+        (FileNotFoundError(errno.ENOENT, "No such file", "/motion.csv"), "/motion.csv"),
+    ],
+)
+def test_a_full_disk_names_the_folder_and_another_file_itself(
+    tmp_path: Path, error: OSError, told: str
+) -> None:
+    def fail() -> None:
+        with replaced_folder(tmp_path / "out", MINE):
+            raise error
+
+    with pytest.raises((FolderNotWritable, FileNotFoundError), match=told):
+        fail()
 
 
 def test_an_interruption_between_the_two_moves_is_undone(

@@ -12,6 +12,7 @@ from command_line import refusal, run, run_json
 from pages import well_formed
 
 from softimpact.robots import FOLDER
+from softimpact.studio import selection
 
 STUDY = FOLDER / "studies/panda_24_poses.toml"
 
@@ -104,6 +105,15 @@ def test_table_for_people(study: Path) -> None:
     )
     for word in ("low", "high", "GIAF", "peak", "limit"):
         assert word in outcome.out
+
+
+def test_people_see_the_first_of_many(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(selection, "SHOWN", 1)
+    shown, whole = run("select", study).out, run("select", study, "--csv").out
+    assert "the first 1 of 2; --csv and --json have all" in shown
+    assert ("low" in shown) != ("high" in shown)
+    assert "low" in whole
+    assert "high" in whole
 
 
 @pytest.mark.parametrize(

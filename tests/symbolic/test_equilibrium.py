@@ -113,3 +113,11 @@ def test_springs_that_cannot_be(spring: float) -> None:
             at_rest(robot, POSE, springs)
     with pytest.raises(InvalidValue, match="motor_angles: must hold finite"):
         link_angles_at_rest(robot, POSE * np.nan, np.full(7, 1e3))
+
+
+def test_a_search_that_does_not_end_tells_the_torque_that_is_left() -> None:
+    robot, k_s = load_robot("panda"), np.array([20.0] * 6 + [np.inf])
+    with pytest.raises(NoEquilibrium, match=r"residual torque .* too low") as e:
+        link_angles_at_rest(robot, POSE, k_s)
+    heaviest = abs(np.array(gravity_torques(robot, [0, np.pi / 2, 0, 0, 0, 0, 0]))).max()
+    assert 1e-2 < e.value.residual < 2 * heaviest

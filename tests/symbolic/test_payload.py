@@ -12,17 +12,26 @@ from hypothesis import strategies as st
 from oracles import Pinocchio, assert_near
 from random_robots import robots, seeds
 
-from softimpact.symbolic import FrameNotFound, InvalidValue, bias_torques, load_robot, mass_matrix
+from softimpact.symbolic import (
+    FrameNotFound,
+    InvalidValue,
+    bias_torques,
+    load_robot,
+    mass_matrix,
+    with_load,
+)
 from softimpact.symbolic.robot.rigid import Array
 from softimpact.symbolic.robot.robot import Robot
 
 GRAVITY = (0.3, -0.2, -9.81)
 
 
-def with_mass(robot: Robot, frame: str, mass: float, com: Array) -> Pinocchio:
+def with_mass(
+    robot: Robot, frame: str, mass: float, com: Array, tensor: Array | None = None
+) -> Pinocchio:
     oracle = Pinocchio.of_robot(robot)
     held = oracle.model.frames[oracle.model.getFrameId(frame, pin.FrameType.BODY)]
-    load = pin.Inertia(mass, com, np.zeros((3, 3)))
+    load = pin.Inertia(mass, com, np.zeros((3, 3)) if tensor is None else tensor)
     oracle.model.appendBodyToJoint(held.parentJoint, load, held.placement)
     oracle.data = oracle.model.createData()
     return oracle
@@ -38,6 +47,31 @@ def test_any_robot(robot: Robot, seed: int, mass: float) -> None:
     assert_near(
         bias_torques(loaded, ca.DM(q), ca.DM(v), GRAVITY), oracle.bias(q, v, np.array(GRAVITY))
     )
+
+
+@settings(max_examples=10)
+@given(robots(max_joints=5), seeds)
+def test_any_tool(robot: Robot, seed: int) -> None:
+    """As an inertia that some body has: of three point masses at least."""
+    random = np.random.default_rng(seed)
+    com, q, points = (
+        random.normal(size=3),
+        random.uniform(-2, 2, robot.n),
+        random.normal(size=(4, 3)),
+    )
+    tensor = np.trace(points @ points.T) * np.eye(3) - points.T @ points
+    xx, yy, zz, xy, xz, yz = tensor[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    loaded = with_load(robot, "tip", 2.0, com, (xx, yy, zz, xy, xz, yz))
+    oracle = with_mass(robot, "tip", 2.0, com, tensor)
+    assert_near(mass_matrix(loaded, ca.DM(q)), oracle.mass_matrix(q))
+
+
+@pytest.mark.parametrize(
+    "inertia", [(-1e-3, 1, 1, 0, 0, 0), (1, 1, 2.1, 0, 0, 0), (1, 1, 1, 1.1, 0, 0), (np.nan,) * 6]
+)
+def test_inertias_that_no_body_has_are_refused(panda: Robot, inertia: tuple[float, ...]) -> None:
+    with pytest.raises(InvalidValue, match="inertia that no body can have"):
+        with_load(panda, "flange", 1.0, inertia=inertia)
 
 
 def test_symbols_stand_for_any_payload() -> None:

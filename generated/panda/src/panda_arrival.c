@@ -55,6 +55,7 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
     panda_real moved[PANDA_REACH][PANDA_N];
     panda_real share[PANDA_SYSTEM];
     panda_real within = PANDA_R(0.0);
+    panda_real whole = PANDA_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < PANDA_N; ++i) {
         arrival->row[i] = u[0]*J[0][i] + u[1]*J[1][i] + u[2]*J[2][i];
     }
@@ -73,9 +74,15 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
             square[k][l] = sum;
             square[l][k] = sum;
         }
+        whole += square[k][k];
     }
     if (!(within > PANDA_R(1.0) - OUTSIDE) || !panda_cholesky(PANDA_REACH, square)) {
         return PANDA_SINGULAR;
+    }
+    for (int k = 0; k < PANDA_REACH; ++k) {
+        if (!(square[k][k]*square[k][k] > PANDA_EPSILON*whole)) {
+            return PANDA_SINGULAR;
+        }
     }
     panda_forward(PANDA_REACH, square, share);
     panda_backward(PANDA_REACH, square, share);

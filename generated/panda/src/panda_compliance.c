@@ -67,11 +67,11 @@ static int spring_modes(panda_matrix C, const panda_real b[PANDA_N], panda_modes
             vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
+        modes->noise[at] = PANDA_R(0.0);
         modes->row[at] = row*rate;
         modes->start[at] = PANDA_R(0.0);
     }
     modes->count = modes->rigid + PANDA_N;
-    modes->noise = PANDA_R(0.0);
     return PANDA_OK;
 }
 
@@ -151,6 +151,7 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     }
     modes->rigid = 1; /* r */
     modes->squared[0] = PANDA_R(0.0);
+    modes->noise[0] = PANDA_R(0.0);
     modes->row[0] = PANDA_SQRT(together);
     modes->start[0] = PANDA_R(1.0)/modes->row[0];
     for (int j = 0; j < PANDA_SYSTEM; ++j) {

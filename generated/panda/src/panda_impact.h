@@ -39,9 +39,9 @@ typedef panda_real panda_matrix[PANDA_SYSTEM][PANDA_SYSTEM];
 typedef struct {
     int count;
     int rigid; /* the first ones have no frequency */
-    panda_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
     panda_real fastest; /* largest squared frequency that is known, 1/s^2 */
     panda_real squared[PANDA_MODES]; /* frequency, 1/s^2 */
+    panda_real noise[PANDA_MODES]; /* of these, where rounding may matter, 1/s^2 */
     panda_real row[PANDA_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     panda_real start[PANDA_MODES]; /* rates at first touch of an approach of 1 m/s */
     panda_real shape[PANDA_MODES][PANDA_SYSTEM];

@@ -8,9 +8,6 @@
  */
 #include "panda_impact.h"
 
-/* Share of the largest entry that rounding leaves of one that should be none. */
-#define NOISE (PANDA_R(8.0)*PANDA_EPSILON)
-
 /* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
 {
@@ -30,10 +27,9 @@ static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
     return true;
 }
 
-/* A = X'KX of such an X; returns the noise in its entries. */
-static panda_real congruent(int size, panda_matrix K, panda_matrix X, panda_matrix A)
+/* A = X'KX of such an X. */
+static void congruent(int size, panda_matrix K, panda_matrix X, panda_matrix A)
 {
-    panda_real largest = PANDA_R(0.0);
     for (int i = 0; i < size; ++i) {
         panda_real pulled[PANDA_SYSTEM];
         for (int l = 0; l <= i; ++l) {
@@ -50,17 +46,32 @@ static panda_real congruent(int size, panda_matrix K, panda_matrix X, panda_matr
             A[i][j] = sum;
             A[j][i] = sum;
         }
-        largest = PANDA_FMAX(largest, PANDA_FABS(A[i][i]));
     }
-    return NOISE*largest;
 }
 
 #if !PANDA_STRUCTURED
-/* Takes over the eigenvectors X, over the coordinates `places`. */
-static void take_over(int size, const int *places, panda_matrix A, panda_matrix X, const panda_real *row,
-    panda_modes *modes)
+/*
+ * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
+ * squared sum of these roots' shares in it. False if eigenvectors are not found.
+ */
+static bool find_modes(int size, const int *places, panda_matrix L, panda_matrix A, panda_matrix X,
+    const panda_real *row, panda_modes *modes)
 {
+    panda_real roots[PANDA_SYSTEM];
     for (int i = 0; i < size; ++i) {
+        roots[i] = PANDA_SQRT(PANDA_FABS(A[i][i]));
+    }
+    const bool found = panda_diagonalise(size, A, X);
+    for (int i = 0; i < size; ++i) {
+        panda_real held = PANDA_R(0.0);
+        for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
+            panda_real share = PANDA_R(0.0);
+            for (int m = l; m < size; ++m) {
+                share += L[m][l]*X[m][i];
+            }
+            held += roots[l]*PANDA_FABS(share);
+        }
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
             modes->shape[i][j] = PANDA_R(0.0);
         }
@@ -69,6 +80,7 @@ static void take_over(int size, const int *places, panda_matrix A, panda_matrix 
             modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
+        modes->noise[i] = PANDA_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
         modes->start[i] = PANDA_R(0.0);
@@ -76,6 +88,7 @@ static void take_over(int size, const int *places, panda_matrix A, panda_matrix 
     modes->count = size;
     modes->rigid = 0;
     modes->fastest = PANDA_REAL_MAX;
+    return found;
 }
 #endif
 
@@ -176,12 +189,10 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     if (!unit_motions(size, mass, X)) {
         return PANDA_SINGULAR;
     }
-    (void)congruent(size, K, X, A);
-    if (!panda_diagonalise(size, A, X)) {
+    congruent(size, K, X, A);
+    if (!find_modes(size, places, mass, A, X, row, modes)) {
         return PANDA_SINGULAR;
     }
-    take_over(size, places, A, X, row, modes);
-    modes->noise = PANDA_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
@@ -202,7 +213,11 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
     if (!unit_motions(PANDA_SYSTEM, mass, X)) {
         return PANDA_SINGULAR;
     }
-    modes->noise = congruent(PANDA_SYSTEM, K, X, mass);
+    congruent(PANDA_SYSTEM, K, X, mass);
+    panda_real all = PANDA_R(0.0);
+    for (int i = 0; i < PANDA_SYSTEM; ++i) {
+        all += PANDA_FABS(mass[i][i]);
+    }
     if (!panda_spectrum(PANDA_SYSTEM, PANDA_EPSILON*PANDA_EPSILON, mass, modes->squared, K)) {
         return PANDA_SINGULAR;
     }
@@ -216,6 +231,7 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < PANDA_N ? arrival->row[j]*shape : PANDA_R(0.0);
         }
+        modes->noise[i] = PANDA_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
         modes->row[i] = row;
         modes->start[i] = PANDA_R(0.0);
     }
@@ -255,12 +271,10 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     if (!unit_motions(PANDA_SYSTEM, mass, X)) {
         return PANDA_SINGULAR;
     }
-    (void)congruent(PANDA_SYSTEM, K, X, A);
-    if (!panda_diagonalise(PANDA_SYSTEM, A, X)) {
+    congruent(PANDA_SYSTEM, K, X, A);
+    if (!find_modes(PANDA_SYSTEM, places, mass, A, X, row, modes)) {
         return PANDA_SINGULAR;
     }
-    take_over(PANDA_SYSTEM, places, A, X, row, modes);
-    modes->noise = PANDA_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
             modes->start[i] += modes->shape[i][j]*momentum[j];

@@ -2,7 +2,7 @@
 /* What impacts of panda_ are prepared with: modes, mobilities and steps. */
 #include "panda_impact.h"
 
-/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+/* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS PANDA_R(1.6e-2)
 
 void panda_impact_forget(panda_impact *impact)
@@ -19,6 +19,7 @@ static void take_body_out(panda_phase *phase)
     const int body = phase->active - 1;
     if (phase->has_body && body >= 0 && body <= last) {
         modes->squared[body] = modes->squared[last];
+        modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
         for (int k = 0; k < PANDA_SYSTEM; ++k) {
@@ -53,7 +54,6 @@ static int modes_of(panda_impact *impact, int which)
     phase->has_body = false;
     phase->drift = PANDA_R(0.0);
     phase->damped = PANDA_DAMPED != 0;
-    phase->modes.noise = PANDA_R(0.0);
     for (int i = 0; i < PANDA_DAMPERS; ++i) {
         phase->damping[i] = PANDA_R(0.0);
     }
@@ -67,6 +67,30 @@ static int modes_of(panda_impact *impact, int which)
     phase->known = status == PANDA_OK;
     impact->led = which == PANDA_LED ? impact->motors : impact->led;
     return status;
+}
+
+/*
+ * What rounding may change of an approach within a time, as a share of it. An entry of a stiffness over modes i and
+ * j errs by about sqrt(n_i n_j) for the noise n of their squared frequencies; it takes start_i t of one motion to
+ * row_j t^2 of the other, or less where one of them swings. What is led starts by what the contact moves.
+ */
+static panda_real blur_of(const panda_impact *impact, const panda_phase *phase, panda_real time)
+{
+    const panda_modes *const modes = &phase->modes;
+    const bool led = phase == &impact->phase[PANDA_LED];
+    panda_real rows = PANDA_R(0.0);
+    panda_real starts = PANDA_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        if (!(modes->noise[i] > PANDA_R(0.0))) {
+            continue;
+        }
+        const panda_real turns = PANDA_FABS(modes->squared[i])*time*time;
+        const panda_real off = time*PANDA_SQRT(modes->noise[i]/PANDA_FMAX(turns, PANDA_R(1.0)));
+        const panda_real pulled = led ? PANDA_FMIN(turns, PANDA_R(1.0)) : PANDA_R(1.0);
+        rows += PANDA_FABS(modes->row[i])*off;
+        starts += PANDA_FABS(modes->start[i])*pulled*off;
+    }
+    return rows*(led ? PANDA_FMAX(starts, rows/impact->mobility) : starts);
 }
 
 #if !PANDA_STRUCTURED
@@ -92,7 +116,7 @@ static void steps_of(panda_impact *impact, int which)
 {
     panda_phase *const phase = &impact->phase[which];
     const panda_real time = time_of(impact, which);
-    phase->blurred = phase->modes.noise*time*time > BLURS;
+    phase->blurred = blur_of(impact, phase, time) > BLURS;
     panda_phase_steps(impact, time, phase);
     const panda_real numbers[2] = {phase->level[0].h, phase->level[PANDA_LEVELS - 1].h};
     if (panda_check_positive(numbers, 2) != PANDA_OK) {

@@ -9,6 +9,10 @@
 #define STRAIGHT PANDA_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS PANDA_R(4.0)
+/* Share of that by which the force may be larger within a step than at its ends. */
+#define LEAPS PANDA_R(0.5)
+/* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
+#define BEYOND 2
 /* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
 #define SHORTEST (PANDA_LEVELS - 1)
 #define SHORTEST_APART 4
@@ -107,7 +111,14 @@ static outcome step_pressed(panda_state *s, panda_trial *t, panda_real bends, in
     const panda_real bent = PANDA_R(6.0)*PANDA_FABS(t->bump);
     const panda_real rise = t->f - s->f;
     const bool parts = !(t->f > PANDA_R(0.0));
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+    panda_real between = PANDA_R(0.0); /* nodes of a law through points, where it leaps there */
+    bool slips = false;
+    if (s->impact->region->law != NULL) {
+        const panda_real force = panda_force_between(s, t);
+        between = force > PANDA_FMAX(s->f, t->f) + LEAPS*allowed ? force : PANDA_R(0.0);
+        slips = between > PANDA_R(0.0) || panda_slip_off(s, t) > LEAPS*allowed;
+    }
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
         return TO_BE_SHORTER;
     }
@@ -117,6 +128,9 @@ static outcome step_pressed(panda_state *s, panda_trial *t, panda_real bends, in
         see(s, t->f, s->step->h, peak);
     } else if (s->past > 0 && s->rise >= PANDA_R(0.0)) {
         see_top(s, t, peak);
+    }
+    if (between > PANDA_R(0.0)) {
+        peak->force = PANDA_FMAX(peak->force, between + s->swings);
     }
     if (parts) {
         s->touching = false;
@@ -283,6 +297,11 @@ void panda_impact_run(panda_impact *impact, panda_real speed, panda_budget *budg
             return;
         }
         panda_release(&s);
+        goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && impact->region->law != NULL) {
+        s.ticks = BEYOND;
+        change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
     }
     peak->ended = goes_on;

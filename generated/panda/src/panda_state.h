@@ -72,6 +72,15 @@ void panda_glide(const panda_state *s, panda_trial *t);
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
 void panda_press(panda_state *s, panda_trial *t);
 
+/*
+ * Largest force of a law through points within the step, as if it did not slow down robot and body more on the
+ * way: a law that gets stiff between two nodes may press hard there and show at neither.
+ */
+panda_real panda_force_between(const panda_state *s, const panda_trial *t);
+
+/* What the damper's force at the end may be off where the skin gets stiff within the step, as u' is a difference. */
+panda_real panda_slip_off(const panda_state *s, const panda_trial *t);
+
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void panda_take(const panda_trial *t, panda_state *s);
 

@@ -31,12 +31,15 @@
 static void exchange(panda_modes *modes, int i, int j)
 {
     const panda_real squared = modes->squared[i];
+    const panda_real noise = modes->noise[i];
     const panda_real row = modes->row[i];
     const panda_real start = modes->start[i];
     modes->squared[i] = modes->squared[j];
+    modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
     modes->start[i] = modes->start[j];
     modes->squared[j] = squared;
+    modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
     for (int k = 0; k < PANDA_SYSTEM; ++k) {
@@ -150,6 +153,7 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
     if (impact->gives_way) {
         const int body = modes->count < PANDA_MODES ? modes->count : PANDA_MODES - 1; /* the former */
         modes->squared[body] = PANDA_R(0.0);
+        modes->noise[body] = PANDA_R(0.0);
         modes->row[body] = PANDA_R(1.0)/PANDA_SQRT(region->effective_mass);
         modes->start[body] = PANDA_R(0.0);
         for (int k = 0; k < PANDA_SYSTEM; ++k) {

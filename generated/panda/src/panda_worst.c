@@ -12,8 +12,8 @@
 #define NARROW PANDA_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
-/* Least error that is stated. */
-#define LEAST_ERROR PANDA_R(2e-3)
+/* What forces may be too low, added to what the directions were apart. */
+#define OF_FORCES (PANDA_R(1.0) - PANDA_KEPT)
 
 typedef struct {
     panda_impact impact;
@@ -121,7 +121,7 @@ static int find_hardest(const panda_region *region, const panda_params *p, harde
         }
     }
     out->force = w->force;
-    out->error = PANDA_FMAX(w->force/seen - PANDA_R(1.0), LEAST_ERROR);
+    out->error = w->force/seen - PANDA_R(1.0) + OF_FORCES;
     return w->bounded ? PANDA_BOUNDED : PANDA_OK;
 }
 

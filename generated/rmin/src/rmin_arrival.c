@@ -55,6 +55,7 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
     rmin_real moved[RMIN_REACH][RMIN_N];
     rmin_real share[RMIN_SYSTEM];
     rmin_real within = RMIN_R(0.0);
+    rmin_real whole = RMIN_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < RMIN_N; ++i) {
         arrival->row[i] = u[0]*J[0][i] + u[1]*J[1][i] + u[2]*J[2][i];
     }
@@ -73,9 +74,15 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
             square[k][l] = sum;
             square[l][k] = sum;
         }
+        whole += square[k][k];
     }
     if (!(within > RMIN_R(1.0) - OUTSIDE) || !rmin_cholesky(RMIN_REACH, square)) {
         return RMIN_SINGULAR;
+    }
+    for (int k = 0; k < RMIN_REACH; ++k) {
+        if (!(square[k][k]*square[k][k] > RMIN_EPSILON*whole)) {
+            return RMIN_SINGULAR;
+        }
     }
     rmin_forward(RMIN_REACH, square, share);
     rmin_backward(RMIN_REACH, square, share);

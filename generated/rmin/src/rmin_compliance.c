@@ -67,11 +67,11 @@ static int spring_modes(rmin_matrix C, const rmin_real b[RMIN_N], rmin_modes *mo
             vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
+        modes->noise[at] = RMIN_R(0.0);
         modes->row[at] = row*rate;
         modes->start[at] = RMIN_R(0.0);
     }
     modes->count = modes->rigid + RMIN_N;
-    modes->noise = RMIN_R(0.0);
     return RMIN_OK;
 }
 
@@ -151,6 +151,7 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     }
     modes->rigid = 1; /* r */
     modes->squared[0] = RMIN_R(0.0);
+    modes->noise[0] = RMIN_R(0.0);
     modes->row[0] = RMIN_SQRT(together);
     modes->start[0] = RMIN_R(1.0)/modes->row[0];
     for (int j = 0; j < RMIN_SYSTEM; ++j) {

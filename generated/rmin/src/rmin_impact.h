@@ -39,9 +39,9 @@ typedef rmin_real rmin_matrix[RMIN_SYSTEM][RMIN_SYSTEM];
 typedef struct {
     int count;
     int rigid; /* the first ones have no frequency */
-    rmin_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
     rmin_real fastest; /* largest squared frequency that is known, 1/s^2 */
     rmin_real squared[RMIN_MODES]; /* frequency, 1/s^2 */
+    rmin_real noise[RMIN_MODES]; /* of these, where rounding may matter, 1/s^2 */
     rmin_real row[RMIN_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     rmin_real start[RMIN_MODES]; /* rates at first touch of an approach of 1 m/s */
     rmin_real shape[RMIN_MODES][RMIN_SYSTEM];

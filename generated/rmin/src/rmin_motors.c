@@ -8,9 +8,6 @@
  */
 #include "rmin_impact.h"
 
-/* Share of the largest entry that rounding leaves of one that should be none. */
-#define NOISE (RMIN_R(8.0)*RMIN_EPSILON)
-
 /* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
 {
@@ -30,10 +27,9 @@ static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
     return true;
 }
 
-/* A = X'KX of such an X; returns the noise in its entries. */
-static rmin_real congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A)
+/* A = X'KX of such an X. */
+static void congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A)
 {
-    rmin_real largest = RMIN_R(0.0);
     for (int i = 0; i < size; ++i) {
         rmin_real pulled[RMIN_SYSTEM];
         for (int l = 0; l <= i; ++l) {
@@ -50,17 +46,32 @@ static rmin_real congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A
             A[i][j] = sum;
             A[j][i] = sum;
         }
-        largest = RMIN_FMAX(largest, RMIN_FABS(A[i][i]));
     }
-    return NOISE*largest;
 }
 
 #if !RMIN_STRUCTURED
-/* Takes over the eigenvectors X, over the coordinates `places`. */
-static void take_over(int size, const int *places, rmin_matrix A, rmin_matrix X, const rmin_real *row,
-    rmin_modes *modes)
+/*
+ * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
+ * squared sum of these roots' shares in it. False if eigenvectors are not found.
+ */
+static bool find_modes(int size, const int *places, rmin_matrix L, rmin_matrix A, rmin_matrix X,
+    const rmin_real *row, rmin_modes *modes)
 {
+    rmin_real roots[RMIN_SYSTEM];
     for (int i = 0; i < size; ++i) {
+        roots[i] = RMIN_SQRT(RMIN_FABS(A[i][i]));
+    }
+    const bool found = rmin_diagonalise(size, A, X);
+    for (int i = 0; i < size; ++i) {
+        rmin_real held = RMIN_R(0.0);
+        for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
+            rmin_real share = RMIN_R(0.0);
+            for (int m = l; m < size; ++m) {
+                share += L[m][l]*X[m][i];
+            }
+            held += roots[l]*RMIN_FABS(share);
+        }
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
             modes->shape[i][j] = RMIN_R(0.0);
         }
@@ -69,6 +80,7 @@ static void take_over(int size, const int *places, rmin_matrix A, rmin_matrix X,
             modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
+        modes->noise[i] = RMIN_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
         modes->start[i] = RMIN_R(0.0);
@@ -76,6 +88,7 @@ static void take_over(int size, const int *places, rmin_matrix A, rmin_matrix X,
     modes->count = size;
     modes->rigid = 0;
     modes->fastest = RMIN_REAL_MAX;
+    return found;
 }
 #endif
 
@@ -176,12 +189,10 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     if (!unit_motions(size, mass, X)) {
         return RMIN_SINGULAR;
     }
-    (void)congruent(size, K, X, A);
-    if (!rmin_diagonalise(size, A, X)) {
+    congruent(size, K, X, A);
+    if (!find_modes(size, places, mass, A, X, row, modes)) {
         return RMIN_SINGULAR;
     }
-    take_over(size, places, A, X, row, modes);
-    modes->noise = RMIN_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
@@ -202,7 +213,11 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
     if (!unit_motions(RMIN_SYSTEM, mass, X)) {
         return RMIN_SINGULAR;
     }
-    modes->noise = congruent(RMIN_SYSTEM, K, X, mass);
+    congruent(RMIN_SYSTEM, K, X, mass);
+    rmin_real all = RMIN_R(0.0);
+    for (int i = 0; i < RMIN_SYSTEM; ++i) {
+        all += RMIN_FABS(mass[i][i]);
+    }
     if (!rmin_spectrum(RMIN_SYSTEM, RMIN_EPSILON*RMIN_EPSILON, mass, modes->squared, K)) {
         return RMIN_SINGULAR;
     }
@@ -216,6 +231,7 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < RMIN_N ? arrival->row[j]*shape : RMIN_R(0.0);
         }
+        modes->noise[i] = RMIN_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
         modes->row[i] = row;
         modes->start[i] = RMIN_R(0.0);
     }
@@ -255,12 +271,10 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     if (!unit_motions(RMIN_SYSTEM, mass, X)) {
         return RMIN_SINGULAR;
     }
-    (void)congruent(RMIN_SYSTEM, K, X, A);
-    if (!rmin_diagonalise(RMIN_SYSTEM, A, X)) {
+    congruent(RMIN_SYSTEM, K, X, A);
+    if (!find_modes(RMIN_SYSTEM, places, mass, A, X, row, modes)) {
         return RMIN_SINGULAR;
     }
-    take_over(RMIN_SYSTEM, places, A, X, row, modes);
-    modes->noise = RMIN_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
             modes->start[i] += modes->shape[i][j]*momentum[j];

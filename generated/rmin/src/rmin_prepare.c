@@ -2,7 +2,7 @@
 /* What impacts of rmin_ are prepared with: modes, mobilities and steps. */
 #include "rmin_impact.h"
 
-/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+/* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS RMIN_R(1.6e-2)
 
 void rmin_impact_forget(rmin_impact *impact)
@@ -19,6 +19,7 @@ static void take_body_out(rmin_phase *phase)
     const int body = phase->active - 1;
     if (phase->has_body && body >= 0 && body <= last) {
         modes->squared[body] = modes->squared[last];
+        modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
         for (int k = 0; k < RMIN_SYSTEM; ++k) {
@@ -53,7 +54,6 @@ static int modes_of(rmin_impact *impact, int which)
     phase->has_body = false;
     phase->drift = RMIN_R(0.0);
     phase->damped = RMIN_DAMPED != 0;
-    phase->modes.noise = RMIN_R(0.0);
     for (int i = 0; i < RMIN_DAMPERS; ++i) {
         phase->damping[i] = RMIN_R(0.0);
     }
@@ -67,6 +67,30 @@ static int modes_of(rmin_impact *impact, int which)
     phase->known = status == RMIN_OK;
     impact->led = which == RMIN_LED ? impact->motors : impact->led;
     return status;
+}
+
+/*
+ * What rounding may change of an approach within a time, as a share of it. An entry of a stiffness over modes i and
+ * j errs by about sqrt(n_i n_j) for the noise n of their squared frequencies; it takes start_i t of one motion to
+ * row_j t^2 of the other, or less where one of them swings. What is led starts by what the contact moves.
+ */
+static rmin_real blur_of(const rmin_impact *impact, const rmin_phase *phase, rmin_real time)
+{
+    const rmin_modes *const modes = &phase->modes;
+    const bool led = phase == &impact->phase[RMIN_LED];
+    rmin_real rows = RMIN_R(0.0);
+    rmin_real starts = RMIN_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        if (!(modes->noise[i] > RMIN_R(0.0))) {
+            continue;
+        }
+        const rmin_real turns = RMIN_FABS(modes->squared[i])*time*time;
+        const rmin_real off = time*RMIN_SQRT(modes->noise[i]/RMIN_FMAX(turns, RMIN_R(1.0)));
+        const rmin_real pulled = led ? RMIN_FMIN(turns, RMIN_R(1.0)) : RMIN_R(1.0);
+        rows += RMIN_FABS(modes->row[i])*off;
+        starts += RMIN_FABS(modes->start[i])*pulled*off;
+    }
+    return rows*(led ? RMIN_FMAX(starts, rows/impact->mobility) : starts);
 }
 
 #if !RMIN_STRUCTURED
@@ -92,7 +116,7 @@ static void steps_of(rmin_impact *impact, int which)
 {
     rmin_phase *const phase = &impact->phase[which];
     const rmin_real time = time_of(impact, which);
-    phase->blurred = phase->modes.noise*time*time > BLURS;
+    phase->blurred = blur_of(impact, phase, time) > BLURS;
     rmin_phase_steps(impact, time, phase);
     const rmin_real numbers[2] = {phase->level[0].h, phase->level[RMIN_LEVELS - 1].h};
     if (rmin_check_positive(numbers, 2) != RMIN_OK) {

@@ -9,6 +9,10 @@
 #define STRAIGHT RMIN_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS RMIN_R(4.0)
+/* Share of that by which the force may be larger within a step than at its ends. */
+#define LEAPS RMIN_R(0.5)
+/* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
+#define BEYOND 2
 /* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
 #define SHORTEST (RMIN_LEVELS - 1)
 #define SHORTEST_APART 4
@@ -107,7 +111,14 @@ static outcome step_pressed(rmin_state *s, rmin_trial *t, rmin_real bends, int s
     const rmin_real bent = RMIN_R(6.0)*RMIN_FABS(t->bump);
     const rmin_real rise = t->f - s->f;
     const bool parts = !(t->f > RMIN_R(0.0));
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+    rmin_real between = RMIN_R(0.0); /* nodes of a law through points, where it leaps there */
+    bool slips = false;
+    if (s->impact->region->law != NULL) {
+        const rmin_real force = rmin_force_between(s, t);
+        between = force > RMIN_FMAX(s->f, t->f) + LEAPS*allowed ? force : RMIN_R(0.0);
+        slips = between > RMIN_R(0.0) || rmin_slip_off(s, t) > LEAPS*allowed;
+    }
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
         return TO_BE_SHORTER;
     }
@@ -117,6 +128,9 @@ static outcome step_pressed(rmin_state *s, rmin_trial *t, rmin_real bends, int s
         see(s, t->f, s->step->h, peak);
     } else if (s->past > 0 && s->rise >= RMIN_R(0.0)) {
         see_top(s, t, peak);
+    }
+    if (between > RMIN_R(0.0)) {
+        peak->force = RMIN_FMAX(peak->force, between + s->swings);
     }
     if (parts) {
         s->touching = false;
@@ -283,6 +297,11 @@ void rmin_impact_run(rmin_impact *impact, rmin_real speed, rmin_budget *budget, 
             return;
         }
         rmin_release(&s);
+        goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && impact->region->law != NULL) {
+        s.ticks = BEYOND;
+        change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
     }
     peak->ended = goes_on;

@@ -72,6 +72,15 @@ void rmin_glide(const rmin_state *s, rmin_trial *t);
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
 void rmin_press(rmin_state *s, rmin_trial *t);
 
+/*
+ * Largest force of a law through points within the step, as if it did not slow down robot and body more on the
+ * way: a law that gets stiff between two nodes may press hard there and show at neither.
+ */
+rmin_real rmin_force_between(const rmin_state *s, const rmin_trial *t);
+
+/* What the damper's force at the end may be off where the skin gets stiff within the step, as u' is a difference. */
+rmin_real rmin_slip_off(const rmin_state *s, const rmin_trial *t);
+
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void rmin_take(const rmin_trial *t, rmin_state *s);
 

@@ -31,12 +31,15 @@
 static void exchange(rmin_modes *modes, int i, int j)
 {
     const rmin_real squared = modes->squared[i];
+    const rmin_real noise = modes->noise[i];
     const rmin_real row = modes->row[i];
     const rmin_real start = modes->start[i];
     modes->squared[i] = modes->squared[j];
+    modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
     modes->start[i] = modes->start[j];
     modes->squared[j] = squared;
+    modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
     for (int k = 0; k < RMIN_SYSTEM; ++k) {
@@ -150,6 +153,7 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
     if (impact->gives_way) {
         const int body = modes->count < RMIN_MODES ? modes->count : RMIN_MODES - 1; /* the former */
         modes->squared[body] = RMIN_R(0.0);
+        modes->noise[body] = RMIN_R(0.0);
         modes->row[body] = RMIN_R(1.0)/RMIN_SQRT(region->effective_mass);
         modes->start[body] = RMIN_R(0.0);
         for (int k = 0; k < RMIN_SYSTEM; ++k) {

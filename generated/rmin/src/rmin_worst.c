@@ -12,8 +12,8 @@
 #define NARROW RMIN_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
-/* Least error that is stated. */
-#define LEAST_ERROR RMIN_R(2e-3)
+/* What forces may be too low, added to what the directions were apart. */
+#define OF_FORCES (RMIN_R(1.0) - RMIN_KEPT)
 
 typedef struct {
     rmin_impact impact;
@@ -121,7 +121,7 @@ static int find_hardest(const rmin_region *region, const rmin_params *p, hardest
         }
     }
     out->force = w->force;
-    out->error = RMIN_FMAX(w->force/seen - RMIN_R(1.0), LEAST_ERROR);
+    out->error = w->force/seen - RMIN_R(1.0) + OF_FORCES;
     return w->bounded ? RMIN_BOUNDED : RMIN_OK;
 }
 

@@ -55,6 +55,7 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
     rr_real moved[RR_REACH][RR_N];
     rr_real share[RR_SYSTEM];
     rr_real within = RR_R(0.0);
+    rr_real whole = RR_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < RR_N; ++i) {
         arrival->row[i] = u[0]*J[0][i] + u[1]*J[1][i] + u[2]*J[2][i];
     }
@@ -73,9 +74,15 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
             square[k][l] = sum;
             square[l][k] = sum;
         }
+        whole += square[k][k];
     }
     if (!(within > RR_R(1.0) - OUTSIDE) || !rr_cholesky(RR_REACH, square)) {
         return RR_SINGULAR;
+    }
+    for (int k = 0; k < RR_REACH; ++k) {
+        if (!(square[k][k]*square[k][k] > RR_EPSILON*whole)) {
+            return RR_SINGULAR;
+        }
     }
     rr_forward(RR_REACH, square, share);
     rr_backward(RR_REACH, square, share);

@@ -67,11 +67,11 @@ static int spring_modes(rr_matrix C, const rr_real b[RR_N], rr_modes *modes)
             vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
+        modes->noise[at] = RR_R(0.0);
         modes->row[at] = row*rate;
         modes->start[at] = RR_R(0.0);
     }
     modes->count = modes->rigid + RR_N;
-    modes->noise = RR_R(0.0);
     return RR_OK;
 }
 
@@ -151,6 +151,7 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     }
     modes->rigid = 1; /* r */
     modes->squared[0] = RR_R(0.0);
+    modes->noise[0] = RR_R(0.0);
     modes->row[0] = RR_SQRT(together);
     modes->start[0] = RR_R(1.0)/modes->row[0];
     for (int j = 0; j < RR_SYSTEM; ++j) {

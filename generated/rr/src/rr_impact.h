@@ -39,9 +39,9 @@ typedef rr_real rr_matrix[RR_SYSTEM][RR_SYSTEM];
 typedef struct {
     int count;
     int rigid; /* the first ones have no frequency */
-    rr_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
     rr_real fastest; /* largest squared frequency that is known, 1/s^2 */
     rr_real squared[RR_MODES]; /* frequency, 1/s^2 */
+    rr_real noise[RR_MODES]; /* of these, where rounding may matter, 1/s^2 */
     rr_real row[RR_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     rr_real start[RR_MODES]; /* rates at first touch of an approach of 1 m/s */
     rr_real shape[RR_MODES][RR_SYSTEM];

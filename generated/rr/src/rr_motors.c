@@ -8,9 +8,6 @@
  */
 #include "rr_impact.h"
 
-/* Share of the largest entry that rounding leaves of one that should be none. */
-#define NOISE (RR_R(8.0)*RR_EPSILON)
-
 /* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
 {
@@ -30,10 +27,9 @@ static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
     return true;
 }
 
-/* A = X'KX of such an X; returns the noise in its entries. */
-static rr_real congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
+/* A = X'KX of such an X. */
+static void congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
 {
-    rr_real largest = RR_R(0.0);
     for (int i = 0; i < size; ++i) {
         rr_real pulled[RR_SYSTEM];
         for (int l = 0; l <= i; ++l) {
@@ -50,17 +46,32 @@ static rr_real congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
             A[i][j] = sum;
             A[j][i] = sum;
         }
-        largest = RR_FMAX(largest, RR_FABS(A[i][i]));
     }
-    return NOISE*largest;
 }
 
 #if !RR_STRUCTURED
-/* Takes over the eigenvectors X, over the coordinates `places`. */
-static void take_over(int size, const int *places, rr_matrix A, rr_matrix X, const rr_real *row,
-    rr_modes *modes)
+/*
+ * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
+ * squared sum of these roots' shares in it. False if eigenvectors are not found.
+ */
+static bool find_modes(int size, const int *places, rr_matrix L, rr_matrix A, rr_matrix X,
+    const rr_real *row, rr_modes *modes)
 {
+    rr_real roots[RR_SYSTEM];
     for (int i = 0; i < size; ++i) {
+        roots[i] = RR_SQRT(RR_FABS(A[i][i]));
+    }
+    const bool found = rr_diagonalise(size, A, X);
+    for (int i = 0; i < size; ++i) {
+        rr_real held = RR_R(0.0);
+        for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
+            rr_real share = RR_R(0.0);
+            for (int m = l; m < size; ++m) {
+                share += L[m][l]*X[m][i];
+            }
+            held += roots[l]*RR_FABS(share);
+        }
         for (int j = 0; j < RR_SYSTEM; ++j) {
             modes->shape[i][j] = RR_R(0.0);
         }
@@ -69,6 +80,7 @@ static void take_over(int size, const int *places, rr_matrix A, rr_matrix X, con
             modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
+        modes->noise[i] = RR_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
         modes->start[i] = RR_R(0.0);
@@ -76,6 +88,7 @@ static void take_over(int size, const int *places, rr_matrix A, rr_matrix X, con
     modes->count = size;
     modes->rigid = 0;
     modes->fastest = RR_REAL_MAX;
+    return found;
 }
 #endif
 
@@ -176,12 +189,10 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     if (!unit_motions(size, mass, X)) {
         return RR_SINGULAR;
     }
-    (void)congruent(size, K, X, A);
-    if (!rr_diagonalise(size, A, X)) {
+    congruent(size, K, X, A);
+    if (!find_modes(size, places, mass, A, X, row, modes)) {
         return RR_SINGULAR;
     }
-    take_over(size, places, A, X, row, modes);
-    modes->noise = RR_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
@@ -202,7 +213,11 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
     if (!unit_motions(RR_SYSTEM, mass, X)) {
         return RR_SINGULAR;
     }
-    modes->noise = congruent(RR_SYSTEM, K, X, mass);
+    congruent(RR_SYSTEM, K, X, mass);
+    rr_real all = RR_R(0.0);
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        all += RR_FABS(mass[i][i]);
+    }
     if (!rr_spectrum(RR_SYSTEM, RR_EPSILON*RR_EPSILON, mass, modes->squared, K)) {
         return RR_SINGULAR;
     }
@@ -216,6 +231,7 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < RR_N ? arrival->row[j]*shape : RR_R(0.0);
         }
+        modes->noise[i] = RR_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
         modes->row[i] = row;
         modes->start[i] = RR_R(0.0);
     }
@@ -255,12 +271,10 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     if (!unit_motions(RR_SYSTEM, mass, X)) {
         return RR_SINGULAR;
     }
-    (void)congruent(RR_SYSTEM, K, X, A);
-    if (!rr_diagonalise(RR_SYSTEM, A, X)) {
+    congruent(RR_SYSTEM, K, X, A);
+    if (!find_modes(RR_SYSTEM, places, mass, A, X, row, modes)) {
         return RR_SINGULAR;
     }
-    take_over(RR_SYSTEM, places, A, X, row, modes);
-    modes->noise = RR_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < RR_SYSTEM; ++j) {
             modes->start[i] += modes->shape[i][j]*momentum[j];

@@ -2,7 +2,7 @@
 /* What impacts of rr_ are prepared with: modes, mobilities and steps. */
 #include "rr_impact.h"
 
-/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+/* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS RR_R(1.6e-2)
 
 void rr_impact_forget(rr_impact *impact)
@@ -19,6 +19,7 @@ static void take_body_out(rr_phase *phase)
     const int body = phase->active - 1;
     if (phase->has_body && body >= 0 && body <= last) {
         modes->squared[body] = modes->squared[last];
+        modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
         for (int k = 0; k < RR_SYSTEM; ++k) {
@@ -53,7 +54,6 @@ static int modes_of(rr_impact *impact, int which)
     phase->has_body = false;
     phase->drift = RR_R(0.0);
     phase->damped = RR_DAMPED != 0;
-    phase->modes.noise = RR_R(0.0);
     for (int i = 0; i < RR_DAMPERS; ++i) {
         phase->damping[i] = RR_R(0.0);
     }
@@ -67,6 +67,30 @@ static int modes_of(rr_impact *impact, int which)
     phase->known = status == RR_OK;
     impact->led = which == RR_LED ? impact->motors : impact->led;
     return status;
+}
+
+/*
+ * What rounding may change of an approach within a time, as a share of it. An entry of a stiffness over modes i and
+ * j errs by about sqrt(n_i n_j) for the noise n of their squared frequencies; it takes start_i t of one motion to
+ * row_j t^2 of the other, or less where one of them swings. What is led starts by what the contact moves.
+ */
+static rr_real blur_of(const rr_impact *impact, const rr_phase *phase, rr_real time)
+{
+    const rr_modes *const modes = &phase->modes;
+    const bool led = phase == &impact->phase[RR_LED];
+    rr_real rows = RR_R(0.0);
+    rr_real starts = RR_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        if (!(modes->noise[i] > RR_R(0.0))) {
+            continue;
+        }
+        const rr_real turns = RR_FABS(modes->squared[i])*time*time;
+        const rr_real off = time*RR_SQRT(modes->noise[i]/RR_FMAX(turns, RR_R(1.0)));
+        const rr_real pulled = led ? RR_FMIN(turns, RR_R(1.0)) : RR_R(1.0);
+        rows += RR_FABS(modes->row[i])*off;
+        starts += RR_FABS(modes->start[i])*pulled*off;
+    }
+    return rows*(led ? RR_FMAX(starts, rows/impact->mobility) : starts);
 }
 
 #if !RR_STRUCTURED
@@ -92,7 +116,7 @@ static void steps_of(rr_impact *impact, int which)
 {
     rr_phase *const phase = &impact->phase[which];
     const rr_real time = time_of(impact, which);
-    phase->blurred = phase->modes.noise*time*time > BLURS;
+    phase->blurred = blur_of(impact, phase, time) > BLURS;
     rr_phase_steps(impact, time, phase);
     const rr_real numbers[2] = {phase->level[0].h, phase->level[RR_LEVELS - 1].h};
     if (rr_check_positive(numbers, 2) != RR_OK) {

@@ -72,6 +72,15 @@ void rr_glide(const rr_state *s, rr_trial *t);
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
 void rr_press(rr_state *s, rr_trial *t);
 
+/*
+ * Largest force of a law through points within the step, as if it did not slow down robot and body more on the
+ * way: a law that gets stiff between two nodes may press hard there and show at neither.
+ */
+rr_real rr_force_between(const rr_state *s, const rr_trial *t);
+
+/* What the damper's force at the end may be off where the skin gets stiff within the step, as u' is a difference. */
+rr_real rr_slip_off(const rr_state *s, const rr_trial *t);
+
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void rr_take(const rr_trial *t, rr_state *s);
 

@@ -31,12 +31,15 @@
 static void exchange(rr_modes *modes, int i, int j)
 {
     const rr_real squared = modes->squared[i];
+    const rr_real noise = modes->noise[i];
     const rr_real row = modes->row[i];
     const rr_real start = modes->start[i];
     modes->squared[i] = modes->squared[j];
+    modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
     modes->start[i] = modes->start[j];
     modes->squared[j] = squared;
+    modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
     for (int k = 0; k < RR_SYSTEM; ++k) {
@@ -150,6 +153,7 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
     if (impact->gives_way) {
         const int body = modes->count < RR_MODES ? modes->count : RR_MODES - 1; /* the former */
         modes->squared[body] = RR_R(0.0);
+        modes->noise[body] = RR_R(0.0);
         modes->row[body] = RR_R(1.0)/RR_SQRT(region->effective_mass);
         modes->start[body] = RR_R(0.0);
         for (int k = 0; k < RR_SYSTEM; ++k) {

@@ -12,8 +12,8 @@
 #define NARROW RR_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
-/* Least error that is stated. */
-#define LEAST_ERROR RR_R(2e-3)
+/* What forces may be too low, added to what the directions were apart. */
+#define OF_FORCES (RR_R(1.0) - RR_KEPT)
 
 typedef struct {
     rr_impact impact;
@@ -121,7 +121,7 @@ static int find_hardest(const rr_region *region, const rr_params *p, hardest *w,
         }
     }
     out->force = w->force;
-    out->error = RR_FMAX(w->force/seen - RR_R(1.0), LEAST_ERROR);
+    out->error = w->force/seen - RR_R(1.0) + OF_FORCES;
     return w->bounded ? RR_BOUNDED : RR_OK;
 }
 

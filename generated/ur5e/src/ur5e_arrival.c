@@ -55,6 +55,7 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
     ur5e_real moved[UR5E_REACH][UR5E_N];
     ur5e_real share[UR5E_SYSTEM];
     ur5e_real within = UR5E_R(0.0);
+    ur5e_real whole = UR5E_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < UR5E_N; ++i) {
         arrival->row[i] = u[0]*J[0][i] + u[1]*J[1][i] + u[2]*J[2][i];
     }
@@ -73,9 +74,15 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
             square[k][l] = sum;
             square[l][k] = sum;
         }
+        whole += square[k][k];
     }
     if (!(within > UR5E_R(1.0) - OUTSIDE) || !ur5e_cholesky(UR5E_REACH, square)) {
         return UR5E_SINGULAR;
+    }
+    for (int k = 0; k < UR5E_REACH; ++k) {
+        if (!(square[k][k]*square[k][k] > UR5E_EPSILON*whole)) {
+            return UR5E_SINGULAR;
+        }
     }
     ur5e_forward(UR5E_REACH, square, share);
     ur5e_backward(UR5E_REACH, square, share);

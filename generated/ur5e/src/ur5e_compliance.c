@@ -67,11 +67,11 @@ static int spring_modes(ur5e_matrix C, const ur5e_real b[UR5E_N], ur5e_modes *mo
             vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
+        modes->noise[at] = UR5E_R(0.0);
         modes->row[at] = row*rate;
         modes->start[at] = UR5E_R(0.0);
     }
     modes->count = modes->rigid + UR5E_N;
-    modes->noise = UR5E_R(0.0);
     return UR5E_OK;
 }
 
@@ -151,6 +151,7 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     }
     modes->rigid = 1; /* r */
     modes->squared[0] = UR5E_R(0.0);
+    modes->noise[0] = UR5E_R(0.0);
     modes->row[0] = UR5E_SQRT(together);
     modes->start[0] = UR5E_R(1.0)/modes->row[0];
     for (int j = 0; j < UR5E_SYSTEM; ++j) {

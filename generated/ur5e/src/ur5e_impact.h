@@ -39,9 +39,9 @@ typedef ur5e_real ur5e_matrix[UR5E_SYSTEM][UR5E_SYSTEM];
 typedef struct {
     int count;
     int rigid; /* the first ones have no frequency */
-    ur5e_real noise; /* of squared frequencies, where rounding may matter, 1/s^2 */
     ur5e_real fastest; /* largest squared frequency that is known, 1/s^2 */
     ur5e_real squared[UR5E_MODES]; /* frequency, 1/s^2 */
+    ur5e_real noise[UR5E_MODES]; /* of these, where rounding may matter, 1/s^2 */
     ur5e_real row[UR5E_MODES]; /* what the contact point moves with each, 1/sqrt(kg) */
     ur5e_real start[UR5E_MODES]; /* rates at first touch of an approach of 1 m/s */
     ur5e_real shape[UR5E_MODES][UR5E_SYSTEM];

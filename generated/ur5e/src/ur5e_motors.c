@@ -8,9 +8,6 @@
  */
 #include "ur5e_impact.h"
 
-/* Share of the largest entry that rounding leaves of one that should be none. */
-#define NOISE (UR5E_R(8.0)*UR5E_EPSILON)
-
 /* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
 {
@@ -30,10 +27,9 @@ static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
     return true;
 }
 
-/* A = X'KX of such an X; returns the noise in its entries. */
-static ur5e_real congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A)
+/* A = X'KX of such an X. */
+static void congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A)
 {
-    ur5e_real largest = UR5E_R(0.0);
     for (int i = 0; i < size; ++i) {
         ur5e_real pulled[UR5E_SYSTEM];
         for (int l = 0; l <= i; ++l) {
@@ -50,17 +46,32 @@ static ur5e_real congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A
             A[i][j] = sum;
             A[j][i] = sum;
         }
-        largest = UR5E_FMAX(largest, UR5E_FABS(A[i][i]));
     }
-    return NOISE*largest;
 }
 
 #if !UR5E_STRUCTURED
-/* Takes over the eigenvectors X, over the coordinates `places`. */
-static void take_over(int size, const int *places, ur5e_matrix A, ur5e_matrix X, const ur5e_real *row,
-    ur5e_modes *modes)
+/*
+ * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
+ * squared sum of these roots' shares in it. False if eigenvectors are not found.
+ */
+static bool find_modes(int size, const int *places, ur5e_matrix L, ur5e_matrix A, ur5e_matrix X,
+    const ur5e_real *row, ur5e_modes *modes)
 {
+    ur5e_real roots[UR5E_SYSTEM];
     for (int i = 0; i < size; ++i) {
+        roots[i] = UR5E_SQRT(UR5E_FABS(A[i][i]));
+    }
+    const bool found = ur5e_diagonalise(size, A, X);
+    for (int i = 0; i < size; ++i) {
+        ur5e_real held = UR5E_R(0.0);
+        for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
+            ur5e_real share = UR5E_R(0.0);
+            for (int m = l; m < size; ++m) {
+                share += L[m][l]*X[m][i];
+            }
+            held += roots[l]*UR5E_FABS(share);
+        }
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
             modes->shape[i][j] = UR5E_R(0.0);
         }
@@ -69,6 +80,7 @@ static void take_over(int size, const int *places, ur5e_matrix A, ur5e_matrix X,
             modes->shape[i][places[j]] = X[j][i];
             sum += row[j]*X[j][i];
         }
+        modes->noise[i] = UR5E_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
         modes->start[i] = UR5E_R(0.0);
@@ -76,6 +88,7 @@ static void take_over(int size, const int *places, ur5e_matrix A, ur5e_matrix X,
     modes->count = size;
     modes->rigid = 0;
     modes->fastest = UR5E_REAL_MAX;
+    return found;
 }
 #endif
 
@@ -176,12 +189,10 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     if (!unit_motions(size, mass, X)) {
         return UR5E_SINGULAR;
     }
-    (void)congruent(size, K, X, A);
-    if (!ur5e_diagonalise(size, A, X)) {
+    congruent(size, K, X, A);
+    if (!find_modes(size, places, mass, A, X, row, modes)) {
         return UR5E_SINGULAR;
     }
-    take_over(size, places, A, X, row, modes);
-    modes->noise = UR5E_R(0.0);
     pulled_on(arrival, pull);
     return lead(pull, modes, drift);
 }
@@ -202,7 +213,11 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
     if (!unit_motions(UR5E_SYSTEM, mass, X)) {
         return UR5E_SINGULAR;
     }
-    modes->noise = congruent(UR5E_SYSTEM, K, X, mass);
+    congruent(UR5E_SYSTEM, K, X, mass);
+    ur5e_real all = UR5E_R(0.0);
+    for (int i = 0; i < UR5E_SYSTEM; ++i) {
+        all += UR5E_FABS(mass[i][i]);
+    }
     if (!ur5e_spectrum(UR5E_SYSTEM, UR5E_EPSILON*UR5E_EPSILON, mass, modes->squared, K)) {
         return UR5E_SINGULAR;
     }
@@ -216,6 +231,7 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
             row += j < UR5E_N ? arrival->row[j]*shape : UR5E_R(0.0);
         }
+        modes->noise[i] = UR5E_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
         modes->row[i] = row;
         modes->start[i] = UR5E_R(0.0);
     }
@@ -255,12 +271,10 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     if (!unit_motions(UR5E_SYSTEM, mass, X)) {
         return UR5E_SINGULAR;
     }
-    (void)congruent(UR5E_SYSTEM, K, X, A);
-    if (!ur5e_diagonalise(UR5E_SYSTEM, A, X)) {
+    congruent(UR5E_SYSTEM, K, X, A);
+    if (!find_modes(UR5E_SYSTEM, places, mass, A, X, row, modes)) {
         return UR5E_SINGULAR;
     }
-    take_over(UR5E_SYSTEM, places, A, X, row, modes);
-    modes->noise = UR5E_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
             modes->start[i] += modes->shape[i][j]*momentum[j];

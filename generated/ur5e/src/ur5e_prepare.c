@@ -2,7 +2,7 @@
 /* What impacts of ur5e_ are prepared with: modes, mobilities and steps. */
 #include "ur5e_impact.h"
 
-/* Noise of a squared frequency, times the squared time of a servo, that moves the robot too much. */
+/* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS UR5E_R(1.6e-2)
 
 void ur5e_impact_forget(ur5e_impact *impact)
@@ -19,6 +19,7 @@ static void take_body_out(ur5e_phase *phase)
     const int body = phase->active - 1;
     if (phase->has_body && body >= 0 && body <= last) {
         modes->squared[body] = modes->squared[last];
+        modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
         for (int k = 0; k < UR5E_SYSTEM; ++k) {
@@ -53,7 +54,6 @@ static int modes_of(ur5e_impact *impact, int which)
     phase->has_body = false;
     phase->drift = UR5E_R(0.0);
     phase->damped = UR5E_DAMPED != 0;
-    phase->modes.noise = UR5E_R(0.0);
     for (int i = 0; i < UR5E_DAMPERS; ++i) {
         phase->damping[i] = UR5E_R(0.0);
     }
@@ -67,6 +67,30 @@ static int modes_of(ur5e_impact *impact, int which)
     phase->known = status == UR5E_OK;
     impact->led = which == UR5E_LED ? impact->motors : impact->led;
     return status;
+}
+
+/*
+ * What rounding may change of an approach within a time, as a share of it. An entry of a stiffness over modes i and
+ * j errs by about sqrt(n_i n_j) for the noise n of their squared frequencies; it takes start_i t of one motion to
+ * row_j t^2 of the other, or less where one of them swings. What is led starts by what the contact moves.
+ */
+static ur5e_real blur_of(const ur5e_impact *impact, const ur5e_phase *phase, ur5e_real time)
+{
+    const ur5e_modes *const modes = &phase->modes;
+    const bool led = phase == &impact->phase[UR5E_LED];
+    ur5e_real rows = UR5E_R(0.0);
+    ur5e_real starts = UR5E_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        if (!(modes->noise[i] > UR5E_R(0.0))) {
+            continue;
+        }
+        const ur5e_real turns = UR5E_FABS(modes->squared[i])*time*time;
+        const ur5e_real off = time*UR5E_SQRT(modes->noise[i]/UR5E_FMAX(turns, UR5E_R(1.0)));
+        const ur5e_real pulled = led ? UR5E_FMIN(turns, UR5E_R(1.0)) : UR5E_R(1.0);
+        rows += UR5E_FABS(modes->row[i])*off;
+        starts += UR5E_FABS(modes->start[i])*pulled*off;
+    }
+    return rows*(led ? UR5E_FMAX(starts, rows/impact->mobility) : starts);
 }
 
 #if !UR5E_STRUCTURED
@@ -92,7 +116,7 @@ static void steps_of(ur5e_impact *impact, int which)
 {
     ur5e_phase *const phase = &impact->phase[which];
     const ur5e_real time = time_of(impact, which);
-    phase->blurred = phase->modes.noise*time*time > BLURS;
+    phase->blurred = blur_of(impact, phase, time) > BLURS;
     ur5e_phase_steps(impact, time, phase);
     const ur5e_real numbers[2] = {phase->level[0].h, phase->level[UR5E_LEVELS - 1].h};
     if (ur5e_check_positive(numbers, 2) != UR5E_OK) {

@@ -9,6 +9,10 @@
 #define STRAIGHT UR5E_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS UR5E_R(4.0)
+/* Share of that by which the force may be larger within a step than at its ends. */
+#define LEAPS UR5E_R(0.5)
+/* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
+#define BEYOND 2
 /* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
 #define SHORTEST (UR5E_LEVELS - 1)
 #define SHORTEST_APART 4
@@ -107,7 +111,14 @@ static outcome step_pressed(ur5e_state *s, ur5e_trial *t, ur5e_real bends, int s
     const ur5e_real bent = UR5E_R(6.0)*UR5E_FABS(t->bump);
     const ur5e_real rise = t->f - s->f;
     const bool parts = !(t->f > UR5E_R(0.0));
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed))) {
+    ur5e_real between = UR5E_R(0.0); /* nodes of a law through points, where it leaps there */
+    bool slips = false;
+    if (s->impact->region->law != NULL) {
+        const ur5e_real force = ur5e_force_between(s, t);
+        between = force > UR5E_FMAX(s->f, t->f) + LEAPS*allowed ? force : UR5E_R(0.0);
+        slips = between > UR5E_R(0.0) || ur5e_slip_off(s, t) > LEAPS*allowed;
+    }
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
         return TO_BE_SHORTER;
     }
@@ -117,6 +128,9 @@ static outcome step_pressed(ur5e_state *s, ur5e_trial *t, ur5e_real bends, int s
         see(s, t->f, s->step->h, peak);
     } else if (s->past > 0 && s->rise >= UR5E_R(0.0)) {
         see_top(s, t, peak);
+    }
+    if (between > UR5E_R(0.0)) {
+        peak->force = UR5E_FMAX(peak->force, between + s->swings);
     }
     if (parts) {
         s->touching = false;
@@ -283,6 +297,11 @@ void ur5e_impact_run(ur5e_impact *impact, ur5e_real speed, ur5e_budget *budget, 
             return;
         }
         ur5e_release(&s);
+        goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && impact->region->law != NULL) {
+        s.ticks = BEYOND;
+        change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
     }
     peak->ended = goes_on;

@@ -10,7 +10,8 @@
  * Hertz's), and depth + s - r = w takes w^2/(2 reach) in the vibration. With less than that there is no such F.
  *
  * Driven motors that are let go later: seen from their motion before, E is of links and rotors, these
- * move at most sqrt(2 E rotors) on, and the rest holds if r' < 0 by more than that.
+ * move at most sqrt(2 E rotors) on, and the rest holds if r' < 0 by more than that; not where gravity or springs
+ * of the model file pull, nor where joints damp: motors held against these.
  */
 #include "ur5e_state.h"
 
@@ -27,7 +28,7 @@ bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real depth, ur5e
         r += modes->row[i]*s->amplitude[i];
         away += modes->row[i]*s->rate[i];
     }
-    if (impact->gives_way) {
+    if (impact->gives_way && body >= 0) { /* it always is */
         r += modes->row[body]*s->amplitude[body];
         away += modes->row[body]*s->rate[body];
     }
@@ -42,7 +43,7 @@ bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real depth, ur5e
         twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
     }
     if (phase == &impact->phase[UR5E_LED] && impact->last == UR5E_LOOSE
-        && !(away*away > twice*impact->rotors)) {
+        && (!UR5E_STRUCTURED || !(away*away > twice*impact->rotors))) {
         return false;
     }
     const ur5e_real slip = region->damping*UR5E_SQRT(twice*impact->mobility);

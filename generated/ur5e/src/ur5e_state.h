@@ -72,6 +72,15 @@ void ur5e_glide(const ur5e_state *s, ur5e_trial *t);
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
 void ur5e_press(ur5e_state *s, ur5e_trial *t);
 
+/*
+ * Largest force of a law through points within the step, as if it did not slow down robot and body more on the
+ * way: a law that gets stiff between two nodes may press hard there and show at neither.
+ */
+ur5e_real ur5e_force_between(const ur5e_state *s, const ur5e_trial *t);
+
+/* What the damper's force at the end may be off where the skin gets stiff within the step, as u' is a difference. */
+ur5e_real ur5e_slip_off(const ur5e_state *s, const ur5e_trial *t);
+
 /* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
 void ur5e_take(const ur5e_trial *t, ur5e_state *s);
 

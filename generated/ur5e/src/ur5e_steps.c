@@ -31,12 +31,15 @@
 static void exchange(ur5e_modes *modes, int i, int j)
 {
     const ur5e_real squared = modes->squared[i];
+    const ur5e_real noise = modes->noise[i];
     const ur5e_real row = modes->row[i];
     const ur5e_real start = modes->start[i];
     modes->squared[i] = modes->squared[j];
+    modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
     modes->start[i] = modes->start[j];
     modes->squared[j] = squared;
+    modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
     for (int k = 0; k < UR5E_SYSTEM; ++k) {
@@ -150,6 +153,7 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
     if (impact->gives_way) {
         const int body = modes->count < UR5E_MODES ? modes->count : UR5E_MODES - 1; /* the former */
         modes->squared[body] = UR5E_R(0.0);
+        modes->noise[body] = UR5E_R(0.0);
         modes->row[body] = UR5E_R(1.0)/UR5E_SQRT(region->effective_mass);
         modes->start[body] = UR5E_R(0.0);
         for (int k = 0; k < UR5E_SYSTEM; ++k) {

@@ -12,8 +12,8 @@
 #define NARROW UR5E_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
-/* Least error that is stated. */
-#define LEAST_ERROR UR5E_R(2e-3)
+/* What forces may be too low, added to what the directions were apart. */
+#define OF_FORCES (UR5E_R(1.0) - UR5E_KEPT)
 
 typedef struct {
     ur5e_impact impact;
@@ -121,7 +121,7 @@ static int find_hardest(const ur5e_region *region, const ur5e_params *p, hardest
         }
     }
     out->force = w->force;
-    out->error = UR5E_FMAX(w->force/seen - UR5E_R(1.0), LEAST_ERROR);
+    out->error = w->force/seen - UR5E_R(1.0) + OF_FORCES;
     return w->bounded ? UR5E_BOUNDED : UR5E_OK;
 }
 

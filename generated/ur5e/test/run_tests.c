@@ -1269,7 +1269,7 @@ static void test_linear_error(void)
             worst = fmax(worst, error_of(found, right, LENGTH(found)));
         }
     }
-    const double bound = BOUND(1e-12, 0.0002);
+    const double bound = BOUND(1e-12, 0.0001);
     printf("%-40s error %.1e, bound %.1e\n", name, worst, bound);
     expect(worst <= bound, name, "error within its bound");
 

@@ -257,6 +257,11 @@ def test_impossible_power_laws_are_refused(law: Law, field: str) -> None:
         Contact(body_region("chest"), cover=law).check()
 
 
+def test_anything_above_nothing_is_a_stiffness() -> None:
+    for law in (PowerLaw(1e-6), PowerLaw(1e12), PowerLaw(1e6, 1.0)):
+        law.check()
+
+
 def test_a_new_law_is_a_class_of_its_own() -> None:
     """As docs/bodies.md shows it: nothing else is touched."""
 
