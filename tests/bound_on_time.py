@@ -18,13 +18,16 @@ from longest_path import Budget, LongestPath, Rounds
 STEPS_OF_RUN = 6
 """ROBOT_STEPS_OF_RUN of the runtime."""
 
-ITERATIONS, LEVELS, QR_STEPS = 8, 7, 3
-"""Of ``robot_contact.c``, ``robot_impact.h`` and, a row, ``robot_spectrum.c``."""
+ITERATIONS, LEVELS = 3, 7
+"""Of ``robot_contact.c`` and ``robot_impact.h``."""
 
 LIBRARY = {"memcpy": 60, "memset": 60, "powf": 150, "expf": 80, "sinf": 600, "cosf": 600}
 """Instructions of the C library's functions, above what was ever counted."""
 
-NEVER = ("damp", "servo_modes", "pass", "two_body_force", "law_press")
+NEVER = (
+    *("damp", "damp_ahead", "damping_rate", "servo_modes", "pass", "two_body_force", "law_press"),
+    *("force_between", "slip_off"),
+)
 """Functions of servos, of what presses late, of peak forces and of other laws than Hertz's."""
 
 
@@ -56,13 +59,14 @@ def bound_of_driven_safe_speed(package: Generated, image: Path, steps: int) -> i
 def rounds(line: str, name: str, n: int) -> Rounds:
     """Return the rounds of a loop by its source and line."""
     rows, squares = sum(range(2, n)), sum(m * m for m in range(2, n))
+    qr_steps = 2 * n + 2  # MOST_STEPS
     N, modes = name.upper(), n + 2  # one of links and rotors together, one of the body
     table: list[tuple[str, Rounds]] = [
         (r"ticks > 0", Budget()),
         (r"k < TRIALS", Budget(STEPS_OF_RUN)),
         (r"motors >= first", 1),
-        (r"MOST_STEPS", QR_STEPS * n + 1),
-        (r"spectrum.*last > 0", n / (QR_STEPS * n + 1)),
+        (r"step <= most", qr_steps + 1),
+        (r"spectrum.*last > 0", n / (qr_steps + 1)),
         (r"spectrum.*first > 0", n - 2),
         (r"spectrum.*k = first; k < last", n - 1),
         (r"spectrum.*k \+ 1 < size", n - 1),
@@ -71,9 +75,13 @@ def rounds(line: str, name: str, n: int) -> Rounds:
         (r"spectrum.*j = first; j < size", squares / rows),
         (r"spectrum.*j = first; j <= i", (squares + rows) / 2 / rows),
         (r"spectrum.*k = size - 3", n - 2),
-        (r"spectrum.*i = k \+ 1", rows / (n - 2)),
-        (r"spectrum.*j = k \+ 1", squares / rows),
-        (r"compliance.*m < l", (n - 1) / 2),
+        (r"spectrum.*i = next \+ 1", (n - 1) / 2),
+        (r"spectrum.*j = next \+ 1", (2 * n - 3) / 3),
+        (r"compliance.*m = l \+ 1", (n - 1) / 3),
+        (r"compliance.*m = i \+ 1", (n - 1) / 2),
+        (r"compliance.*l <= j", (n + 2) / 3),
+        (r"compliance.*(l = i; l >= 0)", (n + 1) / 2),
+        (r"compliance.*i = end", n),
         (r"(j|l) <= i|l = i; l <", (n + 1) / 2),
         (r"linear.*(i = j \+ 1|k < [ij];|k = i \+ 1)", (n - 1) / 2),
         (r"ITERATIONS", ITERATIONS),

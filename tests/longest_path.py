@@ -129,16 +129,22 @@ class LongestPath:
         return {body[0].address: name for name, body in self.functions.items() if body}
 
     def line_of(self, address: int) -> tuple[str, int, str]:
-        """Return source, number and text of the line that begins the loop an address belongs to."""
-        said = run("arm-none-eabi-addr2line", "-e", self.image, hex(address)).split(" ")[0].strip()
-        file, _, number = said.rpartition(":")
-        assert number.isdigit(), (hex(address), said)
-        lines = Path(file).read_text().splitlines()
-        at = int(number) - 1
-        indent = len(lines[at]) - len(lines[at].lstrip()) + 1
-        while not (LOOP.match(lines[at]) and len(lines[at]) - len(lines[at].lstrip()) < indent):
-            at -= 1
-        return Path(file).name, at + 1, lines[at].strip()
+        """Return source, number and text of the line that begins the loop an address belongs to.
+
+        It may be in a function without a loop that was inlined into one with it.
+        """
+        said = run("arm-none-eabi-addr2line", "-i", "-e", self.image, hex(address))
+        for frame in said.splitlines():
+            file, _, number = frame.split(" ")[0].rpartition(":")
+            assert number.isdigit(), (hex(address), said)
+            lines = Path(file).read_text().splitlines()
+            at = int(number) - 1
+            indent = len(lines[at]) - len(lines[at].lstrip()) + 1
+            while not lines[at].startswith("{"):
+                if LOOP.match(lines[at]) and len(lines[at]) - len(lines[at].lstrip()) < indent:
+                    return Path(file).name, at + 1, lines[at].strip()
+                at -= 1
+        raise AssertionError(hex(address), said)
 
     def of(self, name: str) -> Cost:
         """Return the bound of a function, what it calls included."""

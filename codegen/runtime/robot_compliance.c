@@ -16,6 +16,9 @@
 /* A mode of less than this share of all squared periods has no digits left. */
 #define NOISE (ROBOT_R(8.0)*ROBOT_EPSILON)
 
+/* Square of what may be left beside the diagonal of a compliance: energies change by less than its root. */
+#define SMALL ROBOT_R(1e-8)
+
 #if ROBOT_STRUCTURED
 /* S, R and b. */
 typedef struct {
@@ -35,6 +38,7 @@ static void scale_by_springs(const robot_arrival *arrival, const robot_params *p
         out->b[i] = arrival->row[i]*soft[i];
         for (int j = 0; j <= i; ++j) {
             out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+            out->S[j][i] = out->S[i][j];
         }
     }
 }
@@ -43,12 +47,12 @@ static void scale_by_springs(const robot_arrival *arrival, const robot_params *p
 static int spring_modes(robot_matrix C, const robot_real b[ROBOT_N], robot_modes *modes)
 {
     robot_real squares[ROBOT_N];
-    robot_matrix vectors;
+    robot_real (*const vectors)[ROBOT_SYSTEM] = &modes->shape[modes->rigid];
     robot_real all = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_N; ++i) {
         all += C[i][i];
     }
-    if (!robot_spectrum(ROBOT_N, C, squares, vectors)) {
+    if (!robot_spectrum(ROBOT_N, SMALL, C, squares, vectors)) {
         return ROBOT_SINGULAR;
     }
     const robot_real least = NOISE*all;
@@ -60,10 +64,7 @@ static int spring_modes(robot_matrix C, const robot_real b[ROBOT_N], robot_modes
         robot_real row = ROBOT_R(0.0);
         for (int j = 0; j < ROBOT_N; ++j) {
             row += vectors[i][j]*b[j];
-            modes->shape[at][j] = vectors[i][j]*rate;
-        }
-        for (int j = ROBOT_N; j < ROBOT_SYSTEM; ++j) {
-            modes->shape[at][j] = ROBOT_R(0.0);
+            vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
         modes->noise[at] = ROBOT_R(0.0);
@@ -78,26 +79,18 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
     robot_real *drift)
 {
     spring_scaled s;
-    robot_matrix C;
     scale_by_springs(arrival, p, &s);
-    for (int i = 0; i < ROBOT_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            C[i][j] = s.S[i][j];
-            C[j][i] = s.S[i][j];
-        }
-    }
     *drift = ROBOT_R(1.0);
     modes->rigid = 0;
-    return spring_modes(C, s.b, modes);
+    return spring_modes(s.S, s.b, modes);
 }
 
 int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real carried[ROBOT_N])
 {
+    const int end = ROBOT_N - 1;
     spring_scaled s;
-    robot_matrix G;
-    robot_matrix Y; /* columns of L_G^-1 L' */
-    robot_matrix C;
+    robot_matrix G; /* and then C; from its end to its start: so Cholesky's factors are upper ones, G = U U' */
     robot_real z[ROBOT_N];
     scale_by_springs(arrival, p, &s);
     if (!robot_cholesky(ROBOT_N, s.S)) {
@@ -105,7 +98,7 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     }
     for (int i = 0; i < ROBOT_N; ++i) {
         z[i] = s.b[i];
-        robot_real stiff[ROBOT_N] = {0};
+        robot_real stiff[ROBOT_N];
         for (int l = i; l < ROBOT_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }
@@ -114,34 +107,43 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
             for (int l = i; l < ROBOT_N; ++l) {
                 sum += stiff[l]*s.S[l][j];
             }
-            G[i][j] = sum;
+            G[end - j][end - i] = sum;
         }
     }
     if (!robot_cholesky(ROBOT_N, G)) {
         return ROBOT_SINGULAR;
     }
     robot_forward(ROBOT_N, s.S, z);
-    robot_forward(ROBOT_N, G, z);
+    for (int i = end; i >= 0; --i) {
+        for (int m = i + 1; m < ROBOT_N; ++m) {
+            z[i] -= G[end - i][end - m]*z[m];
+        }
+        z[i] /= G[end - i][end - i];
+    }
     robot_real together = ROBOT_R(0.0);
-    for (int i = 0; i < ROBOT_N; ++i) { /* column i of L' ends at its row i */
+    for (int i = 0; i < ROBOT_N; ++i) {
+        robot_real *const y = s.S[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
         robot_real sum = ROBOT_R(0.0);
-        for (int l = 0; l < ROBOT_N; ++l) {
-            robot_real rest = l <= i ? s.S[i][l] : ROBOT_R(0.0);
-            for (int m = 0; m < l; ++m) {
-                rest -= G[l][m]*Y[i][m];
+        for (int l = i; l >= 0; --l) {
+            const robot_real *const U = G[end - l];
+            robot_real rest = y[l];
+            for (int m = l + 1; m <= i; ++m) {
+                rest -= U[end - m]*y[m];
             }
-            Y[i][l] = rest/G[l][l];
-            sum += Y[i][l]*z[l];
+            y[l] = rest/U[end - l];
+            sum += y[l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
+    }
+    for (int i = 0; i < ROBOT_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             robot_real entry = ROBOT_R(0.0);
-            for (int l = 0; l < ROBOT_N; ++l) {
-                entry += Y[i][l]*Y[j][l];
+            for (int l = 0; l <= j; ++l) {
+                entry += s.S[i][l]*s.S[j][l];
             }
-            C[i][j] = entry;
-            C[j][i] = entry;
+            G[i][j] = entry;
+            G[j][i] = entry;
         }
     }
     if (!(together > ROBOT_R(0.0) && together <= ROBOT_REAL_MAX)) {
@@ -155,7 +157,7 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     for (int j = 0; j < ROBOT_SYSTEM; ++j) {
         modes->shape[0][j] = ROBOT_R(0.0);
     }
-    return spring_modes(C, carried, modes);
+    return spring_modes(G, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

@@ -47,20 +47,21 @@ typedef struct {
     robot_real shape[ROBOT_MODES][ROBOT_SYSTEM];
 } robot_modes;
 
-/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+/* One step of a mode: what amplitude, rate and force do. */
 typedef struct {
     robot_real cosine, sine; /* cos(wh), sin(wh)/w */
     robot_real back; /* -w sin(wh) */
-    robot_real push[2]; /* on the amplitude, of the forces at start and end */
-    robot_real kick[2]; /* on the rate */
+    robot_real push; /* row (1 - cos(wh))/w^2: on the amplitude, of a force that stays */
+    robot_real late; /* row (wh - sin(wh))/(w^3 h): the same of one that grows from none */
 } robot_mode_step;
 
 /* Steps of one length. */
 typedef struct {
     robot_real h; /* s */
     robot_real relax; /* what is left of the body's own deflection after a step out of contact */
-    robot_real push[2]; /* on the contact point */
-    robot_real kick[2];
+    robot_real per; /* 1/h */
+    robot_real push, late; /* on the contact point */
+    robot_real kick; /* on its velocity, of a force that stays; of one that grows it is push/h */
     robot_mode_step mode[ROBOT_MODES];
 } robot_level;
 
@@ -78,6 +79,7 @@ typedef struct {
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     robot_real damping[ROBOT_DAMPERS];
+    robot_real together[ROBOT_DAMPERS][ROBOT_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     robot_level level[ROBOT_LEVELS];
 } robot_phase;
@@ -121,7 +123,6 @@ typedef struct {
 typedef struct {
     robot_real force; /* largest, N */
     robot_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } robot_peak;
@@ -230,6 +231,8 @@ int robot_mobilities(const robot_arrival *arrival, const robot_params *p, robot_
 /* The same with links and rotors as one; 0 if their mass is not positive definite. */
 robot_real robot_together(const robot_arrival *arrival, const robot_params *p);
 
+/* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
+robot_real robot_damping_rate(robot_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase *phase);
 
@@ -240,7 +243,10 @@ void robot_forward(int size, robot_matrix L, robot_real *x);
 void robot_backward(int size, robot_matrix L, robot_real *x);
 /* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
 bool robot_diagonalise(int size, robot_matrix A, robot_matrix X);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool robot_spectrum(int size, robot_matrix A, robot_real *values, robot_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool robot_spectrum(int size, robot_real small, robot_matrix A, robot_real *values, robot_matrix vectors);
 
 #endif

@@ -8,7 +8,7 @@
  */
 #include "robot_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
 {
     if (!robot_cholesky(size, mass)) {
@@ -19,7 +19,7 @@ static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? ROBOT_R(1.0) : ROBOT_R(0.0);
         }
-        robot_backward(size, mass, column);
+        robot_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -27,20 +27,20 @@ static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
     return true;
 }
 
-/* A = X'KX. */
+/* A = X'KX of such an X. */
 static void congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
 {
     for (int i = 0; i < size; ++i) {
         robot_real pulled[ROBOT_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = ROBOT_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             robot_real sum = ROBOT_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -49,6 +49,7 @@ static void congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
     }
 }
 
+#if !ROBOT_STRUCTURED
 /*
  * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
@@ -89,6 +90,7 @@ static bool find_modes(int size, const int *places, robot_matrix L, robot_matrix
     modes->fastest = ROBOT_REAL_MAX;
     return found;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const robot_arrival *arrival, robot_real pull[ROBOT_SYSTEM])
@@ -199,29 +201,43 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
 int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real *drift)
 {
-    robot_matrix mass;
-    robot_matrix K;
+    robot_matrix mass; /* and then X'KX */
     robot_matrix X;
-    robot_matrix A;
-    int places[ROBOT_SYSTEM];
-    robot_real row[ROBOT_SYSTEM];
+    robot_real (*const K)[ROBOT_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < ROBOT_N ? arrival->row[i] : ROBOT_R(0.0);
-    }
     for (int i = 0; i < ROBOT_N; ++i) {
         const int motor = ROBOT_SYSTEM - ROBOT_N + i;
         K[motor][motor] += ROBOT_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(ROBOT_SYSTEM, mass, X)) {
         return ROBOT_SINGULAR;
     }
-    congruent(ROBOT_SYSTEM, K, X, A);
-    if (!find_modes(ROBOT_SYSTEM, places, mass, A, X, row, modes)) {
+    congruent(ROBOT_SYSTEM, K, X, mass);
+    robot_real all = ROBOT_R(0.0);
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        all += ROBOT_FABS(mass[i][i]);
+    }
+    if (!robot_spectrum(ROBOT_SYSTEM, ROBOT_EPSILON*ROBOT_EPSILON, mass, modes->squared, K)) {
         return ROBOT_SINGULAR;
     }
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        robot_real row = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            robot_real shape = ROBOT_R(0.0);
+            for (int k = j; k < ROBOT_SYSTEM; ++k) { /* X has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            row += j < ROBOT_N ? arrival->row[j]*shape : ROBOT_R(0.0);
+        }
+        modes->noise[i] = ROBOT_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
+        modes->row[i] = row;
+        modes->start[i] = ROBOT_R(0.0);
+    }
+    modes->count = ROBOT_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = ROBOT_REAL_MAX;
     *drift = ROBOT_R(1.0);
     robot_real pull[ROBOT_SYSTEM];
     pulled_on(arrival, pull);

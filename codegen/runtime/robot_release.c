@@ -2,6 +2,12 @@
 /* What is left of an impact of robot_ when its motors are let go, in modes of loose motors. */
 #include "robot_state.h"
 
+/*
+ * Level of the first step in contact: where motors are on the links themselves these have another acceleration at
+ * once; behind springs only its second rate is another, and a quarter of the longest step does.
+ */
+#define LET_GO (ROBOT_ELASTIC ? 2 : ROBOT_LEVELS - 1)
+
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const robot_state *s, int size, robot_real *place, robot_real *rate)
 {
@@ -51,6 +57,9 @@ void robot_release(robot_state *s)
     robot_real rate[ROBOT_SYSTEM];
     robot_real a[ROBOT_MODES];
     robot_real b[ROBOT_MODES];
+    if (s->phase->damped) {
+        robot_damp(s->phase, s->speed, s->owed, s->rate);
+    }
     coordinates_of(s, ROBOT_STRUCTURED && impact->motors == ROBOT_MOTORS_DRIVEN ? ROBOT_N : ROBOT_SYSTEM, place, rate);
 #if ROBOT_STRUCTURED
     const robot_modes *const before = &s->phase->modes;
@@ -131,11 +140,7 @@ void robot_release(robot_state *s)
     s->x += more*s->f;
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
-    s->phase = next;
-    s->drifted = ROBOT_R(0.0);
-    s->level = ROBOT_LEVELS - 1; /* the force may turn at once, and other modes stand */
     s->past = s->past > 1 ? 1 : s->past;
-    s->even = 0;
-    s->ticks = next->steps*(1 << (ROBOT_LEVELS - 1));
+    robot_begin_phase(next, s->touching ? LET_GO : 0, s);
 }
 

@@ -18,20 +18,22 @@ typedef struct {
     const robot_phase *phase;
     robot_real speed;
     robot_real scale; /* of forces, N */
+    const robot_level *step; /* of the next one's length */
     int level;
     int even; /* steps in a row of this length */
     robot_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     robot_real time;
-    robot_real drifted; /* by the motors, m */
+    robot_real drift, drifted; /* by the motors, m/s and m */
     robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
+    robot_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
     robot_real h, h_before, x; /* last steps, contact point */
     robot_real bump; /* what the bend adds to the force on average of the last step */
     robot_real f, rise; /* force, and by how much it grew in the last step */
     robot_real u, u_before; /* deformation of the skin and of what stands */
-    robot_real now, root; /* depth of the skin, and its root where it is Hertz's */
+    robot_real now; /* depth of the skin */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
     robot_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -53,11 +55,16 @@ typedef struct {
     robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
     robot_real x, v; /* of the contact point without the force at the end */
     robot_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    robot_real u, depth, root;
+    robot_real u, depth;
 } robot_trial;
+
+/* Goes over to the steps of a phase, the first of a level. */
+void robot_begin_phase(const robot_phase *phase, int level, robot_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate);
+/* Rates of modes, damped until halfway through the next step. */
+void robot_damp_ahead(const robot_state *s, robot_real *rate);
 
 /* Moves all modes by a step without forces. */
 void robot_glide(const robot_state *s, robot_trial *t);

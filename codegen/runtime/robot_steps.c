@@ -42,7 +42,7 @@ static void exchange(robot_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < ROBOT_SYSTEM && i != j; ++k) {
+    for (int k = 0; k < ROBOT_SYSTEM; ++k) {
         const robot_real shape = modes->shape[i][k];
         modes->shape[i][k] = modes->shape[j][k];
         modes->shape[j][k] = shape;
@@ -85,61 +85,61 @@ static void let_stand(const robot_impact *impact, robot_real contact, bool relea
             phase->compliance += weight/modes->squared[i];
         } else {
             phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
-            exchange(modes, active < i ? active : i, i); /* it is never more */
+            if (active < i) {
+                exchange(modes, active, i);
+            }
             ++active;
         }
     }
     phase->active = active < modes->count ? active : modes->count;
 }
 
-/* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
-static void mode_steps(robot_phase *phase, int i)
+/*
+ * Steps of all modes at all levels: a series for the shortest, from which the others follow by the sine and
+ * cosine of twice an angle.
+ */
+static void mode_steps(robot_phase *phase)
 {
+    const robot_modes *const modes = &phase->modes;
     const robot_real one = ROBOT_R(1.0);
-    const robot_real row = phase->modes.row[i];
     robot_real h = phase->level[ROBOT_LEVELS - 1].h;
-    robot_real t = phase->modes.squared[i]*h*h;
-    /* sin(a)/a, (1 - cos(a))/a^2 and (a - sin(a))/a^3 over t = a^2 */
-    robot_real lean = ROBOT_R(1.0)/ROBOT_R(6.0)
-        - t*(one/ROBOT_R(120.0) - t*(one/ROBOT_R(5040.0) - t/ROBOT_R(362880.0)));
-    robot_real bend = ROBOT_R(0.5)
-        - t*(one/ROBOT_R(24.0) - t*(one/ROBOT_R(720.0) - t/ROBOT_R(40320.0)));
-    robot_real sine = one - t*lean;
+    robot_real sine[ROBOT_MODES]; /* sin(wh)/w */
+    robot_real push[ROBOT_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
+    robot_real late[ROBOT_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    for (int i = 0; i < phase->active; ++i) {
+        const robot_real t = modes->squared[i]*h*h;
+        late[i] = h*h*(one/ROBOT_R(6.0) - t*(one/ROBOT_R(120.0) - t*(one/ROBOT_R(5040.0) - t/ROBOT_R(362880.0))));
+        push[i] = h*h*(ROBOT_R(0.5) - t*(one/ROBOT_R(24.0) - t*(one/ROBOT_R(720.0) - t/ROBOT_R(40320.0))));
+        sine[i] = h*(one - modes->squared[i]*late[i]);
+    }
     for (int k = ROBOT_LEVELS - 1; k >= 0; --k) {
         robot_level *const level = &phase->level[k];
-        robot_mode_step *const step = &level->mode[i];
-        step->cosine = one - t*bend;
-        step->sine = h*sine;
-        step->back = -phase->modes.squared[i]*h*sine;
-        step->push[0] = row*h*h*(bend - lean);
-        step->push[1] = row*h*h*lean;
-        step->kick[0] = row*h*(sine - bend);
-        step->kick[1] = row*h*bend;
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] += row*step->push[end];
-            level->kick[end] += row*step->kick[end];
+        const robot_real per = one/h;
+        robot_real pushes = ROBOT_R(0.0);
+        robot_real lates = ROBOT_R(0.0);
+        robot_real kicks = ROBOT_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            robot_mode_step *const step = &level->mode[i];
+            const robot_real row = modes->row[i];
+            const robot_real cosine = one - modes->squared[i]*push[i];
+            step->cosine = cosine;
+            step->sine = sine[i];
+            step->back = -modes->squared[i]*sine[i];
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
+            push[i] = ROBOT_R(2.0)*sine[i]*sine[i];
+            sine[i] *= ROBOT_R(2.0)*cosine;
         }
-        lean = ROBOT_R(0.25)*(lean + sine*bend);
-        bend = ROBOT_R(0.5)*sine*sine;
-        sine *= step->cosine;
-        t *= ROBOT_R(4.0);
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* Most that joints and a servo's gains damp a mode, 1/s. */
-static robot_real damping_rate(const robot_phase *phase)
-{
-    robot_real rate = ROBOT_R(0.0);
-    for (int i = 0; i < ROBOT_DAMPERS && phase->damped; ++i) {
-        robot_real of_motor = ROBOT_R(0.0);
-        for (int k = 0; k < phase->modes.count; ++k) {
-            const robot_real shape = phase->modes.shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS + i];
-            of_motor += shape*shape;
-        }
-        rate = ROBOT_FMAX(rate, phase->damping[i]*of_motor);
-    }
-    return rate;
 }
 
 void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase *phase)
@@ -175,23 +175,21 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
     const robot_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : ROBOT_R(0.0);
     const robot_real slowest = ROBOT_FMAX(ROBOT_R(1.0)/time, rise);
-    const robot_real rate = ROBOT_FMAX(slowest, ROBOT_FMAX(ROBOT_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const robot_real rate = ROBOT_FMAX(slowest, ROBOT_FMAX(ROBOT_SQRT(rate2), robot_damping_rate(phase)/SERVO_STEP));
     const robot_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
-    robot_real h = wanted < MOST ? time/(robot_real)phase->steps : ROBOT_R(1.0)/rate;
-    for (int k = 0; k < ROBOT_LEVELS; ++k) {
-        robot_level *const level = &phase->level[k];
-        level->h = h;
-        level->relax = region->damping > ROBOT_R(0.0)
-            ? ROBOT_EXP(-ROBOT_FMIN(region->stiffness*h/region->damping, ROBOT_R(80.0))) : ROBOT_R(0.0);
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] = ROBOT_R(0.0);
-            level->kick[end] = ROBOT_R(0.0);
-        }
-        h *= ROBOT_R(0.5);
+    const robot_real h = wanted < MOST ? time/(robot_real)phase->steps : ROBOT_R(1.0)/rate;
+    phase->level[0].h = h;
+    for (int k = 1; k < ROBOT_LEVELS; ++k) {
+        phase->level[k].h = ROBOT_R(0.5)*phase->level[k - 1].h;
     }
-    for (int i = 0; i < phase->active; ++i) {
-        mode_steps(phase, i);
+    const robot_real shortest = region->stiffness*phase->level[ROBOT_LEVELS - 1].h;
+    robot_real relax = region->damping > ROBOT_R(0.0)
+        ? ROBOT_EXP(-ROBOT_FMIN(shortest/region->damping, ROBOT_R(80.0))) : ROBOT_R(0.0);
+    for (int k = ROBOT_LEVELS - 1; k >= 0; --k) {
+        phase->level[k].relax = relax;
+        relax *= relax;
     }
+    mode_steps(phase);
     phase->ready = true;
 }

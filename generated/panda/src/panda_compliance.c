@@ -16,6 +16,9 @@
 /* A mode of less than this share of all squared periods has no digits left. */
 #define NOISE (PANDA_R(8.0)*PANDA_EPSILON)
 
+/* Square of what may be left beside the diagonal of a compliance: energies change by less than its root. */
+#define SMALL PANDA_R(1e-8)
+
 #if PANDA_STRUCTURED
 /* S, R and b. */
 typedef struct {
@@ -35,6 +38,7 @@ static void scale_by_springs(const panda_arrival *arrival, const panda_params *p
         out->b[i] = arrival->row[i]*soft[i];
         for (int j = 0; j <= i; ++j) {
             out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+            out->S[j][i] = out->S[i][j];
         }
     }
 }
@@ -43,12 +47,12 @@ static void scale_by_springs(const panda_arrival *arrival, const panda_params *p
 static int spring_modes(panda_matrix C, const panda_real b[PANDA_N], panda_modes *modes)
 {
     panda_real squares[PANDA_N];
-    panda_matrix vectors;
+    panda_real (*const vectors)[PANDA_SYSTEM] = &modes->shape[modes->rigid];
     panda_real all = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
         all += C[i][i];
     }
-    if (!panda_spectrum(PANDA_N, C, squares, vectors)) {
+    if (!panda_spectrum(PANDA_N, SMALL, C, squares, vectors)) {
         return PANDA_SINGULAR;
     }
     const panda_real least = NOISE*all;
@@ -60,10 +64,7 @@ static int spring_modes(panda_matrix C, const panda_real b[PANDA_N], panda_modes
         panda_real row = PANDA_R(0.0);
         for (int j = 0; j < PANDA_N; ++j) {
             row += vectors[i][j]*b[j];
-            modes->shape[at][j] = vectors[i][j]*rate;
-        }
-        for (int j = PANDA_N; j < PANDA_SYSTEM; ++j) {
-            modes->shape[at][j] = PANDA_R(0.0);
+            vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
         modes->noise[at] = PANDA_R(0.0);
@@ -78,26 +79,18 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
     panda_real *drift)
 {
     spring_scaled s;
-    panda_matrix C;
     scale_by_springs(arrival, p, &s);
-    for (int i = 0; i < PANDA_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            C[i][j] = s.S[i][j];
-            C[j][i] = s.S[i][j];
-        }
-    }
     *drift = PANDA_R(1.0);
     modes->rigid = 0;
-    return spring_modes(C, s.b, modes);
+    return spring_modes(s.S, s.b, modes);
 }
 
 int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real carried[PANDA_N])
 {
+    const int end = PANDA_N - 1;
     spring_scaled s;
-    panda_matrix G;
-    panda_matrix Y; /* columns of L_G^-1 L' */
-    panda_matrix C;
+    panda_matrix G; /* and then C; from its end to its start: so Cholesky's factors are upper ones, G = U U' */
     panda_real z[PANDA_N];
     scale_by_springs(arrival, p, &s);
     if (!panda_cholesky(PANDA_N, s.S)) {
@@ -105,7 +98,7 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     }
     for (int i = 0; i < PANDA_N; ++i) {
         z[i] = s.b[i];
-        panda_real stiff[PANDA_N] = {0};
+        panda_real stiff[PANDA_N];
         for (int l = i; l < PANDA_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }
@@ -114,34 +107,43 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
             for (int l = i; l < PANDA_N; ++l) {
                 sum += stiff[l]*s.S[l][j];
             }
-            G[i][j] = sum;
+            G[end - j][end - i] = sum;
         }
     }
     if (!panda_cholesky(PANDA_N, G)) {
         return PANDA_SINGULAR;
     }
     panda_forward(PANDA_N, s.S, z);
-    panda_forward(PANDA_N, G, z);
+    for (int i = end; i >= 0; --i) {
+        for (int m = i + 1; m < PANDA_N; ++m) {
+            z[i] -= G[end - i][end - m]*z[m];
+        }
+        z[i] /= G[end - i][end - i];
+    }
     panda_real together = PANDA_R(0.0);
-    for (int i = 0; i < PANDA_N; ++i) { /* column i of L' ends at its row i */
+    for (int i = 0; i < PANDA_N; ++i) {
+        panda_real *const y = s.S[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
         panda_real sum = PANDA_R(0.0);
-        for (int l = 0; l < PANDA_N; ++l) {
-            panda_real rest = l <= i ? s.S[i][l] : PANDA_R(0.0);
-            for (int m = 0; m < l; ++m) {
-                rest -= G[l][m]*Y[i][m];
+        for (int l = i; l >= 0; --l) {
+            const panda_real *const U = G[end - l];
+            panda_real rest = y[l];
+            for (int m = l + 1; m <= i; ++m) {
+                rest -= U[end - m]*y[m];
             }
-            Y[i][l] = rest/G[l][l];
-            sum += Y[i][l]*z[l];
+            y[l] = rest/U[end - l];
+            sum += y[l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
+    }
+    for (int i = 0; i < PANDA_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             panda_real entry = PANDA_R(0.0);
-            for (int l = 0; l < PANDA_N; ++l) {
-                entry += Y[i][l]*Y[j][l];
+            for (int l = 0; l <= j; ++l) {
+                entry += s.S[i][l]*s.S[j][l];
             }
-            C[i][j] = entry;
-            C[j][i] = entry;
+            G[i][j] = entry;
+            G[j][i] = entry;
         }
     }
     if (!(together > PANDA_R(0.0) && together <= PANDA_REAL_MAX)) {
@@ -155,7 +157,7 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     for (int j = 0; j < PANDA_SYSTEM; ++j) {
         modes->shape[0][j] = PANDA_R(0.0);
     }
-    return spring_modes(C, carried, modes);
+    return spring_modes(G, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

@@ -47,20 +47,21 @@ typedef struct {
     panda_real shape[PANDA_MODES][PANDA_SYSTEM];
 } panda_modes;
 
-/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+/* One step of a mode: what amplitude, rate and force do. */
 typedef struct {
     panda_real cosine, sine; /* cos(wh), sin(wh)/w */
     panda_real back; /* -w sin(wh) */
-    panda_real push[2]; /* on the amplitude, of the forces at start and end */
-    panda_real kick[2]; /* on the rate */
+    panda_real push; /* row (1 - cos(wh))/w^2: on the amplitude, of a force that stays */
+    panda_real late; /* row (wh - sin(wh))/(w^3 h): the same of one that grows from none */
 } panda_mode_step;
 
 /* Steps of one length. */
 typedef struct {
     panda_real h; /* s */
     panda_real relax; /* what is left of the body's own deflection after a step out of contact */
-    panda_real push[2]; /* on the contact point */
-    panda_real kick[2];
+    panda_real per; /* 1/h */
+    panda_real push, late; /* on the contact point */
+    panda_real kick; /* on its velocity, of a force that stays; of one that grows it is push/h */
     panda_mode_step mode[PANDA_MODES];
 } panda_level;
 
@@ -78,6 +79,7 @@ typedef struct {
     panda_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     panda_real damping[PANDA_DAMPERS];
+    panda_real together[PANDA_DAMPERS][PANDA_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     panda_level level[PANDA_LEVELS];
 } panda_phase;
@@ -121,7 +123,6 @@ typedef struct {
 typedef struct {
     panda_real force; /* largest, N */
     panda_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } panda_peak;
@@ -230,6 +231,8 @@ int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_
 /* The same with links and rotors as one; 0 if their mass is not positive definite. */
 panda_real panda_together(const panda_arrival *arrival, const panda_params *p);
 
+/* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
+panda_real panda_damping_rate(panda_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase *phase);
 
@@ -240,7 +243,10 @@ void panda_forward(int size, panda_matrix L, panda_real *x);
 void panda_backward(int size, panda_matrix L, panda_real *x);
 /* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
 bool panda_diagonalise(int size, panda_matrix A, panda_matrix X);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool panda_spectrum(int size, panda_matrix A, panda_real *values, panda_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *values, panda_matrix vectors);
 
 #endif

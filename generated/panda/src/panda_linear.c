@@ -2,15 +2,6 @@
 /* Linear algebra of panda_: Cholesky's factors, and eigenvectors by Jacobi's rotations. */
 #include "panda_impact.h"
 
-/*
- * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
- * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
- * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
- */
-#define TURNED PANDA_R(1e-8)
-/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
-#define SWEEPS 16
-
 bool panda_cholesky(int size, panda_matrix A)
 {
     for (int j = 0; j < size; ++j) {
@@ -56,6 +47,16 @@ void panda_backward(int size, panda_matrix L, panda_real *x)
         x[i] = rest/L[i][i];
     }
 }
+
+#if !PANDA_STRUCTURED
+/*
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
+ * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
+ * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
+ */
+#define TURNED PANDA_R(1e-8)
+/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
+#define SWEEPS 16
 
 /* Turns columns i and j of a matrix by an angle. */
 static void turn_columns(int size, panda_matrix X, int i, int j, panda_real c, panda_real s)
@@ -112,3 +113,4 @@ bool panda_diagonalise(int size, panda_matrix A, panda_matrix X)
     }
     return false;
 }
+#endif

@@ -8,7 +8,7 @@
  */
 #include "panda_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
 {
     if (!panda_cholesky(size, mass)) {
@@ -19,7 +19,7 @@ static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? PANDA_R(1.0) : PANDA_R(0.0);
         }
-        panda_backward(size, mass, column);
+        panda_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -27,20 +27,20 @@ static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
     return true;
 }
 
-/* A = X'KX. */
+/* A = X'KX of such an X. */
 static void congruent(int size, panda_matrix K, panda_matrix X, panda_matrix A)
 {
     for (int i = 0; i < size; ++i) {
         panda_real pulled[PANDA_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = PANDA_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             panda_real sum = PANDA_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -49,6 +49,7 @@ static void congruent(int size, panda_matrix K, panda_matrix X, panda_matrix A)
     }
 }
 
+#if !PANDA_STRUCTURED
 /*
  * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
@@ -89,6 +90,7 @@ static bool find_modes(int size, const int *places, panda_matrix L, panda_matrix
     modes->fastest = PANDA_REAL_MAX;
     return found;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const panda_arrival *arrival, panda_real pull[PANDA_SYSTEM])
@@ -199,29 +201,43 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
 int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift)
 {
-    panda_matrix mass;
-    panda_matrix K;
+    panda_matrix mass; /* and then X'KX */
     panda_matrix X;
-    panda_matrix A;
-    int places[PANDA_SYSTEM];
-    panda_real row[PANDA_SYSTEM];
+    panda_real (*const K)[PANDA_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < PANDA_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < PANDA_N ? arrival->row[i] : PANDA_R(0.0);
-    }
     for (int i = 0; i < PANDA_N; ++i) {
         const int motor = PANDA_SYSTEM - PANDA_N + i;
         K[motor][motor] += PANDA_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(PANDA_SYSTEM, mass, X)) {
         return PANDA_SINGULAR;
     }
-    congruent(PANDA_SYSTEM, K, X, A);
-    if (!find_modes(PANDA_SYSTEM, places, mass, A, X, row, modes)) {
+    congruent(PANDA_SYSTEM, K, X, mass);
+    panda_real all = PANDA_R(0.0);
+    for (int i = 0; i < PANDA_SYSTEM; ++i) {
+        all += PANDA_FABS(mass[i][i]);
+    }
+    if (!panda_spectrum(PANDA_SYSTEM, PANDA_EPSILON*PANDA_EPSILON, mass, modes->squared, K)) {
         return PANDA_SINGULAR;
     }
+    for (int i = 0; i < PANDA_SYSTEM; ++i) {
+        panda_real row = PANDA_R(0.0);
+        for (int j = 0; j < PANDA_SYSTEM; ++j) {
+            panda_real shape = PANDA_R(0.0);
+            for (int k = j; k < PANDA_SYSTEM; ++k) { /* X has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            row += j < PANDA_N ? arrival->row[j]*shape : PANDA_R(0.0);
+        }
+        modes->noise[i] = PANDA_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
+        modes->row[i] = row;
+        modes->start[i] = PANDA_R(0.0);
+    }
+    modes->count = PANDA_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = PANDA_REAL_MAX;
     *drift = PANDA_R(1.0);
     panda_real pull[PANDA_SYSTEM];
     pulled_on(arrival, pull);

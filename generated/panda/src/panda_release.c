@@ -2,6 +2,12 @@
 /* What is left of an impact of panda_ when its motors are let go, in modes of loose motors. */
 #include "panda_state.h"
 
+/*
+ * Level of the first step in contact: where motors are on the links themselves these have another acceleration at
+ * once; behind springs only its second rate is another, and a quarter of the longest step does.
+ */
+#define LET_GO (PANDA_ELASTIC ? 2 : PANDA_LEVELS - 1)
+
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const panda_state *s, int size, panda_real *place, panda_real *rate)
 {
@@ -51,6 +57,9 @@ void panda_release(panda_state *s)
     panda_real rate[PANDA_SYSTEM];
     panda_real a[PANDA_MODES];
     panda_real b[PANDA_MODES];
+    if (s->phase->damped) {
+        panda_damp(s->phase, s->speed, s->owed, s->rate);
+    }
     coordinates_of(s, PANDA_STRUCTURED && impact->motors == PANDA_MOTORS_DRIVEN ? PANDA_N : PANDA_SYSTEM, place, rate);
 #if PANDA_STRUCTURED
     const panda_modes *const before = &s->phase->modes;
@@ -131,11 +140,7 @@ void panda_release(panda_state *s)
     s->x += more*s->f;
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
-    s->phase = next;
-    s->drifted = PANDA_R(0.0);
-    s->level = PANDA_LEVELS - 1; /* the force may turn at once, and other modes stand */
     s->past = s->past > 1 ? 1 : s->past;
-    s->even = 0;
-    s->ticks = next->steps*(1 << (PANDA_LEVELS - 1));
+    panda_begin_phase(next, s->touching ? LET_GO : 0, s);
 }
 

@@ -3,19 +3,18 @@
  * Eigenvectors of a symmetric matrix of panda_: Householder's reflections to three diagonals, then QR steps
  * with implicit shifts (Golub and Van Loan, Matrix Computations, 8.3).
  *
- * Of a compliance the slow modes, which count, come out with all their digits; the fastest keep few
- * when there are frequencies a thousand times lower. Joints come in the order from the base, so that
- * compliances fall from the first row on, and small eigenvalues are found first, at the end.
+ * Errors are as for the largest eigenvalue: of a compliance the slow modes, which count, come out with all
+ * their digits; the fastest keep few when there are frequencies a thousand times lower. Joints come in the order
+ * from the base, so that compliances fall from the first row on, and small eigenvalues are found first, at the end.
  */
 #include "panda_impact.h"
 
 /*
- * Square of an entry beside the diagonal, over the product of its neighbours on it, below which it counts
- * as none: energies change by less than its root.
+ * Steps of QR, which takes one an eigenvalue to four digits and two to all: of 60,000 compliances of seven joints
+ * none took more than 13, of as many servos of 14 coordinates none more than 30. What is not done by then fails.
  */
-#define SMALL PANDA_R(1e-8)
-/* QR takes 1 to 2 steps an eigenvalue; from there on it is not going to end. */
-#define MOST_STEPS 3
+#define MOST_STEPS(size) (2*(size) + 2)
+#define MOST_STEPS_TO_ALL_DIGITS(size) (3*(size))
 
 /* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
 static void turn(int first, int size, const panda_real *v, panda_real scale, panda_matrix A)
@@ -69,24 +68,31 @@ static void reflect(int size, panda_matrix A, panda_real *d, panda_real *e, pand
         }
     }
     d[size - 1] = A[size - 1][size - 1];
-    for (int i = 0; i < size; ++i) {
-        for (int j = 0; j < size; ++j) {
-            Q[i][j] = PANDA_R(0.0);
-        }
-        Q[i][i] = PANDA_R(1.0);
-    }
+    Q[size - 1][size - 1] = PANDA_R(1.0);
     for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
         const panda_real *const v = A[k];
-        for (int i = k + 1; i < size && scale[k] > PANDA_R(0.0); ++i) {
+        const int next = k + 1; /* row and column that were none but for a 1 where they meet */
+        const panda_real lead = scale[k]*v[next];
+        Q[next][next] = PANDA_R(1.0) - lead*v[next];
+        for (int j = next + 1; j < size; ++j) {
+            Q[next][j] = -lead*v[j];
+        }
+        for (int i = next + 1; i < size; ++i) {
             panda_real along = PANDA_R(0.0);
-            for (int j = k + 1; j < size; ++j) {
+            for (int j = next + 1; j < size; ++j) {
                 along += Q[i][j]*v[j];
             }
             along *= scale[k];
-            for (int j = k + 1; j < size; ++j) {
+            for (int j = next + 1; j < size; ++j) {
                 Q[i][j] -= along*v[j];
             }
+            Q[i][next] = -along*v[next];
         }
+    }
+    Q[0][0] = PANDA_R(1.0);
+    for (int i = 1; i < size; ++i) {
+        Q[0][i] = PANDA_R(0.0);
+        Q[i][0] = PANDA_R(0.0);
     }
 }
 
@@ -132,12 +138,12 @@ static void chase(int first, int last, int size, panda_real *d, panda_real *e, p
 }
 
 /* Whether an entry beside the diagonal is more than none. */
-static bool counts(int row, const panda_real *d, const panda_real *e, panda_real noise)
+static bool counts(int row, const panda_real *d, const panda_real *e, panda_real small, panda_real noise)
 {
-    return e[row]*e[row] > noise + SMALL*PANDA_FABS(d[row]*d[row + 1]);
+    return e[row]*e[row] > noise + small*PANDA_FABS(d[row]*d[row + 1]);
 }
 
-bool panda_spectrum(int size, panda_matrix A, panda_real *values, panda_matrix vectors)
+bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *values, panda_matrix vectors)
 {
     panda_real e[PANDA_SYSTEM];
     panda_real all = PANDA_R(0.0);
@@ -147,15 +153,16 @@ bool panda_spectrum(int size, panda_matrix A, panda_real *values, panda_matrix v
     }
     const panda_real noise = PANDA_EPSILON*PANDA_EPSILON*all*all;
     int last = size - 1;
-    for (int step = 0; step <= MOST_STEPS*size; ++step) {
-        while (last > 0 && !counts(last - 1, values, e, noise)) {
+    const int most = small > PANDA_EPSILON ? MOST_STEPS(size) : MOST_STEPS_TO_ALL_DIGITS(size);
+    for (int step = 0; step <= most; ++step) {
+        while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
         }
         if (last == 0) {
             return true;
         }
         int first = last - 1;
-        while (first > 0 && counts(first - 1, values, e, noise)) {
+        while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
         chase(first, last, size, values, e, vectors);

@@ -18,20 +18,22 @@ typedef struct {
     const panda_phase *phase;
     panda_real speed;
     panda_real scale; /* of forces, N */
+    const panda_level *step; /* of the next one's length */
     int level;
     int even; /* steps in a row of this length */
     panda_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     panda_real time;
-    panda_real drifted; /* by the motors, m */
+    panda_real drift, drifted; /* by the motors, m/s and m */
     panda_real amplitude[PANDA_MODES], rate[PANDA_MODES];
+    panda_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
     panda_real h, h_before, x; /* last steps, contact point */
     panda_real bump; /* what the bend adds to the force on average of the last step */
     panda_real f, rise; /* force, and by how much it grew in the last step */
     panda_real u, u_before; /* deformation of the skin and of what stands */
-    panda_real now, root; /* depth of the skin, and its root where it is Hertz's */
+    panda_real now; /* depth of the skin */
     panda_real rest; /* deflection of the body out of contact */
     panda_real depth; /* of the skin at the largest force so far */
     panda_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -53,11 +55,16 @@ typedef struct {
     panda_real amplitude[PANDA_MODES], rate[PANDA_MODES];
     panda_real x, v; /* of the contact point without the force at the end */
     panda_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    panda_real u, depth, root;
+    panda_real u, depth;
 } panda_trial;
+
+/* Goes over to the steps of a phase, the first of a level. */
+void panda_begin_phase(const panda_phase *phase, int level, panda_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, panda_real *rate);
+/* Rates of modes, damped until halfway through the next step. */
+void panda_damp_ahead(const panda_state *s, panda_real *rate);
 
 /* Moves all modes by a step without forces. */
 void panda_glide(const panda_state *s, panda_trial *t);

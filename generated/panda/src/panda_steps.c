@@ -42,7 +42,7 @@ static void exchange(panda_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < PANDA_SYSTEM && i != j; ++k) {
+    for (int k = 0; k < PANDA_SYSTEM; ++k) {
         const panda_real shape = modes->shape[i][k];
         modes->shape[i][k] = modes->shape[j][k];
         modes->shape[j][k] = shape;
@@ -85,61 +85,61 @@ static void let_stand(const panda_impact *impact, panda_real contact, bool relea
             phase->compliance += weight/modes->squared[i];
         } else {
             phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
-            exchange(modes, active < i ? active : i, i); /* it is never more */
+            if (active < i) {
+                exchange(modes, active, i);
+            }
             ++active;
         }
     }
     phase->active = active < modes->count ? active : modes->count;
 }
 
-/* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
-static void mode_steps(panda_phase *phase, int i)
+/*
+ * Steps of all modes at all levels: a series for the shortest, from which the others follow by the sine and
+ * cosine of twice an angle.
+ */
+static void mode_steps(panda_phase *phase)
 {
+    const panda_modes *const modes = &phase->modes;
     const panda_real one = PANDA_R(1.0);
-    const panda_real row = phase->modes.row[i];
     panda_real h = phase->level[PANDA_LEVELS - 1].h;
-    panda_real t = phase->modes.squared[i]*h*h;
-    /* sin(a)/a, (1 - cos(a))/a^2 and (a - sin(a))/a^3 over t = a^2 */
-    panda_real lean = PANDA_R(1.0)/PANDA_R(6.0)
-        - t*(one/PANDA_R(120.0) - t*(one/PANDA_R(5040.0) - t/PANDA_R(362880.0)));
-    panda_real bend = PANDA_R(0.5)
-        - t*(one/PANDA_R(24.0) - t*(one/PANDA_R(720.0) - t/PANDA_R(40320.0)));
-    panda_real sine = one - t*lean;
+    panda_real sine[PANDA_MODES]; /* sin(wh)/w */
+    panda_real push[PANDA_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
+    panda_real late[PANDA_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    for (int i = 0; i < phase->active; ++i) {
+        const panda_real t = modes->squared[i]*h*h;
+        late[i] = h*h*(one/PANDA_R(6.0) - t*(one/PANDA_R(120.0) - t*(one/PANDA_R(5040.0) - t/PANDA_R(362880.0))));
+        push[i] = h*h*(PANDA_R(0.5) - t*(one/PANDA_R(24.0) - t*(one/PANDA_R(720.0) - t/PANDA_R(40320.0))));
+        sine[i] = h*(one - modes->squared[i]*late[i]);
+    }
     for (int k = PANDA_LEVELS - 1; k >= 0; --k) {
         panda_level *const level = &phase->level[k];
-        panda_mode_step *const step = &level->mode[i];
-        step->cosine = one - t*bend;
-        step->sine = h*sine;
-        step->back = -phase->modes.squared[i]*h*sine;
-        step->push[0] = row*h*h*(bend - lean);
-        step->push[1] = row*h*h*lean;
-        step->kick[0] = row*h*(sine - bend);
-        step->kick[1] = row*h*bend;
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] += row*step->push[end];
-            level->kick[end] += row*step->kick[end];
+        const panda_real per = one/h;
+        panda_real pushes = PANDA_R(0.0);
+        panda_real lates = PANDA_R(0.0);
+        panda_real kicks = PANDA_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            panda_mode_step *const step = &level->mode[i];
+            const panda_real row = modes->row[i];
+            const panda_real cosine = one - modes->squared[i]*push[i];
+            step->cosine = cosine;
+            step->sine = sine[i];
+            step->back = -modes->squared[i]*sine[i];
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
+            push[i] = PANDA_R(2.0)*sine[i]*sine[i];
+            sine[i] *= PANDA_R(2.0)*cosine;
         }
-        lean = PANDA_R(0.25)*(lean + sine*bend);
-        bend = PANDA_R(0.5)*sine*sine;
-        sine *= step->cosine;
-        t *= PANDA_R(4.0);
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* Most that joints and a servo's gains damp a mode, 1/s. */
-static panda_real damping_rate(const panda_phase *phase)
-{
-    panda_real rate = PANDA_R(0.0);
-    for (int i = 0; i < PANDA_DAMPERS && phase->damped; ++i) {
-        panda_real of_motor = PANDA_R(0.0);
-        for (int k = 0; k < phase->modes.count; ++k) {
-            const panda_real shape = phase->modes.shape[k][PANDA_SYSTEM - PANDA_DAMPERS + i];
-            of_motor += shape*shape;
-        }
-        rate = PANDA_FMAX(rate, phase->damping[i]*of_motor);
-    }
-    return rate;
 }
 
 void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase *phase)
@@ -175,23 +175,21 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
     const panda_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : PANDA_R(0.0);
     const panda_real slowest = PANDA_FMAX(PANDA_R(1.0)/time, rise);
-    const panda_real rate = PANDA_FMAX(slowest, PANDA_FMAX(PANDA_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const panda_real rate = PANDA_FMAX(slowest, PANDA_FMAX(PANDA_SQRT(rate2), panda_damping_rate(phase)/SERVO_STEP));
     const panda_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
-    panda_real h = wanted < MOST ? time/(panda_real)phase->steps : PANDA_R(1.0)/rate;
-    for (int k = 0; k < PANDA_LEVELS; ++k) {
-        panda_level *const level = &phase->level[k];
-        level->h = h;
-        level->relax = region->damping > PANDA_R(0.0)
-            ? PANDA_EXP(-PANDA_FMIN(region->stiffness*h/region->damping, PANDA_R(80.0))) : PANDA_R(0.0);
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] = PANDA_R(0.0);
-            level->kick[end] = PANDA_R(0.0);
-        }
-        h *= PANDA_R(0.5);
+    const panda_real h = wanted < MOST ? time/(panda_real)phase->steps : PANDA_R(1.0)/rate;
+    phase->level[0].h = h;
+    for (int k = 1; k < PANDA_LEVELS; ++k) {
+        phase->level[k].h = PANDA_R(0.5)*phase->level[k - 1].h;
     }
-    for (int i = 0; i < phase->active; ++i) {
-        mode_steps(phase, i);
+    const panda_real shortest = region->stiffness*phase->level[PANDA_LEVELS - 1].h;
+    panda_real relax = region->damping > PANDA_R(0.0)
+        ? PANDA_EXP(-PANDA_FMIN(shortest/region->damping, PANDA_R(80.0))) : PANDA_R(0.0);
+    for (int k = PANDA_LEVELS - 1; k >= 0; --k) {
+        phase->level[k].relax = relax;
+        relax *= relax;
     }
+    mode_steps(phase);
     phase->ready = true;
 }

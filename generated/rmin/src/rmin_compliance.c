@@ -16,6 +16,9 @@
 /* A mode of less than this share of all squared periods has no digits left. */
 #define NOISE (RMIN_R(8.0)*RMIN_EPSILON)
 
+/* Square of what may be left beside the diagonal of a compliance: energies change by less than its root. */
+#define SMALL RMIN_R(1e-8)
+
 #if RMIN_STRUCTURED
 /* S, R and b. */
 typedef struct {
@@ -35,6 +38,7 @@ static void scale_by_springs(const rmin_arrival *arrival, const rmin_params *p, 
         out->b[i] = arrival->row[i]*soft[i];
         for (int j = 0; j <= i; ++j) {
             out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+            out->S[j][i] = out->S[i][j];
         }
     }
 }
@@ -43,12 +47,12 @@ static void scale_by_springs(const rmin_arrival *arrival, const rmin_params *p, 
 static int spring_modes(rmin_matrix C, const rmin_real b[RMIN_N], rmin_modes *modes)
 {
     rmin_real squares[RMIN_N];
-    rmin_matrix vectors;
+    rmin_real (*const vectors)[RMIN_SYSTEM] = &modes->shape[modes->rigid];
     rmin_real all = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
         all += C[i][i];
     }
-    if (!rmin_spectrum(RMIN_N, C, squares, vectors)) {
+    if (!rmin_spectrum(RMIN_N, SMALL, C, squares, vectors)) {
         return RMIN_SINGULAR;
     }
     const rmin_real least = NOISE*all;
@@ -60,10 +64,7 @@ static int spring_modes(rmin_matrix C, const rmin_real b[RMIN_N], rmin_modes *mo
         rmin_real row = RMIN_R(0.0);
         for (int j = 0; j < RMIN_N; ++j) {
             row += vectors[i][j]*b[j];
-            modes->shape[at][j] = vectors[i][j]*rate;
-        }
-        for (int j = RMIN_N; j < RMIN_SYSTEM; ++j) {
-            modes->shape[at][j] = RMIN_R(0.0);
+            vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
         modes->noise[at] = RMIN_R(0.0);
@@ -78,26 +79,18 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
     rmin_real *drift)
 {
     spring_scaled s;
-    rmin_matrix C;
     scale_by_springs(arrival, p, &s);
-    for (int i = 0; i < RMIN_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            C[i][j] = s.S[i][j];
-            C[j][i] = s.S[i][j];
-        }
-    }
     *drift = RMIN_R(1.0);
     modes->rigid = 0;
-    return spring_modes(C, s.b, modes);
+    return spring_modes(s.S, s.b, modes);
 }
 
 int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real carried[RMIN_N])
 {
+    const int end = RMIN_N - 1;
     spring_scaled s;
-    rmin_matrix G;
-    rmin_matrix Y; /* columns of L_G^-1 L' */
-    rmin_matrix C;
+    rmin_matrix G; /* and then C; from its end to its start: so Cholesky's factors are upper ones, G = U U' */
     rmin_real z[RMIN_N];
     scale_by_springs(arrival, p, &s);
     if (!rmin_cholesky(RMIN_N, s.S)) {
@@ -105,7 +98,7 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     }
     for (int i = 0; i < RMIN_N; ++i) {
         z[i] = s.b[i];
-        rmin_real stiff[RMIN_N] = {0};
+        rmin_real stiff[RMIN_N];
         for (int l = i; l < RMIN_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }
@@ -114,34 +107,43 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
             for (int l = i; l < RMIN_N; ++l) {
                 sum += stiff[l]*s.S[l][j];
             }
-            G[i][j] = sum;
+            G[end - j][end - i] = sum;
         }
     }
     if (!rmin_cholesky(RMIN_N, G)) {
         return RMIN_SINGULAR;
     }
     rmin_forward(RMIN_N, s.S, z);
-    rmin_forward(RMIN_N, G, z);
+    for (int i = end; i >= 0; --i) {
+        for (int m = i + 1; m < RMIN_N; ++m) {
+            z[i] -= G[end - i][end - m]*z[m];
+        }
+        z[i] /= G[end - i][end - i];
+    }
     rmin_real together = RMIN_R(0.0);
-    for (int i = 0; i < RMIN_N; ++i) { /* column i of L' ends at its row i */
+    for (int i = 0; i < RMIN_N; ++i) {
+        rmin_real *const y = s.S[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
         rmin_real sum = RMIN_R(0.0);
-        for (int l = 0; l < RMIN_N; ++l) {
-            rmin_real rest = l <= i ? s.S[i][l] : RMIN_R(0.0);
-            for (int m = 0; m < l; ++m) {
-                rest -= G[l][m]*Y[i][m];
+        for (int l = i; l >= 0; --l) {
+            const rmin_real *const U = G[end - l];
+            rmin_real rest = y[l];
+            for (int m = l + 1; m <= i; ++m) {
+                rest -= U[end - m]*y[m];
             }
-            Y[i][l] = rest/G[l][l];
-            sum += Y[i][l]*z[l];
+            y[l] = rest/U[end - l];
+            sum += y[l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
+    }
+    for (int i = 0; i < RMIN_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             rmin_real entry = RMIN_R(0.0);
-            for (int l = 0; l < RMIN_N; ++l) {
-                entry += Y[i][l]*Y[j][l];
+            for (int l = 0; l <= j; ++l) {
+                entry += s.S[i][l]*s.S[j][l];
             }
-            C[i][j] = entry;
-            C[j][i] = entry;
+            G[i][j] = entry;
+            G[j][i] = entry;
         }
     }
     if (!(together > RMIN_R(0.0) && together <= RMIN_REAL_MAX)) {
@@ -155,7 +157,7 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     for (int j = 0; j < RMIN_SYSTEM; ++j) {
         modes->shape[0][j] = RMIN_R(0.0);
     }
-    return spring_modes(C, carried, modes);
+    return spring_modes(G, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

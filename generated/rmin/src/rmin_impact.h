@@ -47,20 +47,21 @@ typedef struct {
     rmin_real shape[RMIN_MODES][RMIN_SYSTEM];
 } rmin_modes;
 
-/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+/* One step of a mode: what amplitude, rate and force do. */
 typedef struct {
     rmin_real cosine, sine; /* cos(wh), sin(wh)/w */
     rmin_real back; /* -w sin(wh) */
-    rmin_real push[2]; /* on the amplitude, of the forces at start and end */
-    rmin_real kick[2]; /* on the rate */
+    rmin_real push; /* row (1 - cos(wh))/w^2: on the amplitude, of a force that stays */
+    rmin_real late; /* row (wh - sin(wh))/(w^3 h): the same of one that grows from none */
 } rmin_mode_step;
 
 /* Steps of one length. */
 typedef struct {
     rmin_real h; /* s */
     rmin_real relax; /* what is left of the body's own deflection after a step out of contact */
-    rmin_real push[2]; /* on the contact point */
-    rmin_real kick[2];
+    rmin_real per; /* 1/h */
+    rmin_real push, late; /* on the contact point */
+    rmin_real kick; /* on its velocity, of a force that stays; of one that grows it is push/h */
     rmin_mode_step mode[RMIN_MODES];
 } rmin_level;
 
@@ -78,6 +79,7 @@ typedef struct {
     rmin_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     rmin_real damping[RMIN_DAMPERS];
+    rmin_real together[RMIN_DAMPERS][RMIN_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     rmin_level level[RMIN_LEVELS];
 } rmin_phase;
@@ -121,7 +123,6 @@ typedef struct {
 typedef struct {
     rmin_real force; /* largest, N */
     rmin_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } rmin_peak;
@@ -230,6 +231,8 @@ int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real
 /* The same with links and rotors as one; 0 if their mass is not positive definite. */
 rmin_real rmin_together(const rmin_arrival *arrival, const rmin_params *p);
 
+/* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
+rmin_real rmin_damping_rate(rmin_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *phase);
 
@@ -240,7 +243,10 @@ void rmin_forward(int size, rmin_matrix L, rmin_real *x);
 void rmin_backward(int size, rmin_matrix L, rmin_real *x);
 /* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
 bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool rmin_spectrum(int size, rmin_matrix A, rmin_real *values, rmin_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, rmin_matrix vectors);
 
 #endif

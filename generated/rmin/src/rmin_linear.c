@@ -2,15 +2,6 @@
 /* Linear algebra of rmin_: Cholesky's factors, and eigenvectors by Jacobi's rotations. */
 #include "rmin_impact.h"
 
-/*
- * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
- * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
- * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
- */
-#define TURNED RMIN_R(1e-8)
-/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
-#define SWEEPS 16
-
 bool rmin_cholesky(int size, rmin_matrix A)
 {
     for (int j = 0; j < size; ++j) {
@@ -56,6 +47,16 @@ void rmin_backward(int size, rmin_matrix L, rmin_real *x)
         x[i] = rest/L[i][i];
     }
 }
+
+#if !RMIN_STRUCTURED
+/*
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
+ * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
+ * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
+ */
+#define TURNED RMIN_R(1e-8)
+/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
+#define SWEEPS 16
 
 /* Turns columns i and j of a matrix by an angle. */
 static void turn_columns(int size, rmin_matrix X, int i, int j, rmin_real c, rmin_real s)
@@ -112,3 +113,4 @@ bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X)
     }
     return false;
 }
+#endif

@@ -8,7 +8,7 @@
  */
 #include "rmin_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
 {
     if (!rmin_cholesky(size, mass)) {
@@ -19,7 +19,7 @@ static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? RMIN_R(1.0) : RMIN_R(0.0);
         }
-        rmin_backward(size, mass, column);
+        rmin_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -27,20 +27,20 @@ static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
     return true;
 }
 
-/* A = X'KX. */
+/* A = X'KX of such an X. */
 static void congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A)
 {
     for (int i = 0; i < size; ++i) {
         rmin_real pulled[RMIN_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = RMIN_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             rmin_real sum = RMIN_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -49,6 +49,7 @@ static void congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A)
     }
 }
 
+#if !RMIN_STRUCTURED
 /*
  * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
@@ -89,6 +90,7 @@ static bool find_modes(int size, const int *places, rmin_matrix L, rmin_matrix A
     modes->fastest = RMIN_REAL_MAX;
     return found;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const rmin_arrival *arrival, rmin_real pull[RMIN_SYSTEM])
@@ -199,29 +201,43 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
 int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift)
 {
-    rmin_matrix mass;
-    rmin_matrix K;
+    rmin_matrix mass; /* and then X'KX */
     rmin_matrix X;
-    rmin_matrix A;
-    int places[RMIN_SYSTEM];
-    rmin_real row[RMIN_SYSTEM];
+    rmin_real (*const K)[RMIN_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < RMIN_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < RMIN_N ? arrival->row[i] : RMIN_R(0.0);
-    }
     for (int i = 0; i < RMIN_N; ++i) {
         const int motor = RMIN_SYSTEM - RMIN_N + i;
         K[motor][motor] += RMIN_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(RMIN_SYSTEM, mass, X)) {
         return RMIN_SINGULAR;
     }
-    congruent(RMIN_SYSTEM, K, X, A);
-    if (!find_modes(RMIN_SYSTEM, places, mass, A, X, row, modes)) {
+    congruent(RMIN_SYSTEM, K, X, mass);
+    rmin_real all = RMIN_R(0.0);
+    for (int i = 0; i < RMIN_SYSTEM; ++i) {
+        all += RMIN_FABS(mass[i][i]);
+    }
+    if (!rmin_spectrum(RMIN_SYSTEM, RMIN_EPSILON*RMIN_EPSILON, mass, modes->squared, K)) {
         return RMIN_SINGULAR;
     }
+    for (int i = 0; i < RMIN_SYSTEM; ++i) {
+        rmin_real row = RMIN_R(0.0);
+        for (int j = 0; j < RMIN_SYSTEM; ++j) {
+            rmin_real shape = RMIN_R(0.0);
+            for (int k = j; k < RMIN_SYSTEM; ++k) { /* X has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            row += j < RMIN_N ? arrival->row[j]*shape : RMIN_R(0.0);
+        }
+        modes->noise[i] = RMIN_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
+        modes->row[i] = row;
+        modes->start[i] = RMIN_R(0.0);
+    }
+    modes->count = RMIN_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = RMIN_REAL_MAX;
     *drift = RMIN_R(1.0);
     rmin_real pull[RMIN_SYSTEM];
     pulled_on(arrival, pull);

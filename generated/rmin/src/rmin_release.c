@@ -2,6 +2,12 @@
 /* What is left of an impact of rmin_ when its motors are let go, in modes of loose motors. */
 #include "rmin_state.h"
 
+/*
+ * Level of the first step in contact: where motors are on the links themselves these have another acceleration at
+ * once; behind springs only its second rate is another, and a quarter of the longest step does.
+ */
+#define LET_GO (RMIN_ELASTIC ? 2 : RMIN_LEVELS - 1)
+
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const rmin_state *s, int size, rmin_real *place, rmin_real *rate)
 {
@@ -51,6 +57,9 @@ void rmin_release(rmin_state *s)
     rmin_real rate[RMIN_SYSTEM];
     rmin_real a[RMIN_MODES];
     rmin_real b[RMIN_MODES];
+    if (s->phase->damped) {
+        rmin_damp(s->phase, s->speed, s->owed, s->rate);
+    }
     coordinates_of(s, RMIN_STRUCTURED && impact->motors == RMIN_MOTORS_DRIVEN ? RMIN_N : RMIN_SYSTEM, place, rate);
 #if RMIN_STRUCTURED
     const rmin_modes *const before = &s->phase->modes;
@@ -131,11 +140,7 @@ void rmin_release(rmin_state *s)
     s->x += more*s->f;
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
-    s->phase = next;
-    s->drifted = RMIN_R(0.0);
-    s->level = RMIN_LEVELS - 1; /* the force may turn at once, and other modes stand */
     s->past = s->past > 1 ? 1 : s->past;
-    s->even = 0;
-    s->ticks = next->steps*(1 << (RMIN_LEVELS - 1));
+    rmin_begin_phase(next, s->touching ? LET_GO : 0, s);
 }
 

@@ -13,11 +13,12 @@
 #define LEAPS RMIN_R(0.5)
 /* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
 #define BEYOND 2
-/* Level of the shortest step, in rough runs. */
+/* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
 #define SHORTEST (RMIN_LEVELS - 1)
+#define SHORTEST_APART 4
 #define SHORTEST_ROUGH 2
-/* Steps in contact after which it is looked whether the rest matters. */
-#define LOOKS 2
+/* Steps of a falling force, or of none, after which it is looked whether the rest matters. */
+#define LOOKS 3
 /* Share of a first step within which the damper has to press the skin in, and the share of that time missed. */
 #define BRIEF RMIN_R(0.3)
 #define MISSED RMIN_R(1.2)
@@ -25,104 +26,146 @@
 #define LONGEST 4
 #define LONGEST_ROUGH 1
 /* Share of what a harder contact takes up to which rough runs take it to be out of reach. */
-#define ROUGHLY RMIN_R(1.3)
+#define ROUGHLY RMIN_R(3.0)
 /*
  * Most contacts of an impact whose forces are known: where a robot chatters on a body that hardly damps, each
  * depends on the one before, and errors grow from one to the next. Random arms and bodies make six at most.
  */
 #define MOST_CONTACTS 8
 
+/* What became of a step. */
+typedef enum {
+    TO_BE_SHORTER, /* or it is one in contact */
+    TAKEN,
+    TAKEN_AND_STRAIGHT
+} outcome;
+
 /* Changes the length of the next step. */
 static void change_level(rmin_state *s, int level)
 {
     s->level = level;
+    s->step = &s->phase->level[level];
     s->even = 0;
+}
+
+void rmin_begin_phase(const rmin_phase *phase, int level, rmin_state *s)
+{
+    s->phase = phase;
+    s->ticks = phase->steps*(1 << (RMIN_LEVELS - 1));
+    s->drift = phase->drift*s->speed;
+    s->drifted = RMIN_R(0.0);
+    s->owed = RMIN_R(0.0);
+    change_level(s, level);
 }
 
 /* Advances the clock, and lengthens the next step where it may. */
 static void tick(rmin_state *s, bool longer)
 {
+    const rmin_real h = s->step->h;
+    const int ticks = s->ticks - (1 << (RMIN_LEVELS - 1 - s->level));
     s->h_before = s->h;
-    s->h = s->phase->level[s->level].h;
-    s->time += s->h;
-    s->drifted += s->phase->drift*s->speed*s->h;
-    s->ticks -= 1 << (RMIN_LEVELS - 1 - s->level);
+    s->h = h;
+    s->time += h;
+    s->owed = RMIN_R(0.5)*h;
+    s->drifted += s->drift*h;
+    s->ticks = ticks;
     ++s->even;
-    if (longer && s->level > 0 && s->ticks % (1 << (RMIN_LEVELS - s->level)) == 0) {
+    if (longer && s->level > 0 && ticks % (1 << (RMIN_LEVELS - s->level)) == 0) {
         change_level(s, s->level - 1);
     }
 }
 
-/* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
-static void see(rmin_state *s, const rmin_trial *t, rmin_peak *peak)
+/* Notes a force; `since` is its time less that of the last node. */
+static void see(const rmin_state *s, rmin_real force, rmin_real since, rmin_peak *peak)
 {
-    const rmin_real h = s->phase->level[s->level].h;
-    rmin_real force = t->f;
-    rmin_real time = s->time + h;
-    if (t->f < s->f && s->past > 0 && s->rise >= RMIN_R(0.0)) {
-        const rmin_real before = s->rise/s->h;
-        const rmin_real after = (t->f - s->f)/h;
-        const rmin_real bend = (after - before)/(h + s->h);
-        const rmin_real slope = before + bend*s->h;
-        const rmin_real since = RMIN_R(-0.5)*slope/bend; /* the last node */
-        force = s->f + RMIN_R(0.5)*slope*since;
-        time = s->time + since;
-        if (s->past > 1) {
-            const rmin_real bent = RMIN_R(-6.0)*s->bump/(s->h*s->h); /* at the last node */
-            const rmin_real twist = (bend - bent)/(h + s->h + s->h_before);
-            force += twist*since*(since + s->h)*(since - h);
-        }
-    }
-    if (force + s->swings > peak->force) {
-        s->depth = t->f > peak->force ? t->depth : s->depth;
-        peak->force = force + s->swings;
-        peak->time = time;
-        peak->contact = peak->contacts;
+    const rmin_real most = force + s->swings;
+    if (most > peak->force) {
+        peak->force = most;
+        peak->time = s->time + since;
     }
 }
 
-/* A step in contact; false if it must be shorter. */
-static bool step_pressed(rmin_state *s, rmin_trial *t, rmin_real bends, int shortest, rmin_peak *peak)
+/* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
+static void see_top(const rmin_state *s, const rmin_trial *t, rmin_peak *peak)
+{
+    const rmin_real h = s->step->h;
+    const rmin_real before = s->rise/s->h;
+    const rmin_real after = (t->f - s->f)/h;
+    const rmin_real bend = (after - before)/(h + s->h);
+    const rmin_real slope = before + bend*s->h;
+    const rmin_real since = RMIN_R(-0.5)*slope/bend;
+    rmin_real force = s->f + RMIN_R(0.5)*slope*since;
+    if (s->past > 1) {
+        const rmin_real bent = RMIN_R(-6.0)*s->bump/(s->h*s->h); /* at the last node */
+        const rmin_real twist = (bend - bent)/(h + s->h + s->h_before);
+        force += twist*since*(since + s->h)*(since - h);
+    }
+    see(s, force, since, peak);
+}
+
+/* A step in contact. */
+static outcome step_pressed(rmin_state *s, rmin_trial *t, rmin_real bends, int shortest, rmin_peak *peak)
 {
     rmin_press(s, t);
     const rmin_real allowed = bends*RMIN_FMAX(s->scale, peak->force);
     const rmin_real bent = RMIN_R(6.0)*RMIN_FABS(t->bump);
+    const rmin_real rise = t->f - s->f;
     const bool parts = !(t->f > RMIN_R(0.0));
-    const bool jagged = s->impact->region->law != NULL;
-    const rmin_real between = jagged ? rmin_force_between(s, t) : RMIN_R(0.0);
-    const bool leaps = between > RMIN_FMAX(s->f, t->f) + LEAPS*allowed;
-    const bool slips = jagged && rmin_slip_off(s, t) > LEAPS*allowed;
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || leaps || slips)) {
+    rmin_real between = RMIN_R(0.0); /* nodes of a law through points, where it leaps there */
+    bool slips = false;
+    if (s->impact->region->law != NULL) {
+        const rmin_real force = rmin_force_between(s, t);
+        between = force > RMIN_FMAX(s->f, t->f) + LEAPS*allowed ? force : RMIN_R(0.0);
+        slips = between > RMIN_R(0.0) || rmin_slip_off(s, t) > LEAPS*allowed;
+    }
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
-        return false;
+        return TO_BE_SHORTER;
     }
     rmin_take(t, s);
-    see(s, t, peak);
-    if (leaps && between + s->swings > peak->force) {
-        peak->force = between + s->swings;
+    if (rise >= RMIN_R(0.0)) {
+        s->depth = t->f > peak->force ? t->depth : s->depth;
+        see(s, t->f, s->step->h, peak);
+    } else if (s->past > 0 && s->rise >= RMIN_R(0.0)) {
+        see_top(s, t, peak);
+    }
+    if (between > RMIN_R(0.0)) {
+        peak->force = RMIN_FMAX(peak->force, between + s->swings);
     }
     if (parts) {
         s->touching = false;
-        s->rest = RMIN_FMAX(t->x, (s->x - s->u)*s->phase->level[s->level].relax);
+        s->rest = RMIN_FMAX(t->x, (s->x - s->u)*s->step->relax);
     }
-    const bool straight = bent <= STRAIGHT*allowed && RMIN_R(6.0)*RMIN_FABS(s->bump) <= STRAIGHT*allowed;
+    const rmin_real most = STRAIGHT*allowed;
+    const bool straight = s->past > 0 && bent <= most && RMIN_R(6.0)*RMIN_FABS(s->bump) <= most;
     s->bump = t->bump;
-    s->rise = t->f - s->f;
+    s->rise = rise;
     s->f = t->f;
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
-    s->root = t->root;
     s->x = t->x;
     ++s->past;
-    tick(s, straight && s->past > 1);
-    return true;
+    return straight ? TAKEN_AND_STRAIGHT : TAKEN;
 }
 
-/* A step out of contact; false if it must be shorter, or is one in contact. */
-static bool step_apart(rmin_state *s, const rmin_trial *t, int shortest, rmin_peak *peak)
+/* They touch: the contact begins with no force. */
+static void touch(rmin_state *s)
 {
-    const rmin_real rest = s->rest*s->phase->level[s->level].relax;
+    s->touching = true;
+    s->past = 0;
+    s->even = 0;
+    s->u = s->x - s->rest;
+    s->f = RMIN_R(0.0);
+    s->rise = RMIN_R(0.0);
+    s->bump = RMIN_R(0.0);
+    s->now = RMIN_R(0.0);
+}
+
+/* A step out of contact. */
+static outcome step_apart(rmin_state *s, const rmin_trial *t, int shortest, rmin_peak *peak)
+{
+    const rmin_real rest = s->rest*s->step->relax;
     if (t->x > rest) {
         if (s->level < shortest) { /* to a step that ends before they touch, if both approach evenly */
             rmin_real share = RMIN_R(2.0)*(s->rest - s->x)/(s->rest - s->x + t->x - rest);
@@ -132,19 +175,11 @@ static bool step_apart(rmin_state *s, const rmin_trial *t, int shortest, rmin_pe
                 ++level;
             }
             change_level(s, level);
-            return false;
+        } else {
+            touch(s);
+            ++peak->contacts;
         }
-        s->touching = true;
-        s->past = 0;
-        s->even = 0;
-        s->u = s->x - s->rest;
-        s->f = RMIN_R(0.0);
-        s->rise = RMIN_R(0.0);
-        s->bump = RMIN_R(0.0);
-        s->now = RMIN_R(0.0);
-        s->root = RMIN_R(0.0);
-        ++peak->contacts;
-        return false;
+        return TO_BE_SHORTER;
     }
     for (int i = 0; i < s->phase->active; ++i) {
         s->amplitude[i] = t->amplitude[i];
@@ -152,8 +187,7 @@ static bool step_apart(rmin_state *s, const rmin_trial *t, int shortest, rmin_pe
     }
     s->rest = rest;
     s->x = t->x;
-    tick(s, true);
-    return true;
+    return TAKEN_AND_STRAIGHT;
 }
 
 /*
@@ -165,14 +199,13 @@ static void begin(const rmin_region *region, int longest, rmin_state *s)
     const rmin_real pushed = region->damping*s->speed;
     const rmin_real slow = rmin_law_depth(region, pushed)/s->speed;
     if (s->phase->level[longest].h*BRIEF >= slow) {
-        s->level = longest;
+        change_level(s, longest);
     }
-    const rmin_real share = RMIN_R(1.0) - MISSED*slow/s->phase->level[s->level].h;
+    const rmin_real share = RMIN_R(1.0) - MISSED*slow/s->step->h;
     if (share > RMIN_R(0.0)) {
         s->f = share*pushed;
         s->now = rmin_law_depth(region, s->f);
         s->u = s->now + s->phase->compliance*s->f;
-        s->root = RMIN_SQRT(s->now);
     }
 }
 
@@ -181,30 +214,20 @@ static void start(rmin_impact *impact, rmin_real speed, bool rough, rmin_state *
     const rmin_phase *const phase = &impact->phase[impact->first];
     const rmin_real zero = RMIN_R(0.0);
     s->impact = impact;
-    s->phase = phase;
     s->speed = speed;
     s->scale = impact->scale;
-    change_level(s, rough ? SHORTEST_ROUGH : SHORTEST);
-    s->ticks = phase->steps*(1 << (RMIN_LEVELS - 1));
+    rmin_begin_phase(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
-    s->drifted = zero;
     for (int i = 0; i < phase->active; ++i) {
         s->amplitude[i] = zero;
         s->rate[i] = phase->modes.start[i]*speed;
     }
-    s->touching = true;
-    s->past = 0;
     s->h = zero;
     s->h_before = zero;
-    s->bump = zero;
     s->x = zero;
-    s->f = zero;
-    s->rise = zero;
-    s->u = zero;
-    s->u_before = zero;
-    s->now = zero;
-    s->root = zero;
     s->rest = zero;
+    s->u_before = zero;
+    touch(s);
     s->depth = zero;
     s->swings = zero;
     begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
@@ -213,31 +236,43 @@ static void start(rmin_impact *impact, rmin_real speed, bool rough, rmin_state *
 /* Steps through a phase, a rough run until they part; false if the steps do not do. */
 static bool run_phase(rmin_state *s, rmin_budget *budget, rmin_peak *peak)
 {
-    const rmin_real bends = s->impact->smooth*(budget->rough ? BENDS_ROUGH : BENDS);
-    const rmin_real share = budget->rough ? ROUGHLY : RMIN_R(1.0);
-    const int shortest = budget->rough ? SHORTEST_ROUGH : SHORTEST;
+    const bool rough = budget->rough;
+    const rmin_real bends = s->impact->smooth*(rough ? BENDS_ROUGH : BENDS);
+    const rmin_real share = rough ? ROUGHLY : RMIN_R(1.0);
+    const int shortest = rough ? SHORTEST_ROUGH : SHORTEST;
     rmin_trial t;
+    int falls = 0; /* steps of a falling force since it was looked whether the rest matters */
     while (s->ticks > 0) {
         if (budget->steps <= 0 || peak->contacts > MOST_CONTACTS) {
             return false;
         }
         --budget->steps;
+        if (falls >= LOOKS) { /* a look takes as long as a step */
+            falls = 0;
+            if (rmin_is_settled(s, peak->force - s->swings, s->depth, share)) {
+                peak->ended = true;
+                return true;
+            }
+            continue;
+        }
         rmin_glide(s, &t);
-        const bool taken = s->touching ? step_pressed(s, &t, bends, shortest, peak)
-            : step_apart(s, &t, shortest, peak);
-        if (taken && s->phase->damped) {
-            rmin_damp(s->phase, s->speed, RMIN_R(0.5)*s->h, s->rate);
+        const outcome was = s->touching ? step_pressed(s, &t, bends, shortest, peak)
+            : step_apart(s, &t, rough ? SHORTEST_ROUGH : SHORTEST_APART, peak);
+        if (was == TO_BE_SHORTER) {
+            continue;
         }
-        if (taken && budget->watch != NULL && rmin_pass(s, budget->watch)) {
-            peak->ended = true;
-            return true;
-        }
-        const bool falls = taken && s->f + s->swings < peak->force;
-        const bool looks = falls && budget->watch == NULL && (s->past % LOOKS == 0 || !s->touching);
-        if ((falls && peak->force > budget->stop_above) || (budget->rough && taken && !s->touching)
-            || (looks && rmin_is_settled(s, peak->force - s->swings, s->depth, share))) {
-            peak->ended = true;
-            return true;
+        tick(s, was == TAKEN_AND_STRAIGHT);
+        if (budget->watch != NULL) {
+            if (rmin_pass(s, budget->watch)) {
+                peak->ended = true;
+                return true;
+            }
+        } else if (s->f + s->swings < peak->force) {
+            if (peak->force > budget->stop_above || (rough && !s->touching)) {
+                peak->ended = true;
+                return true;
+            }
+            ++falls;
         }
     }
     return true;
@@ -248,7 +283,6 @@ void rmin_impact_run(rmin_impact *impact, rmin_real speed, rmin_budget *budget, 
     rmin_state s;
     peak->force = RMIN_R(0.0);
     peak->time = RMIN_R(0.0);
-    peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
     budget->steps -= RMIN_STEPS_OF_RUN;

@@ -18,20 +18,22 @@ typedef struct {
     const rmin_phase *phase;
     rmin_real speed;
     rmin_real scale; /* of forces, N */
+    const rmin_level *step; /* of the next one's length */
     int level;
     int even; /* steps in a row of this length */
     rmin_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     rmin_real time;
-    rmin_real drifted; /* by the motors, m */
+    rmin_real drift, drifted; /* by the motors, m/s and m */
     rmin_real amplitude[RMIN_MODES], rate[RMIN_MODES];
+    rmin_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
     rmin_real h, h_before, x; /* last steps, contact point */
     rmin_real bump; /* what the bend adds to the force on average of the last step */
     rmin_real f, rise; /* force, and by how much it grew in the last step */
     rmin_real u, u_before; /* deformation of the skin and of what stands */
-    rmin_real now, root; /* depth of the skin, and its root where it is Hertz's */
+    rmin_real now; /* depth of the skin */
     rmin_real rest; /* deflection of the body out of contact */
     rmin_real depth; /* of the skin at the largest force so far */
     rmin_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -53,11 +55,16 @@ typedef struct {
     rmin_real amplitude[RMIN_MODES], rate[RMIN_MODES];
     rmin_real x, v; /* of the contact point without the force at the end */
     rmin_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    rmin_real u, depth, root;
+    rmin_real u, depth;
 } rmin_trial;
+
+/* Goes over to the steps of a phase, the first of a level. */
+void rmin_begin_phase(const rmin_phase *phase, int level, rmin_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate);
+/* Rates of modes, damped until halfway through the next step. */
+void rmin_damp_ahead(const rmin_state *s, rmin_real *rate);
 
 /* Moves all modes by a step without forces. */
 void rmin_glide(const rmin_state *s, rmin_trial *t);

@@ -42,7 +42,7 @@ static void exchange(rmin_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < RMIN_SYSTEM && i != j; ++k) {
+    for (int k = 0; k < RMIN_SYSTEM; ++k) {
         const rmin_real shape = modes->shape[i][k];
         modes->shape[i][k] = modes->shape[j][k];
         modes->shape[j][k] = shape;
@@ -85,61 +85,61 @@ static void let_stand(const rmin_impact *impact, rmin_real contact, bool release
             phase->compliance += weight/modes->squared[i];
         } else {
             phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
-            exchange(modes, active < i ? active : i, i); /* it is never more */
+            if (active < i) {
+                exchange(modes, active, i);
+            }
             ++active;
         }
     }
     phase->active = active < modes->count ? active : modes->count;
 }
 
-/* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
-static void mode_steps(rmin_phase *phase, int i)
+/*
+ * Steps of all modes at all levels: a series for the shortest, from which the others follow by the sine and
+ * cosine of twice an angle.
+ */
+static void mode_steps(rmin_phase *phase)
 {
+    const rmin_modes *const modes = &phase->modes;
     const rmin_real one = RMIN_R(1.0);
-    const rmin_real row = phase->modes.row[i];
     rmin_real h = phase->level[RMIN_LEVELS - 1].h;
-    rmin_real t = phase->modes.squared[i]*h*h;
-    /* sin(a)/a, (1 - cos(a))/a^2 and (a - sin(a))/a^3 over t = a^2 */
-    rmin_real lean = RMIN_R(1.0)/RMIN_R(6.0)
-        - t*(one/RMIN_R(120.0) - t*(one/RMIN_R(5040.0) - t/RMIN_R(362880.0)));
-    rmin_real bend = RMIN_R(0.5)
-        - t*(one/RMIN_R(24.0) - t*(one/RMIN_R(720.0) - t/RMIN_R(40320.0)));
-    rmin_real sine = one - t*lean;
+    rmin_real sine[RMIN_MODES]; /* sin(wh)/w */
+    rmin_real push[RMIN_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
+    rmin_real late[RMIN_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    for (int i = 0; i < phase->active; ++i) {
+        const rmin_real t = modes->squared[i]*h*h;
+        late[i] = h*h*(one/RMIN_R(6.0) - t*(one/RMIN_R(120.0) - t*(one/RMIN_R(5040.0) - t/RMIN_R(362880.0))));
+        push[i] = h*h*(RMIN_R(0.5) - t*(one/RMIN_R(24.0) - t*(one/RMIN_R(720.0) - t/RMIN_R(40320.0))));
+        sine[i] = h*(one - modes->squared[i]*late[i]);
+    }
     for (int k = RMIN_LEVELS - 1; k >= 0; --k) {
         rmin_level *const level = &phase->level[k];
-        rmin_mode_step *const step = &level->mode[i];
-        step->cosine = one - t*bend;
-        step->sine = h*sine;
-        step->back = -phase->modes.squared[i]*h*sine;
-        step->push[0] = row*h*h*(bend - lean);
-        step->push[1] = row*h*h*lean;
-        step->kick[0] = row*h*(sine - bend);
-        step->kick[1] = row*h*bend;
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] += row*step->push[end];
-            level->kick[end] += row*step->kick[end];
+        const rmin_real per = one/h;
+        rmin_real pushes = RMIN_R(0.0);
+        rmin_real lates = RMIN_R(0.0);
+        rmin_real kicks = RMIN_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            rmin_mode_step *const step = &level->mode[i];
+            const rmin_real row = modes->row[i];
+            const rmin_real cosine = one - modes->squared[i]*push[i];
+            step->cosine = cosine;
+            step->sine = sine[i];
+            step->back = -modes->squared[i]*sine[i];
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
+            push[i] = RMIN_R(2.0)*sine[i]*sine[i];
+            sine[i] *= RMIN_R(2.0)*cosine;
         }
-        lean = RMIN_R(0.25)*(lean + sine*bend);
-        bend = RMIN_R(0.5)*sine*sine;
-        sine *= step->cosine;
-        t *= RMIN_R(4.0);
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* Most that joints and a servo's gains damp a mode, 1/s. */
-static rmin_real damping_rate(const rmin_phase *phase)
-{
-    rmin_real rate = RMIN_R(0.0);
-    for (int i = 0; i < RMIN_DAMPERS && phase->damped; ++i) {
-        rmin_real of_motor = RMIN_R(0.0);
-        for (int k = 0; k < phase->modes.count; ++k) {
-            const rmin_real shape = phase->modes.shape[k][RMIN_SYSTEM - RMIN_DAMPERS + i];
-            of_motor += shape*shape;
-        }
-        rate = RMIN_FMAX(rate, phase->damping[i]*of_motor);
-    }
-    return rate;
 }
 
 void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *phase)
@@ -175,23 +175,21 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
     const rmin_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : RMIN_R(0.0);
     const rmin_real slowest = RMIN_FMAX(RMIN_R(1.0)/time, rise);
-    const rmin_real rate = RMIN_FMAX(slowest, RMIN_FMAX(RMIN_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const rmin_real rate = RMIN_FMAX(slowest, RMIN_FMAX(RMIN_SQRT(rate2), rmin_damping_rate(phase)/SERVO_STEP));
     const rmin_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
-    rmin_real h = wanted < MOST ? time/(rmin_real)phase->steps : RMIN_R(1.0)/rate;
-    for (int k = 0; k < RMIN_LEVELS; ++k) {
-        rmin_level *const level = &phase->level[k];
-        level->h = h;
-        level->relax = region->damping > RMIN_R(0.0)
-            ? RMIN_EXP(-RMIN_FMIN(region->stiffness*h/region->damping, RMIN_R(80.0))) : RMIN_R(0.0);
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] = RMIN_R(0.0);
-            level->kick[end] = RMIN_R(0.0);
-        }
-        h *= RMIN_R(0.5);
+    const rmin_real h = wanted < MOST ? time/(rmin_real)phase->steps : RMIN_R(1.0)/rate;
+    phase->level[0].h = h;
+    for (int k = 1; k < RMIN_LEVELS; ++k) {
+        phase->level[k].h = RMIN_R(0.5)*phase->level[k - 1].h;
     }
-    for (int i = 0; i < phase->active; ++i) {
-        mode_steps(phase, i);
+    const rmin_real shortest = region->stiffness*phase->level[RMIN_LEVELS - 1].h;
+    rmin_real relax = region->damping > RMIN_R(0.0)
+        ? RMIN_EXP(-RMIN_FMIN(shortest/region->damping, RMIN_R(80.0))) : RMIN_R(0.0);
+    for (int k = RMIN_LEVELS - 1; k >= 0; --k) {
+        phase->level[k].relax = relax;
+        relax *= relax;
     }
+    mode_steps(phase);
     phase->ready = true;
 }

@@ -16,6 +16,9 @@
 /* A mode of less than this share of all squared periods has no digits left. */
 #define NOISE (RR_R(8.0)*RR_EPSILON)
 
+/* Square of what may be left beside the diagonal of a compliance: energies change by less than its root. */
+#define SMALL RR_R(1e-8)
+
 #if RR_STRUCTURED
 /* S, R and b. */
 typedef struct {
@@ -35,6 +38,7 @@ static void scale_by_springs(const rr_arrival *arrival, const rr_params *p, spri
         out->b[i] = arrival->row[i]*soft[i];
         for (int j = 0; j <= i; ++j) {
             out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+            out->S[j][i] = out->S[i][j];
         }
     }
 }
@@ -43,12 +47,12 @@ static void scale_by_springs(const rr_arrival *arrival, const rr_params *p, spri
 static int spring_modes(rr_matrix C, const rr_real b[RR_N], rr_modes *modes)
 {
     rr_real squares[RR_N];
-    rr_matrix vectors;
+    rr_real (*const vectors)[RR_SYSTEM] = &modes->shape[modes->rigid];
     rr_real all = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) {
         all += C[i][i];
     }
-    if (!rr_spectrum(RR_N, C, squares, vectors)) {
+    if (!rr_spectrum(RR_N, SMALL, C, squares, vectors)) {
         return RR_SINGULAR;
     }
     const rr_real least = NOISE*all;
@@ -60,10 +64,7 @@ static int spring_modes(rr_matrix C, const rr_real b[RR_N], rr_modes *modes)
         rr_real row = RR_R(0.0);
         for (int j = 0; j < RR_N; ++j) {
             row += vectors[i][j]*b[j];
-            modes->shape[at][j] = vectors[i][j]*rate;
-        }
-        for (int j = RR_N; j < RR_SYSTEM; ++j) {
-            modes->shape[at][j] = RR_R(0.0);
+            vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
         modes->noise[at] = RR_R(0.0);
@@ -78,26 +79,18 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
     rr_real *drift)
 {
     spring_scaled s;
-    rr_matrix C;
     scale_by_springs(arrival, p, &s);
-    for (int i = 0; i < RR_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            C[i][j] = s.S[i][j];
-            C[j][i] = s.S[i][j];
-        }
-    }
     *drift = RR_R(1.0);
     modes->rigid = 0;
-    return spring_modes(C, s.b, modes);
+    return spring_modes(s.S, s.b, modes);
 }
 
 int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real carried[RR_N])
 {
+    const int end = RR_N - 1;
     spring_scaled s;
-    rr_matrix G;
-    rr_matrix Y; /* columns of L_G^-1 L' */
-    rr_matrix C;
+    rr_matrix G; /* and then C; from its end to its start: so Cholesky's factors are upper ones, G = U U' */
     rr_real z[RR_N];
     scale_by_springs(arrival, p, &s);
     if (!rr_cholesky(RR_N, s.S)) {
@@ -105,7 +98,7 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     }
     for (int i = 0; i < RR_N; ++i) {
         z[i] = s.b[i];
-        rr_real stiff[RR_N] = {0};
+        rr_real stiff[RR_N];
         for (int l = i; l < RR_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }
@@ -114,34 +107,43 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
             for (int l = i; l < RR_N; ++l) {
                 sum += stiff[l]*s.S[l][j];
             }
-            G[i][j] = sum;
+            G[end - j][end - i] = sum;
         }
     }
     if (!rr_cholesky(RR_N, G)) {
         return RR_SINGULAR;
     }
     rr_forward(RR_N, s.S, z);
-    rr_forward(RR_N, G, z);
+    for (int i = end; i >= 0; --i) {
+        for (int m = i + 1; m < RR_N; ++m) {
+            z[i] -= G[end - i][end - m]*z[m];
+        }
+        z[i] /= G[end - i][end - i];
+    }
     rr_real together = RR_R(0.0);
-    for (int i = 0; i < RR_N; ++i) { /* column i of L' ends at its row i */
+    for (int i = 0; i < RR_N; ++i) {
+        rr_real *const y = s.S[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
         rr_real sum = RR_R(0.0);
-        for (int l = 0; l < RR_N; ++l) {
-            rr_real rest = l <= i ? s.S[i][l] : RR_R(0.0);
-            for (int m = 0; m < l; ++m) {
-                rest -= G[l][m]*Y[i][m];
+        for (int l = i; l >= 0; --l) {
+            const rr_real *const U = G[end - l];
+            rr_real rest = y[l];
+            for (int m = l + 1; m <= i; ++m) {
+                rest -= U[end - m]*y[m];
             }
-            Y[i][l] = rest/G[l][l];
-            sum += Y[i][l]*z[l];
+            y[l] = rest/U[end - l];
+            sum += y[l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
+    }
+    for (int i = 0; i < RR_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             rr_real entry = RR_R(0.0);
-            for (int l = 0; l < RR_N; ++l) {
-                entry += Y[i][l]*Y[j][l];
+            for (int l = 0; l <= j; ++l) {
+                entry += s.S[i][l]*s.S[j][l];
             }
-            C[i][j] = entry;
-            C[j][i] = entry;
+            G[i][j] = entry;
+            G[j][i] = entry;
         }
     }
     if (!(together > RR_R(0.0) && together <= RR_REAL_MAX)) {
@@ -155,7 +157,7 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     for (int j = 0; j < RR_SYSTEM; ++j) {
         modes->shape[0][j] = RR_R(0.0);
     }
-    return spring_modes(C, carried, modes);
+    return spring_modes(G, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

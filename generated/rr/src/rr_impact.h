@@ -47,20 +47,21 @@ typedef struct {
     rr_real shape[RR_MODES][RR_SYSTEM];
 } rr_modes;
 
-/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+/* One step of a mode: what amplitude, rate and force do. */
 typedef struct {
     rr_real cosine, sine; /* cos(wh), sin(wh)/w */
     rr_real back; /* -w sin(wh) */
-    rr_real push[2]; /* on the amplitude, of the forces at start and end */
-    rr_real kick[2]; /* on the rate */
+    rr_real push; /* row (1 - cos(wh))/w^2: on the amplitude, of a force that stays */
+    rr_real late; /* row (wh - sin(wh))/(w^3 h): the same of one that grows from none */
 } rr_mode_step;
 
 /* Steps of one length. */
 typedef struct {
     rr_real h; /* s */
     rr_real relax; /* what is left of the body's own deflection after a step out of contact */
-    rr_real push[2]; /* on the contact point */
-    rr_real kick[2];
+    rr_real per; /* 1/h */
+    rr_real push, late; /* on the contact point */
+    rr_real kick; /* on its velocity, of a force that stays; of one that grows it is push/h */
     rr_mode_step mode[RR_MODES];
 } rr_level;
 
@@ -78,6 +79,7 @@ typedef struct {
     rr_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     rr_real damping[RR_DAMPERS];
+    rr_real together[RR_DAMPERS][RR_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     rr_level level[RR_LEVELS];
 } rr_phase;
@@ -121,7 +123,6 @@ typedef struct {
 typedef struct {
     rr_real force; /* largest, N */
     rr_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } rr_peak;
@@ -230,6 +231,8 @@ int rr_mobilities(const rr_arrival *arrival, const rr_params *p, rr_real *links,
 /* The same with links and rotors as one; 0 if their mass is not positive definite. */
 rr_real rr_together(const rr_arrival *arrival, const rr_params *p);
 
+/* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
+rr_real rr_damping_rate(rr_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase);
 
@@ -240,7 +243,10 @@ void rr_forward(int size, rr_matrix L, rr_real *x);
 void rr_backward(int size, rr_matrix L, rr_real *x);
 /* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
 bool rr_diagonalise(int size, rr_matrix A, rr_matrix X);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool rr_spectrum(int size, rr_matrix A, rr_real *values, rr_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, rr_matrix vectors);
 
 #endif

@@ -2,15 +2,6 @@
 /* Linear algebra of rr_: Cholesky's factors, and eigenvectors by Jacobi's rotations. */
 #include "rr_impact.h"
 
-/*
- * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
- * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
- * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
- */
-#define TURNED RR_R(1e-8)
-/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
-#define SWEEPS 16
-
 bool rr_cholesky(int size, rr_matrix A)
 {
     for (int j = 0; j < size; ++j) {
@@ -56,6 +47,16 @@ void rr_backward(int size, rr_matrix L, rr_real *x)
         x[i] = rest/L[i][i];
     }
 }
+
+#if !RR_STRUCTURED
+/*
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
+ * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
+ * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
+ */
+#define TURNED RR_R(1e-8)
+/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
+#define SWEEPS 16
 
 /* Turns columns i and j of a matrix by an angle. */
 static void turn_columns(int size, rr_matrix X, int i, int j, rr_real c, rr_real s)
@@ -112,3 +113,4 @@ bool rr_diagonalise(int size, rr_matrix A, rr_matrix X)
     }
     return false;
 }
+#endif

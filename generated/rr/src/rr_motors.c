@@ -8,7 +8,7 @@
  */
 #include "rr_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
 {
     if (!rr_cholesky(size, mass)) {
@@ -19,7 +19,7 @@ static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? RR_R(1.0) : RR_R(0.0);
         }
-        rr_backward(size, mass, column);
+        rr_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -27,20 +27,20 @@ static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
     return true;
 }
 
-/* A = X'KX. */
+/* A = X'KX of such an X. */
 static void congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
 {
     for (int i = 0; i < size; ++i) {
         rr_real pulled[RR_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = RR_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             rr_real sum = RR_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -49,6 +49,7 @@ static void congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
     }
 }
 
+#if !RR_STRUCTURED
 /*
  * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
@@ -89,6 +90,7 @@ static bool find_modes(int size, const int *places, rr_matrix L, rr_matrix A, rr
     modes->fastest = RR_REAL_MAX;
     return found;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const rr_arrival *arrival, rr_real pull[RR_SYSTEM])
@@ -199,29 +201,43 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
 int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real *drift)
 {
-    rr_matrix mass;
-    rr_matrix K;
+    rr_matrix mass; /* and then X'KX */
     rr_matrix X;
-    rr_matrix A;
-    int places[RR_SYSTEM];
-    rr_real row[RR_SYSTEM];
+    rr_real (*const K)[RR_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < RR_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < RR_N ? arrival->row[i] : RR_R(0.0);
-    }
     for (int i = 0; i < RR_N; ++i) {
         const int motor = RR_SYSTEM - RR_N + i;
         K[motor][motor] += RR_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(RR_SYSTEM, mass, X)) {
         return RR_SINGULAR;
     }
-    congruent(RR_SYSTEM, K, X, A);
-    if (!find_modes(RR_SYSTEM, places, mass, A, X, row, modes)) {
+    congruent(RR_SYSTEM, K, X, mass);
+    rr_real all = RR_R(0.0);
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        all += RR_FABS(mass[i][i]);
+    }
+    if (!rr_spectrum(RR_SYSTEM, RR_EPSILON*RR_EPSILON, mass, modes->squared, K)) {
         return RR_SINGULAR;
     }
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        rr_real row = RR_R(0.0);
+        for (int j = 0; j < RR_SYSTEM; ++j) {
+            rr_real shape = RR_R(0.0);
+            for (int k = j; k < RR_SYSTEM; ++k) { /* X has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            row += j < RR_N ? arrival->row[j]*shape : RR_R(0.0);
+        }
+        modes->noise[i] = RR_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
+        modes->row[i] = row;
+        modes->start[i] = RR_R(0.0);
+    }
+    modes->count = RR_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = RR_REAL_MAX;
     *drift = RR_R(1.0);
     rr_real pull[RR_SYSTEM];
     pulled_on(arrival, pull);

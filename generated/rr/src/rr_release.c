@@ -2,6 +2,12 @@
 /* What is left of an impact of rr_ when its motors are let go, in modes of loose motors. */
 #include "rr_state.h"
 
+/*
+ * Level of the first step in contact: where motors are on the links themselves these have another acceleration at
+ * once; behind springs only its second rate is another, and a quarter of the longest step does.
+ */
+#define LET_GO (RR_ELASTIC ? 2 : RR_LEVELS - 1)
+
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const rr_state *s, int size, rr_real *place, rr_real *rate)
 {
@@ -51,6 +57,9 @@ void rr_release(rr_state *s)
     rr_real rate[RR_SYSTEM];
     rr_real a[RR_MODES];
     rr_real b[RR_MODES];
+    if (s->phase->damped) {
+        rr_damp(s->phase, s->speed, s->owed, s->rate);
+    }
     coordinates_of(s, RR_STRUCTURED && impact->motors == RR_MOTORS_DRIVEN ? RR_N : RR_SYSTEM, place, rate);
 #if RR_STRUCTURED
     const rr_modes *const before = &s->phase->modes;
@@ -131,11 +140,7 @@ void rr_release(rr_state *s)
     s->x += more*s->f;
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
-    s->phase = next;
-    s->drifted = RR_R(0.0);
-    s->level = RR_LEVELS - 1; /* the force may turn at once, and other modes stand */
     s->past = s->past > 1 ? 1 : s->past;
-    s->even = 0;
-    s->ticks = next->steps*(1 << (RR_LEVELS - 1));
+    rr_begin_phase(next, s->touching ? LET_GO : 0, s);
 }
 

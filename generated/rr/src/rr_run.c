@@ -13,11 +13,12 @@
 #define LEAPS RR_R(0.5)
 /* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
 #define BEYOND 2
-/* Level of the shortest step, in rough runs. */
+/* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
 #define SHORTEST (RR_LEVELS - 1)
+#define SHORTEST_APART 4
 #define SHORTEST_ROUGH 2
-/* Steps in contact after which it is looked whether the rest matters. */
-#define LOOKS 2
+/* Steps of a falling force, or of none, after which it is looked whether the rest matters. */
+#define LOOKS 3
 /* Share of a first step within which the damper has to press the skin in, and the share of that time missed. */
 #define BRIEF RR_R(0.3)
 #define MISSED RR_R(1.2)
@@ -25,104 +26,146 @@
 #define LONGEST 4
 #define LONGEST_ROUGH 1
 /* Share of what a harder contact takes up to which rough runs take it to be out of reach. */
-#define ROUGHLY RR_R(1.3)
+#define ROUGHLY RR_R(3.0)
 /*
  * Most contacts of an impact whose forces are known: where a robot chatters on a body that hardly damps, each
  * depends on the one before, and errors grow from one to the next. Random arms and bodies make six at most.
  */
 #define MOST_CONTACTS 8
 
+/* What became of a step. */
+typedef enum {
+    TO_BE_SHORTER, /* or it is one in contact */
+    TAKEN,
+    TAKEN_AND_STRAIGHT
+} outcome;
+
 /* Changes the length of the next step. */
 static void change_level(rr_state *s, int level)
 {
     s->level = level;
+    s->step = &s->phase->level[level];
     s->even = 0;
+}
+
+void rr_begin_phase(const rr_phase *phase, int level, rr_state *s)
+{
+    s->phase = phase;
+    s->ticks = phase->steps*(1 << (RR_LEVELS - 1));
+    s->drift = phase->drift*s->speed;
+    s->drifted = RR_R(0.0);
+    s->owed = RR_R(0.0);
+    change_level(s, level);
 }
 
 /* Advances the clock, and lengthens the next step where it may. */
 static void tick(rr_state *s, bool longer)
 {
+    const rr_real h = s->step->h;
+    const int ticks = s->ticks - (1 << (RR_LEVELS - 1 - s->level));
     s->h_before = s->h;
-    s->h = s->phase->level[s->level].h;
-    s->time += s->h;
-    s->drifted += s->phase->drift*s->speed*s->h;
-    s->ticks -= 1 << (RR_LEVELS - 1 - s->level);
+    s->h = h;
+    s->time += h;
+    s->owed = RR_R(0.5)*h;
+    s->drifted += s->drift*h;
+    s->ticks = ticks;
     ++s->even;
-    if (longer && s->level > 0 && s->ticks % (1 << (RR_LEVELS - s->level)) == 0) {
+    if (longer && s->level > 0 && ticks % (1 << (RR_LEVELS - s->level)) == 0) {
         change_level(s, s->level - 1);
     }
 }
 
-/* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
-static void see(rr_state *s, const rr_trial *t, rr_peak *peak)
+/* Notes a force; `since` is its time less that of the last node. */
+static void see(const rr_state *s, rr_real force, rr_real since, rr_peak *peak)
 {
-    const rr_real h = s->phase->level[s->level].h;
-    rr_real force = t->f;
-    rr_real time = s->time + h;
-    if (t->f < s->f && s->past > 0 && s->rise >= RR_R(0.0)) {
-        const rr_real before = s->rise/s->h;
-        const rr_real after = (t->f - s->f)/h;
-        const rr_real bend = (after - before)/(h + s->h);
-        const rr_real slope = before + bend*s->h;
-        const rr_real since = RR_R(-0.5)*slope/bend; /* the last node */
-        force = s->f + RR_R(0.5)*slope*since;
-        time = s->time + since;
-        if (s->past > 1) {
-            const rr_real bent = RR_R(-6.0)*s->bump/(s->h*s->h); /* at the last node */
-            const rr_real twist = (bend - bent)/(h + s->h + s->h_before);
-            force += twist*since*(since + s->h)*(since - h);
-        }
-    }
-    if (force + s->swings > peak->force) {
-        s->depth = t->f > peak->force ? t->depth : s->depth;
-        peak->force = force + s->swings;
-        peak->time = time;
-        peak->contact = peak->contacts;
+    const rr_real most = force + s->swings;
+    if (most > peak->force) {
+        peak->force = most;
+        peak->time = s->time + since;
     }
 }
 
-/* A step in contact; false if it must be shorter. */
-static bool step_pressed(rr_state *s, rr_trial *t, rr_real bends, int shortest, rr_peak *peak)
+/* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
+static void see_top(const rr_state *s, const rr_trial *t, rr_peak *peak)
+{
+    const rr_real h = s->step->h;
+    const rr_real before = s->rise/s->h;
+    const rr_real after = (t->f - s->f)/h;
+    const rr_real bend = (after - before)/(h + s->h);
+    const rr_real slope = before + bend*s->h;
+    const rr_real since = RR_R(-0.5)*slope/bend;
+    rr_real force = s->f + RR_R(0.5)*slope*since;
+    if (s->past > 1) {
+        const rr_real bent = RR_R(-6.0)*s->bump/(s->h*s->h); /* at the last node */
+        const rr_real twist = (bend - bent)/(h + s->h + s->h_before);
+        force += twist*since*(since + s->h)*(since - h);
+    }
+    see(s, force, since, peak);
+}
+
+/* A step in contact. */
+static outcome step_pressed(rr_state *s, rr_trial *t, rr_real bends, int shortest, rr_peak *peak)
 {
     rr_press(s, t);
     const rr_real allowed = bends*RR_FMAX(s->scale, peak->force);
     const rr_real bent = RR_R(6.0)*RR_FABS(t->bump);
+    const rr_real rise = t->f - s->f;
     const bool parts = !(t->f > RR_R(0.0));
-    const bool jagged = s->impact->region->law != NULL;
-    const rr_real between = jagged ? rr_force_between(s, t) : RR_R(0.0);
-    const bool leaps = between > RR_FMAX(s->f, t->f) + LEAPS*allowed;
-    const bool slips = jagged && rr_slip_off(s, t) > LEAPS*allowed;
-    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || leaps || slips)) {
+    rr_real between = RR_R(0.0); /* nodes of a law through points, where it leaps there */
+    bool slips = false;
+    if (s->impact->region->law != NULL) {
+        const rr_real force = rr_force_between(s, t);
+        between = force > RR_FMAX(s->f, t->f) + LEAPS*allowed ? force : RR_R(0.0);
+        slips = between > RR_R(0.0) || rr_slip_off(s, t) > LEAPS*allowed;
+    }
+    if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
-        return false;
+        return TO_BE_SHORTER;
     }
     rr_take(t, s);
-    see(s, t, peak);
-    if (leaps && between + s->swings > peak->force) {
-        peak->force = between + s->swings;
+    if (rise >= RR_R(0.0)) {
+        s->depth = t->f > peak->force ? t->depth : s->depth;
+        see(s, t->f, s->step->h, peak);
+    } else if (s->past > 0 && s->rise >= RR_R(0.0)) {
+        see_top(s, t, peak);
+    }
+    if (between > RR_R(0.0)) {
+        peak->force = RR_FMAX(peak->force, between + s->swings);
     }
     if (parts) {
         s->touching = false;
-        s->rest = RR_FMAX(t->x, (s->x - s->u)*s->phase->level[s->level].relax);
+        s->rest = RR_FMAX(t->x, (s->x - s->u)*s->step->relax);
     }
-    const bool straight = bent <= STRAIGHT*allowed && RR_R(6.0)*RR_FABS(s->bump) <= STRAIGHT*allowed;
+    const rr_real most = STRAIGHT*allowed;
+    const bool straight = s->past > 0 && bent <= most && RR_R(6.0)*RR_FABS(s->bump) <= most;
     s->bump = t->bump;
-    s->rise = t->f - s->f;
+    s->rise = rise;
     s->f = t->f;
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
-    s->root = t->root;
     s->x = t->x;
     ++s->past;
-    tick(s, straight && s->past > 1);
-    return true;
+    return straight ? TAKEN_AND_STRAIGHT : TAKEN;
 }
 
-/* A step out of contact; false if it must be shorter, or is one in contact. */
-static bool step_apart(rr_state *s, const rr_trial *t, int shortest, rr_peak *peak)
+/* They touch: the contact begins with no force. */
+static void touch(rr_state *s)
 {
-    const rr_real rest = s->rest*s->phase->level[s->level].relax;
+    s->touching = true;
+    s->past = 0;
+    s->even = 0;
+    s->u = s->x - s->rest;
+    s->f = RR_R(0.0);
+    s->rise = RR_R(0.0);
+    s->bump = RR_R(0.0);
+    s->now = RR_R(0.0);
+}
+
+/* A step out of contact. */
+static outcome step_apart(rr_state *s, const rr_trial *t, int shortest, rr_peak *peak)
+{
+    const rr_real rest = s->rest*s->step->relax;
     if (t->x > rest) {
         if (s->level < shortest) { /* to a step that ends before they touch, if both approach evenly */
             rr_real share = RR_R(2.0)*(s->rest - s->x)/(s->rest - s->x + t->x - rest);
@@ -132,19 +175,11 @@ static bool step_apart(rr_state *s, const rr_trial *t, int shortest, rr_peak *pe
                 ++level;
             }
             change_level(s, level);
-            return false;
+        } else {
+            touch(s);
+            ++peak->contacts;
         }
-        s->touching = true;
-        s->past = 0;
-        s->even = 0;
-        s->u = s->x - s->rest;
-        s->f = RR_R(0.0);
-        s->rise = RR_R(0.0);
-        s->bump = RR_R(0.0);
-        s->now = RR_R(0.0);
-        s->root = RR_R(0.0);
-        ++peak->contacts;
-        return false;
+        return TO_BE_SHORTER;
     }
     for (int i = 0; i < s->phase->active; ++i) {
         s->amplitude[i] = t->amplitude[i];
@@ -152,8 +187,7 @@ static bool step_apart(rr_state *s, const rr_trial *t, int shortest, rr_peak *pe
     }
     s->rest = rest;
     s->x = t->x;
-    tick(s, true);
-    return true;
+    return TAKEN_AND_STRAIGHT;
 }
 
 /*
@@ -165,14 +199,13 @@ static void begin(const rr_region *region, int longest, rr_state *s)
     const rr_real pushed = region->damping*s->speed;
     const rr_real slow = rr_law_depth(region, pushed)/s->speed;
     if (s->phase->level[longest].h*BRIEF >= slow) {
-        s->level = longest;
+        change_level(s, longest);
     }
-    const rr_real share = RR_R(1.0) - MISSED*slow/s->phase->level[s->level].h;
+    const rr_real share = RR_R(1.0) - MISSED*slow/s->step->h;
     if (share > RR_R(0.0)) {
         s->f = share*pushed;
         s->now = rr_law_depth(region, s->f);
         s->u = s->now + s->phase->compliance*s->f;
-        s->root = RR_SQRT(s->now);
     }
 }
 
@@ -181,30 +214,20 @@ static void start(rr_impact *impact, rr_real speed, bool rough, rr_state *s)
     const rr_phase *const phase = &impact->phase[impact->first];
     const rr_real zero = RR_R(0.0);
     s->impact = impact;
-    s->phase = phase;
     s->speed = speed;
     s->scale = impact->scale;
-    change_level(s, rough ? SHORTEST_ROUGH : SHORTEST);
-    s->ticks = phase->steps*(1 << (RR_LEVELS - 1));
+    rr_begin_phase(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
-    s->drifted = zero;
     for (int i = 0; i < phase->active; ++i) {
         s->amplitude[i] = zero;
         s->rate[i] = phase->modes.start[i]*speed;
     }
-    s->touching = true;
-    s->past = 0;
     s->h = zero;
     s->h_before = zero;
-    s->bump = zero;
     s->x = zero;
-    s->f = zero;
-    s->rise = zero;
-    s->u = zero;
-    s->u_before = zero;
-    s->now = zero;
-    s->root = zero;
     s->rest = zero;
+    s->u_before = zero;
+    touch(s);
     s->depth = zero;
     s->swings = zero;
     begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
@@ -213,31 +236,43 @@ static void start(rr_impact *impact, rr_real speed, bool rough, rr_state *s)
 /* Steps through a phase, a rough run until they part; false if the steps do not do. */
 static bool run_phase(rr_state *s, rr_budget *budget, rr_peak *peak)
 {
-    const rr_real bends = s->impact->smooth*(budget->rough ? BENDS_ROUGH : BENDS);
-    const rr_real share = budget->rough ? ROUGHLY : RR_R(1.0);
-    const int shortest = budget->rough ? SHORTEST_ROUGH : SHORTEST;
+    const bool rough = budget->rough;
+    const rr_real bends = s->impact->smooth*(rough ? BENDS_ROUGH : BENDS);
+    const rr_real share = rough ? ROUGHLY : RR_R(1.0);
+    const int shortest = rough ? SHORTEST_ROUGH : SHORTEST;
     rr_trial t;
+    int falls = 0; /* steps of a falling force since it was looked whether the rest matters */
     while (s->ticks > 0) {
         if (budget->steps <= 0 || peak->contacts > MOST_CONTACTS) {
             return false;
         }
         --budget->steps;
+        if (falls >= LOOKS) { /* a look takes as long as a step */
+            falls = 0;
+            if (rr_is_settled(s, peak->force - s->swings, s->depth, share)) {
+                peak->ended = true;
+                return true;
+            }
+            continue;
+        }
         rr_glide(s, &t);
-        const bool taken = s->touching ? step_pressed(s, &t, bends, shortest, peak)
-            : step_apart(s, &t, shortest, peak);
-        if (taken && s->phase->damped) {
-            rr_damp(s->phase, s->speed, RR_R(0.5)*s->h, s->rate);
+        const outcome was = s->touching ? step_pressed(s, &t, bends, shortest, peak)
+            : step_apart(s, &t, rough ? SHORTEST_ROUGH : SHORTEST_APART, peak);
+        if (was == TO_BE_SHORTER) {
+            continue;
         }
-        if (taken && budget->watch != NULL && rr_pass(s, budget->watch)) {
-            peak->ended = true;
-            return true;
-        }
-        const bool falls = taken && s->f + s->swings < peak->force;
-        const bool looks = falls && budget->watch == NULL && (s->past % LOOKS == 0 || !s->touching);
-        if ((falls && peak->force > budget->stop_above) || (budget->rough && taken && !s->touching)
-            || (looks && rr_is_settled(s, peak->force - s->swings, s->depth, share))) {
-            peak->ended = true;
-            return true;
+        tick(s, was == TAKEN_AND_STRAIGHT);
+        if (budget->watch != NULL) {
+            if (rr_pass(s, budget->watch)) {
+                peak->ended = true;
+                return true;
+            }
+        } else if (s->f + s->swings < peak->force) {
+            if (peak->force > budget->stop_above || (rough && !s->touching)) {
+                peak->ended = true;
+                return true;
+            }
+            ++falls;
         }
     }
     return true;
@@ -248,7 +283,6 @@ void rr_impact_run(rr_impact *impact, rr_real speed, rr_budget *budget, rr_peak 
     rr_state s;
     peak->force = RR_R(0.0);
     peak->time = RR_R(0.0);
-    peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
     budget->steps -= RR_STEPS_OF_RUN;

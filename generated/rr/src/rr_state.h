@@ -18,20 +18,22 @@ typedef struct {
     const rr_phase *phase;
     rr_real speed;
     rr_real scale; /* of forces, N */
+    const rr_level *step; /* of the next one's length */
     int level;
     int even; /* steps in a row of this length */
     rr_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     rr_real time;
-    rr_real drifted; /* by the motors, m */
+    rr_real drift, drifted; /* by the motors, m/s and m */
     rr_real amplitude[RR_MODES], rate[RR_MODES];
+    rr_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
     rr_real h, h_before, x; /* last steps, contact point */
     rr_real bump; /* what the bend adds to the force on average of the last step */
     rr_real f, rise; /* force, and by how much it grew in the last step */
     rr_real u, u_before; /* deformation of the skin and of what stands */
-    rr_real now, root; /* depth of the skin, and its root where it is Hertz's */
+    rr_real now; /* depth of the skin */
     rr_real rest; /* deflection of the body out of contact */
     rr_real depth; /* of the skin at the largest force so far */
     rr_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -53,11 +55,16 @@ typedef struct {
     rr_real amplitude[RR_MODES], rate[RR_MODES];
     rr_real x, v; /* of the contact point without the force at the end */
     rr_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    rr_real u, depth, root;
+    rr_real u, depth;
 } rr_trial;
+
+/* Goes over to the steps of a phase, the first of a level. */
+void rr_begin_phase(const rr_phase *phase, int level, rr_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate);
+/* Rates of modes, damped until halfway through the next step. */
+void rr_damp_ahead(const rr_state *s, rr_real *rate);
 
 /* Moves all modes by a step without forces. */
 void rr_glide(const rr_state *s, rr_trial *t);

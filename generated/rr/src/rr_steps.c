@@ -42,7 +42,7 @@ static void exchange(rr_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < RR_SYSTEM && i != j; ++k) {
+    for (int k = 0; k < RR_SYSTEM; ++k) {
         const rr_real shape = modes->shape[i][k];
         modes->shape[i][k] = modes->shape[j][k];
         modes->shape[j][k] = shape;
@@ -85,61 +85,61 @@ static void let_stand(const rr_impact *impact, rr_real contact, bool released, r
             phase->compliance += weight/modes->squared[i];
         } else {
             phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
-            exchange(modes, active < i ? active : i, i); /* it is never more */
+            if (active < i) {
+                exchange(modes, active, i);
+            }
             ++active;
         }
     }
     phase->active = active < modes->count ? active : modes->count;
 }
 
-/* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
-static void mode_steps(rr_phase *phase, int i)
+/*
+ * Steps of all modes at all levels: a series for the shortest, from which the others follow by the sine and
+ * cosine of twice an angle.
+ */
+static void mode_steps(rr_phase *phase)
 {
+    const rr_modes *const modes = &phase->modes;
     const rr_real one = RR_R(1.0);
-    const rr_real row = phase->modes.row[i];
     rr_real h = phase->level[RR_LEVELS - 1].h;
-    rr_real t = phase->modes.squared[i]*h*h;
-    /* sin(a)/a, (1 - cos(a))/a^2 and (a - sin(a))/a^3 over t = a^2 */
-    rr_real lean = RR_R(1.0)/RR_R(6.0)
-        - t*(one/RR_R(120.0) - t*(one/RR_R(5040.0) - t/RR_R(362880.0)));
-    rr_real bend = RR_R(0.5)
-        - t*(one/RR_R(24.0) - t*(one/RR_R(720.0) - t/RR_R(40320.0)));
-    rr_real sine = one - t*lean;
+    rr_real sine[RR_MODES]; /* sin(wh)/w */
+    rr_real push[RR_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
+    rr_real late[RR_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    for (int i = 0; i < phase->active; ++i) {
+        const rr_real t = modes->squared[i]*h*h;
+        late[i] = h*h*(one/RR_R(6.0) - t*(one/RR_R(120.0) - t*(one/RR_R(5040.0) - t/RR_R(362880.0))));
+        push[i] = h*h*(RR_R(0.5) - t*(one/RR_R(24.0) - t*(one/RR_R(720.0) - t/RR_R(40320.0))));
+        sine[i] = h*(one - modes->squared[i]*late[i]);
+    }
     for (int k = RR_LEVELS - 1; k >= 0; --k) {
         rr_level *const level = &phase->level[k];
-        rr_mode_step *const step = &level->mode[i];
-        step->cosine = one - t*bend;
-        step->sine = h*sine;
-        step->back = -phase->modes.squared[i]*h*sine;
-        step->push[0] = row*h*h*(bend - lean);
-        step->push[1] = row*h*h*lean;
-        step->kick[0] = row*h*(sine - bend);
-        step->kick[1] = row*h*bend;
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] += row*step->push[end];
-            level->kick[end] += row*step->kick[end];
+        const rr_real per = one/h;
+        rr_real pushes = RR_R(0.0);
+        rr_real lates = RR_R(0.0);
+        rr_real kicks = RR_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            rr_mode_step *const step = &level->mode[i];
+            const rr_real row = modes->row[i];
+            const rr_real cosine = one - modes->squared[i]*push[i];
+            step->cosine = cosine;
+            step->sine = sine[i];
+            step->back = -modes->squared[i]*sine[i];
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
+            push[i] = RR_R(2.0)*sine[i]*sine[i];
+            sine[i] *= RR_R(2.0)*cosine;
         }
-        lean = RR_R(0.25)*(lean + sine*bend);
-        bend = RR_R(0.5)*sine*sine;
-        sine *= step->cosine;
-        t *= RR_R(4.0);
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* Most that joints and a servo's gains damp a mode, 1/s. */
-static rr_real damping_rate(const rr_phase *phase)
-{
-    rr_real rate = RR_R(0.0);
-    for (int i = 0; i < RR_DAMPERS && phase->damped; ++i) {
-        rr_real of_motor = RR_R(0.0);
-        for (int k = 0; k < phase->modes.count; ++k) {
-            const rr_real shape = phase->modes.shape[k][RR_SYSTEM - RR_DAMPERS + i];
-            of_motor += shape*shape;
-        }
-        rate = RR_FMAX(rate, phase->damping[i]*of_motor);
-    }
-    return rate;
 }
 
 void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
@@ -175,23 +175,21 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
     const rr_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : RR_R(0.0);
     const rr_real slowest = RR_FMAX(RR_R(1.0)/time, rise);
-    const rr_real rate = RR_FMAX(slowest, RR_FMAX(RR_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const rr_real rate = RR_FMAX(slowest, RR_FMAX(RR_SQRT(rate2), rr_damping_rate(phase)/SERVO_STEP));
     const rr_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
-    rr_real h = wanted < MOST ? time/(rr_real)phase->steps : RR_R(1.0)/rate;
-    for (int k = 0; k < RR_LEVELS; ++k) {
-        rr_level *const level = &phase->level[k];
-        level->h = h;
-        level->relax = region->damping > RR_R(0.0)
-            ? RR_EXP(-RR_FMIN(region->stiffness*h/region->damping, RR_R(80.0))) : RR_R(0.0);
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] = RR_R(0.0);
-            level->kick[end] = RR_R(0.0);
-        }
-        h *= RR_R(0.5);
+    const rr_real h = wanted < MOST ? time/(rr_real)phase->steps : RR_R(1.0)/rate;
+    phase->level[0].h = h;
+    for (int k = 1; k < RR_LEVELS; ++k) {
+        phase->level[k].h = RR_R(0.5)*phase->level[k - 1].h;
     }
-    for (int i = 0; i < phase->active; ++i) {
-        mode_steps(phase, i);
+    const rr_real shortest = region->stiffness*phase->level[RR_LEVELS - 1].h;
+    rr_real relax = region->damping > RR_R(0.0)
+        ? RR_EXP(-RR_FMIN(shortest/region->damping, RR_R(80.0))) : RR_R(0.0);
+    for (int k = RR_LEVELS - 1; k >= 0; --k) {
+        phase->level[k].relax = relax;
+        relax *= relax;
     }
+    mode_steps(phase);
     phase->ready = true;
 }

@@ -16,6 +16,9 @@
 /* A mode of less than this share of all squared periods has no digits left. */
 #define NOISE (UR5E_R(8.0)*UR5E_EPSILON)
 
+/* Square of what may be left beside the diagonal of a compliance: energies change by less than its root. */
+#define SMALL UR5E_R(1e-8)
+
 #if UR5E_STRUCTURED
 /* S, R and b. */
 typedef struct {
@@ -35,6 +38,7 @@ static void scale_by_springs(const ur5e_arrival *arrival, const ur5e_params *p, 
         out->b[i] = arrival->row[i]*soft[i];
         for (int j = 0; j <= i; ++j) {
             out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
+            out->S[j][i] = out->S[i][j];
         }
     }
 }
@@ -43,12 +47,12 @@ static void scale_by_springs(const ur5e_arrival *arrival, const ur5e_params *p, 
 static int spring_modes(ur5e_matrix C, const ur5e_real b[UR5E_N], ur5e_modes *modes)
 {
     ur5e_real squares[UR5E_N];
-    ur5e_matrix vectors;
+    ur5e_real (*const vectors)[UR5E_SYSTEM] = &modes->shape[modes->rigid];
     ur5e_real all = UR5E_R(0.0);
     for (int i = 0; i < UR5E_N; ++i) {
         all += C[i][i];
     }
-    if (!ur5e_spectrum(UR5E_N, C, squares, vectors)) {
+    if (!ur5e_spectrum(UR5E_N, SMALL, C, squares, vectors)) {
         return UR5E_SINGULAR;
     }
     const ur5e_real least = NOISE*all;
@@ -60,10 +64,7 @@ static int spring_modes(ur5e_matrix C, const ur5e_real b[UR5E_N], ur5e_modes *mo
         ur5e_real row = UR5E_R(0.0);
         for (int j = 0; j < UR5E_N; ++j) {
             row += vectors[i][j]*b[j];
-            modes->shape[at][j] = vectors[i][j]*rate;
-        }
-        for (int j = UR5E_N; j < UR5E_SYSTEM; ++j) {
-            modes->shape[at][j] = UR5E_R(0.0);
+            vectors[i][j] *= rate;
         }
         modes->squared[at] = squared;
         modes->noise[at] = UR5E_R(0.0);
@@ -78,26 +79,18 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
     ur5e_real *drift)
 {
     spring_scaled s;
-    ur5e_matrix C;
     scale_by_springs(arrival, p, &s);
-    for (int i = 0; i < UR5E_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            C[i][j] = s.S[i][j];
-            C[j][i] = s.S[i][j];
-        }
-    }
     *drift = UR5E_R(1.0);
     modes->rigid = 0;
-    return spring_modes(C, s.b, modes);
+    return spring_modes(s.S, s.b, modes);
 }
 
 int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real carried[UR5E_N])
 {
+    const int end = UR5E_N - 1;
     spring_scaled s;
-    ur5e_matrix G;
-    ur5e_matrix Y; /* columns of L_G^-1 L' */
-    ur5e_matrix C;
+    ur5e_matrix G; /* and then C; from its end to its start: so Cholesky's factors are upper ones, G = U U' */
     ur5e_real z[UR5E_N];
     scale_by_springs(arrival, p, &s);
     if (!ur5e_cholesky(UR5E_N, s.S)) {
@@ -105,7 +98,7 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     }
     for (int i = 0; i < UR5E_N; ++i) {
         z[i] = s.b[i];
-        ur5e_real stiff[UR5E_N] = {0};
+        ur5e_real stiff[UR5E_N];
         for (int l = i; l < UR5E_N; ++l) {
             stiff[l] = s.S[l][i]/s.R[l];
         }
@@ -114,34 +107,43 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
             for (int l = i; l < UR5E_N; ++l) {
                 sum += stiff[l]*s.S[l][j];
             }
-            G[i][j] = sum;
+            G[end - j][end - i] = sum;
         }
     }
     if (!ur5e_cholesky(UR5E_N, G)) {
         return UR5E_SINGULAR;
     }
     ur5e_forward(UR5E_N, s.S, z);
-    ur5e_forward(UR5E_N, G, z);
+    for (int i = end; i >= 0; --i) {
+        for (int m = i + 1; m < UR5E_N; ++m) {
+            z[i] -= G[end - i][end - m]*z[m];
+        }
+        z[i] /= G[end - i][end - i];
+    }
     ur5e_real together = UR5E_R(0.0);
-    for (int i = 0; i < UR5E_N; ++i) { /* column i of L' ends at its row i */
+    for (int i = 0; i < UR5E_N; ++i) {
+        ur5e_real *const y = s.S[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
         ur5e_real sum = UR5E_R(0.0);
-        for (int l = 0; l < UR5E_N; ++l) {
-            ur5e_real rest = l <= i ? s.S[i][l] : UR5E_R(0.0);
-            for (int m = 0; m < l; ++m) {
-                rest -= G[l][m]*Y[i][m];
+        for (int l = i; l >= 0; --l) {
+            const ur5e_real *const U = G[end - l];
+            ur5e_real rest = y[l];
+            for (int m = l + 1; m <= i; ++m) {
+                rest -= U[end - m]*y[m];
             }
-            Y[i][l] = rest/G[l][l];
-            sum += Y[i][l]*z[l];
+            y[l] = rest/U[end - l];
+            sum += y[l]*z[l];
         }
         carried[i] = sum;
         together += s.b[i]*sum/s.R[i];
+    }
+    for (int i = 0; i < UR5E_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             ur5e_real entry = UR5E_R(0.0);
-            for (int l = 0; l < UR5E_N; ++l) {
-                entry += Y[i][l]*Y[j][l];
+            for (int l = 0; l <= j; ++l) {
+                entry += s.S[i][l]*s.S[j][l];
             }
-            C[i][j] = entry;
-            C[j][i] = entry;
+            G[i][j] = entry;
+            G[j][i] = entry;
         }
     }
     if (!(together > UR5E_R(0.0) && together <= UR5E_REAL_MAX)) {
@@ -155,7 +157,7 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     for (int j = 0; j < UR5E_SYSTEM; ++j) {
         modes->shape[0][j] = UR5E_R(0.0);
     }
-    return spring_modes(C, carried, modes);
+    return spring_modes(G, carried, modes);
 }
 
 /* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */

@@ -47,20 +47,21 @@ typedef struct {
     ur5e_real shape[UR5E_MODES][UR5E_SYSTEM];
 } ur5e_modes;
 
-/* One step of a mode: what amplitude, rate and the forces at both ends do. */
+/* One step of a mode: what amplitude, rate and force do. */
 typedef struct {
     ur5e_real cosine, sine; /* cos(wh), sin(wh)/w */
     ur5e_real back; /* -w sin(wh) */
-    ur5e_real push[2]; /* on the amplitude, of the forces at start and end */
-    ur5e_real kick[2]; /* on the rate */
+    ur5e_real push; /* row (1 - cos(wh))/w^2: on the amplitude, of a force that stays */
+    ur5e_real late; /* row (wh - sin(wh))/(w^3 h): the same of one that grows from none */
 } ur5e_mode_step;
 
 /* Steps of one length. */
 typedef struct {
     ur5e_real h; /* s */
     ur5e_real relax; /* what is left of the body's own deflection after a step out of contact */
-    ur5e_real push[2]; /* on the contact point */
-    ur5e_real kick[2];
+    ur5e_real per; /* 1/h */
+    ur5e_real push, late; /* on the contact point */
+    ur5e_real kick; /* on its velocity, of a force that stays; of one that grows it is push/h */
     ur5e_mode_step mode[UR5E_MODES];
 } ur5e_level;
 
@@ -78,6 +79,7 @@ typedef struct {
     ur5e_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     ur5e_real damping[UR5E_DAMPERS];
+    ur5e_real together[UR5E_DAMPERS][UR5E_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     ur5e_level level[UR5E_LEVELS];
 } ur5e_phase;
@@ -121,7 +123,6 @@ typedef struct {
 typedef struct {
     ur5e_real force; /* largest, N */
     ur5e_real time; /* of it since first touch, s */
-    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } ur5e_peak;
@@ -230,6 +231,8 @@ int ur5e_mobilities(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_real
 /* The same with links and rotors as one; 0 if their mass is not positive definite. */
 ur5e_real ur5e_together(const ur5e_arrival *arrival, const ur5e_params *p);
 
+/* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
+ur5e_real ur5e_damping_rate(ur5e_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *phase);
 
@@ -240,7 +243,10 @@ void ur5e_forward(int size, ur5e_matrix L, ur5e_real *x);
 void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x);
 /* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
 bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X);
-/* Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. */
-bool ur5e_spectrum(int size, ur5e_matrix A, ur5e_real *values, ur5e_matrix vectors);
+/*
+ * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is
+ * the square of an entry beside the diagonal, over the product of its neighbours on it, that counts as none.
+ */
+bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, ur5e_matrix vectors);
 
 #endif

@@ -2,15 +2,6 @@
 /* Linear algebra of ur5e_: Cholesky's factors, and eigenvectors by Jacobi's rotations. */
 #include "ur5e_impact.h"
 
-/*
- * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
- * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
- * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
- */
-#define TURNED UR5E_R(1e-8)
-/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
-#define SWEEPS 16
-
 bool ur5e_cholesky(int size, ur5e_matrix A)
 {
     for (int j = 0; j < size; ++j) {
@@ -56,6 +47,16 @@ void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x)
         x[i] = rest/L[i][i];
     }
 }
+
+#if !UR5E_STRUCTURED
+/*
+ * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
+ * the largest entry it may be as small as rounding and still turn slow modes that carry most of a motion.
+ * What is left turns eigenvectors by less than 1e-4; the next rotation would leave its square.
+ */
+#define TURNED UR5E_R(1e-8)
+/* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
+#define SWEEPS 16
 
 /* Turns columns i and j of a matrix by an angle. */
 static void turn_columns(int size, ur5e_matrix X, int i, int j, ur5e_real c, ur5e_real s)
@@ -112,3 +113,4 @@ bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X)
     }
     return false;
 }
+#endif

@@ -8,7 +8,7 @@
  */
 #include "ur5e_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass. */
+/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
 static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
 {
     if (!ur5e_cholesky(size, mass)) {
@@ -19,7 +19,7 @@ static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
         for (int i = 0; i < size; ++i) {
             column[i] = i == j ? UR5E_R(1.0) : UR5E_R(0.0);
         }
-        ur5e_backward(size, mass, column);
+        ur5e_backward(j + 1, mass, column);
         for (int i = 0; i < size; ++i) {
             X[i][j] = column[i];
         }
@@ -27,20 +27,20 @@ static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
     return true;
 }
 
-/* A = X'KX. */
+/* A = X'KX of such an X. */
 static void congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A)
 {
     for (int i = 0; i < size; ++i) {
         ur5e_real pulled[UR5E_SYSTEM];
-        for (int l = 0; l < size; ++l) {
+        for (int l = 0; l <= i; ++l) {
             pulled[l] = UR5E_R(0.0);
-            for (int m = 0; m < size; ++m) {
+            for (int m = 0; m <= i; ++m) {
                 pulled[l] += K[l][m]*X[m][i];
             }
         }
         for (int j = 0; j <= i; ++j) {
             ur5e_real sum = UR5E_R(0.0);
-            for (int l = 0; l < size; ++l) {
+            for (int l = 0; l <= j; ++l) {
                 sum += pulled[l]*X[l][j];
             }
             A[i][j] = sum;
@@ -49,6 +49,7 @@ static void congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A)
     }
 }
 
+#if !UR5E_STRUCTURED
 /*
  * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
@@ -89,6 +90,7 @@ static bool find_modes(int size, const int *places, ur5e_matrix L, ur5e_matrix A
     modes->fastest = UR5E_REAL_MAX;
     return found;
 }
+#endif
 
 /* P rates: what gravity and the model's own springs pull on as the motion before goes on, over v t. */
 static void pulled_on(const ur5e_arrival *arrival, ur5e_real pull[UR5E_SYSTEM])
@@ -199,29 +201,43 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
 int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real *drift)
 {
-    ur5e_matrix mass;
-    ur5e_matrix K;
+    ur5e_matrix mass; /* and then X'KX */
     ur5e_matrix X;
-    ur5e_matrix A;
-    int places[UR5E_SYSTEM];
-    ur5e_real row[UR5E_SYSTEM];
+    ur5e_real (*const K)[UR5E_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    modes->count = 0;
     whole(arrival, p, mass, K);
-    for (int i = 0; i < UR5E_SYSTEM; ++i) {
-        places[i] = i;
-        row[i] = i < UR5E_N ? arrival->row[i] : UR5E_R(0.0);
-    }
     for (int i = 0; i < UR5E_N; ++i) {
         const int motor = UR5E_SYSTEM - UR5E_N + i;
         K[motor][motor] += UR5E_GAIN(p, i);
     }
-    modes->count = 0;
     if (!unit_motions(UR5E_SYSTEM, mass, X)) {
         return UR5E_SINGULAR;
     }
-    congruent(UR5E_SYSTEM, K, X, A);
-    if (!find_modes(UR5E_SYSTEM, places, mass, A, X, row, modes)) {
+    congruent(UR5E_SYSTEM, K, X, mass);
+    ur5e_real all = UR5E_R(0.0);
+    for (int i = 0; i < UR5E_SYSTEM; ++i) {
+        all += UR5E_FABS(mass[i][i]);
+    }
+    if (!ur5e_spectrum(UR5E_SYSTEM, UR5E_EPSILON*UR5E_EPSILON, mass, modes->squared, K)) {
         return UR5E_SINGULAR;
     }
+    for (int i = 0; i < UR5E_SYSTEM; ++i) {
+        ur5e_real row = UR5E_R(0.0);
+        for (int j = 0; j < UR5E_SYSTEM; ++j) {
+            ur5e_real shape = UR5E_R(0.0);
+            for (int k = j; k < UR5E_SYSTEM; ++k) { /* X has nothing below its diagonal */
+                shape += X[j][k]*K[i][k];
+            }
+            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            row += j < UR5E_N ? arrival->row[j]*shape : UR5E_R(0.0);
+        }
+        modes->noise[i] = UR5E_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
+        modes->row[i] = row;
+        modes->start[i] = UR5E_R(0.0);
+    }
+    modes->count = UR5E_SYSTEM;
+    modes->rigid = 0;
+    modes->fastest = UR5E_REAL_MAX;
     *drift = UR5E_R(1.0);
     ur5e_real pull[UR5E_SYSTEM];
     pulled_on(arrival, pull);

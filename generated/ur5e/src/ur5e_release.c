@@ -2,6 +2,12 @@
 /* What is left of an impact of ur5e_ when its motors are let go, in modes of loose motors. */
 #include "ur5e_state.h"
 
+/*
+ * Level of the first step in contact: where motors are on the links themselves these have another acceleration at
+ * once; behind springs only its second rate is another, and a quarter of the longest step does.
+ */
+#define LET_GO (UR5E_ELASTIC ? 2 : UR5E_LEVELS - 1)
+
 /* Displacements and velocities of `size` coordinates beside the motion before, from a phase's modes. */
 static void coordinates_of(const ur5e_state *s, int size, ur5e_real *place, ur5e_real *rate)
 {
@@ -51,6 +57,9 @@ void ur5e_release(ur5e_state *s)
     ur5e_real rate[UR5E_SYSTEM];
     ur5e_real a[UR5E_MODES];
     ur5e_real b[UR5E_MODES];
+    if (s->phase->damped) {
+        ur5e_damp(s->phase, s->speed, s->owed, s->rate);
+    }
     coordinates_of(s, UR5E_STRUCTURED && impact->motors == UR5E_MOTORS_DRIVEN ? UR5E_N : UR5E_SYSTEM, place, rate);
 #if UR5E_STRUCTURED
     const ur5e_modes *const before = &s->phase->modes;
@@ -131,11 +140,7 @@ void ur5e_release(ur5e_state *s)
     s->x += more*s->f;
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
-    s->phase = next;
-    s->drifted = UR5E_R(0.0);
-    s->level = UR5E_LEVELS - 1; /* the force may turn at once, and other modes stand */
     s->past = s->past > 1 ? 1 : s->past;
-    s->even = 0;
-    s->ticks = next->steps*(1 << (UR5E_LEVELS - 1));
+    ur5e_begin_phase(next, s->touching ? LET_GO : 0, s);
 }
 

@@ -18,20 +18,22 @@ typedef struct {
     const ur5e_phase *phase;
     ur5e_real speed;
     ur5e_real scale; /* of forces, N */
+    const ur5e_level *step; /* of the next one's length */
     int level;
     int even; /* steps in a row of this length */
     ur5e_pace pace;
     int ticks; /* of the shortest step, until the phase is over */
     ur5e_real time;
-    ur5e_real drifted; /* by the motors, m */
+    ur5e_real drift, drifted; /* by the motors, m/s and m */
     ur5e_real amplitude[UR5E_MODES], rate[UR5E_MODES];
+    ur5e_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
     ur5e_real h, h_before, x; /* last steps, contact point */
     ur5e_real bump; /* what the bend adds to the force on average of the last step */
     ur5e_real f, rise; /* force, and by how much it grew in the last step */
     ur5e_real u, u_before; /* deformation of the skin and of what stands */
-    ur5e_real now, root; /* depth of the skin, and its root where it is Hertz's */
+    ur5e_real now; /* depth of the skin */
     ur5e_real rest; /* deflection of the body out of contact */
     ur5e_real depth; /* of the skin at the largest force so far */
     ur5e_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -53,11 +55,16 @@ typedef struct {
     ur5e_real amplitude[UR5E_MODES], rate[UR5E_MODES];
     ur5e_real x, v; /* of the contact point without the force at the end */
     ur5e_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    ur5e_real u, depth, root;
+    ur5e_real u, depth;
 } ur5e_trial;
+
+/* Goes over to the steps of a phase, the first of a level. */
+void ur5e_begin_phase(const ur5e_phase *phase, int level, ur5e_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void ur5e_damp(const ur5e_phase *phase, ur5e_real speed, ur5e_real time, ur5e_real *rate);
+/* Rates of modes, damped until halfway through the next step. */
+void ur5e_damp_ahead(const ur5e_state *s, ur5e_real *rate);
 
 /* Moves all modes by a step without forces. */
 void ur5e_glide(const ur5e_state *s, ur5e_trial *t);

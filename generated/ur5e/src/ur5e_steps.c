@@ -42,7 +42,7 @@ static void exchange(ur5e_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < UR5E_SYSTEM && i != j; ++k) {
+    for (int k = 0; k < UR5E_SYSTEM; ++k) {
         const ur5e_real shape = modes->shape[i][k];
         modes->shape[i][k] = modes->shape[j][k];
         modes->shape[j][k] = shape;
@@ -85,61 +85,61 @@ static void let_stand(const ur5e_impact *impact, ur5e_real contact, bool release
             phase->compliance += weight/modes->squared[i];
         } else {
             phase->blurred = phase->blurred || !(modes->squared[i] < modes->fastest);
-            exchange(modes, active < i ? active : i, i); /* it is never more */
+            if (active < i) {
+                exchange(modes, active, i);
+            }
             ++active;
         }
     }
     phase->active = active < modes->count ? active : modes->count;
 }
 
-/* Steps of one mode at all levels: a series for the shortest, from which the others follow. */
-static void mode_steps(ur5e_phase *phase, int i)
+/*
+ * Steps of all modes at all levels: a series for the shortest, from which the others follow by the sine and
+ * cosine of twice an angle.
+ */
+static void mode_steps(ur5e_phase *phase)
 {
+    const ur5e_modes *const modes = &phase->modes;
     const ur5e_real one = UR5E_R(1.0);
-    const ur5e_real row = phase->modes.row[i];
     ur5e_real h = phase->level[UR5E_LEVELS - 1].h;
-    ur5e_real t = phase->modes.squared[i]*h*h;
-    /* sin(a)/a, (1 - cos(a))/a^2 and (a - sin(a))/a^3 over t = a^2 */
-    ur5e_real lean = UR5E_R(1.0)/UR5E_R(6.0)
-        - t*(one/UR5E_R(120.0) - t*(one/UR5E_R(5040.0) - t/UR5E_R(362880.0)));
-    ur5e_real bend = UR5E_R(0.5)
-        - t*(one/UR5E_R(24.0) - t*(one/UR5E_R(720.0) - t/UR5E_R(40320.0)));
-    ur5e_real sine = one - t*lean;
+    ur5e_real sine[UR5E_MODES]; /* sin(wh)/w */
+    ur5e_real push[UR5E_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
+    ur5e_real late[UR5E_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    for (int i = 0; i < phase->active; ++i) {
+        const ur5e_real t = modes->squared[i]*h*h;
+        late[i] = h*h*(one/UR5E_R(6.0) - t*(one/UR5E_R(120.0) - t*(one/UR5E_R(5040.0) - t/UR5E_R(362880.0))));
+        push[i] = h*h*(UR5E_R(0.5) - t*(one/UR5E_R(24.0) - t*(one/UR5E_R(720.0) - t/UR5E_R(40320.0))));
+        sine[i] = h*(one - modes->squared[i]*late[i]);
+    }
     for (int k = UR5E_LEVELS - 1; k >= 0; --k) {
         ur5e_level *const level = &phase->level[k];
-        ur5e_mode_step *const step = &level->mode[i];
-        step->cosine = one - t*bend;
-        step->sine = h*sine;
-        step->back = -phase->modes.squared[i]*h*sine;
-        step->push[0] = row*h*h*(bend - lean);
-        step->push[1] = row*h*h*lean;
-        step->kick[0] = row*h*(sine - bend);
-        step->kick[1] = row*h*bend;
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] += row*step->push[end];
-            level->kick[end] += row*step->kick[end];
+        const ur5e_real per = one/h;
+        ur5e_real pushes = UR5E_R(0.0);
+        ur5e_real lates = UR5E_R(0.0);
+        ur5e_real kicks = UR5E_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            ur5e_mode_step *const step = &level->mode[i];
+            const ur5e_real row = modes->row[i];
+            const ur5e_real cosine = one - modes->squared[i]*push[i];
+            step->cosine = cosine;
+            step->sine = sine[i];
+            step->back = -modes->squared[i]*sine[i];
+            step->push = row*push[i];
+            step->late = row*late[i];
+            pushes += row*step->push;
+            lates += row*step->late;
+            kicks += row*row*sine[i];
+            late[i] += sine[i]*push[i]*per;
+            push[i] = UR5E_R(2.0)*sine[i]*sine[i];
+            sine[i] *= UR5E_R(2.0)*cosine;
         }
-        lean = UR5E_R(0.25)*(lean + sine*bend);
-        bend = UR5E_R(0.5)*sine*sine;
-        sine *= step->cosine;
-        t *= UR5E_R(4.0);
+        level->per = per;
+        level->push = pushes;
+        level->late = lates;
+        level->kick = kicks;
         h += h;
     }
-}
-
-/* Most that joints and a servo's gains damp a mode, 1/s. */
-static ur5e_real damping_rate(const ur5e_phase *phase)
-{
-    ur5e_real rate = UR5E_R(0.0);
-    for (int i = 0; i < UR5E_DAMPERS && phase->damped; ++i) {
-        ur5e_real of_motor = UR5E_R(0.0);
-        for (int k = 0; k < phase->modes.count; ++k) {
-            const ur5e_real shape = phase->modes.shape[k][UR5E_SYSTEM - UR5E_DAMPERS + i];
-            of_motor += shape*shape;
-        }
-        rate = UR5E_FMAX(rate, phase->damping[i]*of_motor);
-    }
-    return rate;
 }
 
 void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *phase)
@@ -175,23 +175,21 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
     const ur5e_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : UR5E_R(0.0);
     const ur5e_real slowest = UR5E_FMAX(UR5E_R(1.0)/time, rise);
-    const ur5e_real rate = UR5E_FMAX(slowest, UR5E_FMAX(UR5E_SQRT(rate2), damping_rate(phase)/SERVO_STEP));
+    const ur5e_real rate = UR5E_FMAX(slowest, UR5E_FMAX(UR5E_SQRT(rate2), ur5e_damping_rate(phase)/SERVO_STEP));
     const ur5e_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
-    ur5e_real h = wanted < MOST ? time/(ur5e_real)phase->steps : UR5E_R(1.0)/rate;
-    for (int k = 0; k < UR5E_LEVELS; ++k) {
-        ur5e_level *const level = &phase->level[k];
-        level->h = h;
-        level->relax = region->damping > UR5E_R(0.0)
-            ? UR5E_EXP(-UR5E_FMIN(region->stiffness*h/region->damping, UR5E_R(80.0))) : UR5E_R(0.0);
-        for (int end = 0; end < 2; ++end) {
-            level->push[end] = UR5E_R(0.0);
-            level->kick[end] = UR5E_R(0.0);
-        }
-        h *= UR5E_R(0.5);
+    const ur5e_real h = wanted < MOST ? time/(ur5e_real)phase->steps : UR5E_R(1.0)/rate;
+    phase->level[0].h = h;
+    for (int k = 1; k < UR5E_LEVELS; ++k) {
+        phase->level[k].h = UR5E_R(0.5)*phase->level[k - 1].h;
     }
-    for (int i = 0; i < phase->active; ++i) {
-        mode_steps(phase, i);
+    const ur5e_real shortest = region->stiffness*phase->level[UR5E_LEVELS - 1].h;
+    ur5e_real relax = region->damping > UR5E_R(0.0)
+        ? UR5E_EXP(-UR5E_FMIN(shortest/region->damping, UR5E_R(80.0))) : UR5E_R(0.0);
+    for (int k = UR5E_LEVELS - 1; k >= 0; --k) {
+        phase->level[k].relax = relax;
+        relax *= relax;
     }
+    mode_steps(phase);
     phase->ready = true;
 }

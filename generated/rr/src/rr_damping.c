@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: 0BSD */
+/*
+ * Dampers of rr_'s joints and servos, in coordinates of their own.
+ *
+ * They are few beside the modes: what turns them is summed over all modes, their impulses to second order in
+ * time follow from how they act on each other, and then go to the modes.
+ */
+#include "rr_state.h"
+
+rr_real rr_damping_rate(rr_phase *phase)
+{
+    rr_real rate = RR_R(0.0);
+    for (int i = 0; i < RR_DAMPERS && phase->damped; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            rr_real sum = RR_R(0.0);
+            for (int k = 0; k < phase->modes.count; ++k) {
+                const rr_real *const shape = &phase->modes.shape[k][RR_SYSTEM - RR_DAMPERS];
+                sum += shape[i]*shape[j];
+            }
+            phase->together[i][j] = sum;
+            phase->together[j][i] = sum;
+        }
+        rate = RR_FMAX(rate, phase->damping[i]*phase->together[i][i]);
+    }
+    return rate;
+}
+
+void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate)
+{
+    const rr_modes *const modes = &phase->modes;
+    rr_real turned[RR_DAMPERS];
+    rr_real impulse[RR_DAMPERS]; /* of each damper, to first and then to second order */
+    for (int j = 0; j < RR_DAMPERS; ++j) {
+        turned[j] = RR_R(0.0);
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const rr_real *const shape = &modes->shape[i][RR_SYSTEM - RR_DAMPERS];
+        const rr_real led = rate[i] - speed*modes->start[i];
+        for (int j = 0; j < RR_DAMPERS; ++j) {
+            turned[j] += shape[j]*led;
+        }
+    }
+    for (int j = 0; j < RR_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int j = 0; j < RR_DAMPERS; ++j) {
+        rr_real slowed = RR_R(0.0);
+        for (int k = 0; k < RR_DAMPERS; ++k) {
+            slowed += phase->together[j][k]*impulse[k];
+        }
+        turned[j] -= RR_R(0.5)*slowed;
+    }
+    for (int j = 0; j < RR_DAMPERS; ++j) {
+        impulse[j] = time*phase->damping[j]*turned[j];
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        const rr_real *const shape = &modes->shape[i][RR_SYSTEM - RR_DAMPERS];
+        rr_real change = RR_R(0.0);
+        for (int j = 0; j < RR_DAMPERS; ++j) {
+            change += shape[j]*impulse[j];
+        }
+        rate[i] -= change;
+    }
+}
+
+void rr_damp_ahead(const rr_state *s, rr_real *rate)
+{
+    for (int i = 0; i < s->phase->active; ++i) {
+        rate[i] = s->rate[i];
+    }
+    rr_damp(s->phase, s->speed, s->owed + RR_R(0.5)*s->step->h, rate);
+}
