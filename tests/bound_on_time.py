@@ -24,7 +24,7 @@ ITERATIONS, LEVELS, QR_STEPS = 8, 7, 3
 LIBRARY = {"memcpy": 60, "memset": 60, "powf": 150, "expf": 80, "sinf": 600, "cosf": 600}
 """Instructions of the C library's functions, above what was ever counted."""
 
-NEVER = ("damp", "servo_modes", "pass", "two_body_force", "law_press")
+NEVER = ("damp", "servo_modes", "pass", "two_body_force", "law_press", "force_between", "slip_off")
 """Functions of servos, of what presses late, of peak forces and of other laws than Hertz's."""
 
 
