@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from softimpact.optimize import Study
+from softimpact.optimize.machine.coordinates import beside_motors
 from softimpact.optimize.study.study_scenarios import contacts_of
 from softimpact.simulate.assessment import unused_of_the_file
 from softimpact.symbolic import BodyRegion
@@ -27,3 +28,10 @@ def study_warnings(study: Study) -> list[str]:
         *unused_of_the_file(study.model),
         *not_permitted(contact.region for contact in contacts_of(study)),
     ]
+
+
+def design_warnings(study: Study) -> list[str]:
+    """Return these of a design, of which a C package may be written."""
+    beside = beside_motors(study.model).any() or any("beside" in v.moves for v in study.variables)
+    line = "no C package of the design: it cannot have springs beside motors and behind them"
+    return [*study_warnings(study), *([line] if beside else [])]

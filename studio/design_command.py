@@ -121,7 +121,7 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
         return
     for line in robust_in_words(found):
         say(line)
-    say(f"Results, figure and the C package: {folder}")
+    say(f"{_written('figure', folder)}: {folder}")
 
 
 def _modes(name: str, study: Study) -> tuple[Mode, ...]:
@@ -165,14 +165,25 @@ def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:
 
 
 def _write_package(model: ImpactModel, folder: Path) -> None:
-    """Write the C of what was designed; that of a floating robot has its base held, and heavier."""
+    """Write the C of what was designed; that of a floating robot has its base held, and heavier.
+
+    It has no springs beside motors that have others behind them: ``design_warnings`` says so.
+    """
     from softimpact.codegen import generate_package
+    from softimpact.optimize.machine.coordinates import beside_motors
     from softimpact.symbolic.impact.floating import base_held, is_floating
 
+    if beside_motors(model).any():
+        return
     floating = is_floating(model.robot)
     if floating:
         model = base_held(model)
     generate_package(model.robot, folder / "c", drives=model.drives, floating=floating)
+
+
+def _written(figures: str, folder: Path) -> str:
+    package = (folder / "c").exists()
+    return f"Results, {figures} and the C package" if package else f"Results and {figures}"
 
 
 def _print(report: DesignReport, folder: Path) -> None:
@@ -180,4 +191,4 @@ def _print(report: DesignReport, folder: Path) -> None:
     from .output import say
 
     print_design(report)
-    say(f"\nResults, figures and the C package: {folder}")
+    say(f"\n{_written('figures', folder)}: {folder}")

@@ -22,7 +22,7 @@ from softimpact.simulate.bracket import unknown_rotors
 from softimpact.symbolic import Analysis, analyse
 from softimpact.symbolic.robot.rigid import Array
 
-from .cautions import study_warnings
+from .cautions import design_warnings
 from .checks import Check, doubts, peak_band, peaks_by_reaction, safe_speed, simulated
 
 Limited = Literal["transient", "quasi_static"]
@@ -192,7 +192,7 @@ def design_record(report: DesignReport) -> dict[str, Any]:
         "band": report.band,
         "reactions": {"before": report.reactions_before, "after": report.reactions_after},
         "peak_definition": "peak",
-        "warnings": [*study_warnings(study), *doubts(check.nlp, check.linearised, check.full)],
+        "warnings": [*design_warnings(study), *doubts(check.nlp, check.linearised, check.full)],
         "poses": [_pose(pose) for pose in report.poses],
     }
 

@@ -16,7 +16,7 @@ from softimpact.optimize.units import figure_in_words
 from softimpact.symbolic.robot.rigid import Array
 
 from .answers_in_words import answers_in_words
-from .cautions import study_warnings
+from .cautions import design_warnings
 from .design_report import GENERATOR, inputs, versions
 from .scenario_checks import (
     CheckedScenario,
@@ -50,7 +50,7 @@ def robust_record(design: RobustDesign, checks: Sequence[CheckedScenario]) -> di
         "versions": versions(),
         "study": inputs(study),
         "peak_definition": "peak",
-        "warnings": [*study_warnings(study), *doubts_in_words(design, checks)],
+        "warnings": [*design_warnings(study), *doubts_in_words(design, checks)],
         "objective": {
             "kind": study.objective.kind,
             "unit": study.objective.unit,

@@ -113,7 +113,7 @@ class _Worker(SpawnProcess):
     """
 
     def start(self) -> None:
-        with _without_drawing():
+        with _without_drawing(), _interruption_waits():
             self._start_deaf()
 
     def _start_deaf(self) -> None:
@@ -126,6 +126,26 @@ class _Worker(SpawnProcess):
             super().start()
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _interruption_waits() -> Iterator[None]:
+    """Let Ctrl-C come after a process has started: one that is half started nobody can end.
+
+    That the signal is blocked meanwhile does not do: another thread takes it for this one.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or before is None:
+        yield
+        return
+    pressed: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _: pressed.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if pressed:
+            signal.raise_signal(signal.SIGINT)
 
 
 @contextmanager

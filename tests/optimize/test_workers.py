@@ -48,11 +48,37 @@ if __name__ == "__main__":
 """
 
 
+HALF_STARTED = """
+from multiprocessing import util
+import threading
+
+start = util.spawnv_passfds
+
+
+def press():
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # inherited from the main thread
+    signal.pthread_kill(threading.get_ident(), signal.SIGINT)
+
+
+def pressed(program, words, handles):
+    pid = start(program, words, handles)
+    if any("multiprocessing-fork" in str(word) for word in words):  # not what Python starts beside
+        thread = threading.Thread(target=press)
+        thread.start()
+        thread.join()
+    return pid
+
+
+util.spawnv_passfds = pressed
+"""
+"""Presses Ctrl-C when a worker runs that was not told yet what it is, in a thread that hears it."""
+
+
 @contextmanager
-def running(folder: Path) -> Iterator[subprocess.Popen[str]]:
-    """Run the script in a process group of its own; leave nothing of it behind."""
+def running(folder: Path, program: str = SCRIPT) -> Iterator[subprocess.Popen[str]]:
+    """Run a script in a process group of its own; leave nothing of it behind."""
     script = folder / "script.py"
-    script.write_text(SCRIPT, encoding="utf-8")
+    script.write_text(program, encoding="utf-8")
     pipe = subprocess.PIPE
     command = [sys.executable, str(script)]
     with subprocess.Popen(
@@ -80,6 +106,16 @@ def test_an_interruption_ends_searches_that_start_run_or_wait(tmp_path: Path, mo
         read_until(parent, moment)
         os.killpg(parent.pid, signal.SIGINT)
         _, words = parent.communicate(timeout=100)  # until all that hold the pipes have ended
+    assert parent.returncode == -signal.SIGINT
+    assert words.count("Traceback") == 1, words  # the parent's own
+    assert words.endswith("KeyboardInterrupt\n")
+
+
+def test_an_interruption_waits_for_a_worker_that_is_half_started(tmp_path: Path) -> None:
+    before, main, after = SCRIPT.partition('if __name__ == "__main__":\n')
+    start = "".join(f"    {line}\n" for line in HALF_STARTED.splitlines())
+    with running(tmp_path, before + main + start + after) as parent:
+        _, words = parent.communicate(timeout=100)
     assert parent.returncode == -signal.SIGINT
     assert words.count("Traceback") == 1, words  # the parent's own
     assert words.endswith("KeyboardInterrupt\n")

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from softimpact.__main__ import main as start
+
 HEAD = """
 import os
 import signal
@@ -108,3 +110,14 @@ def test_one_line_and_exit_code_130(tmp_path: Path, command: str) -> None:
             if parent.poll() is None:
                 os.killpg(parent.pid, signal.SIGKILL)
     assert (parent.returncode, words.strip()) == (130, "error: interrupted")
+
+
+def test_an_interruption_while_the_command_loads(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted() -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("softimpact.cli.main", interrupted)
+    assert start() == 130
+    assert capsys.readouterr().err == "error: interrupted\n"
