@@ -20,6 +20,7 @@ from .functions.guards import fastest_arrival, heaviest
 from .impacts import Impact, draw_impacts, reference_force
 from .inputs import Parameter, is_elastic
 from .manifest import FunctionRecord, ImpactRecord
+from .searched import searched
 from .source import CSource
 
 GOLDEN_IMPACTS = 12
@@ -37,17 +38,6 @@ DEFAULT_BUDGET = 800
 
 NOT_MEASURED = FunctionRecord("", 0, 0, 0.0, 0.0, 0.0)
 """Record of a function whose errors nobody asks for, or only in what is made of it."""
-
-SEARCHED = (
-    "288,000 random and hill-climbed inputs that arms and bodies have, on Panda, UR5e, Solo12, RR, "
-    "R-Min and four more robots, float and double (make adversarial): at safe speeds and at three "
-    "slower ones each, integrated by the tests' own integrator, the hardest reached 0.9982 of its "
-    "limit, and none at a slower speed the force at the safe one. Bodies that damp hard and arms "
-    "that chatter have got safer answers since, which were not searched as a whole. Other inputs, "
-    "and what is open: docs/impacts-in-c.md"
-)
-"""What search the runtime has stood, of sources before the last changes."""
-
 
 UNLIMITED = "servos have whatever torque their gains ask for, and so press harder than limited ones"
 
@@ -195,7 +185,7 @@ def impact_source(
         horizon=HORIZON,
         reaction_time=REACTION_TIME,
         steps=DEFAULT_BUDGET,
-        searched=SEARCHED,
+        searched=searched(),
         assumed=(UNLIMITED, *([STEADY] if robot.damping.any() else [])),
     )
     return ImpactSource(

@@ -2,7 +2,7 @@
 """Look for safe speeds that are none: random and hill-climbed inputs against the tests' integrator.
 
 Usage: PYTHONPATH=tests python -m adversarial [--inputs N] [--questions NAME ...] [--workers N]
-           [--journal FILE] [--out FILE] [ROBOT ...]
+           [--journal FILE] [--record] [ROBOT ...]
 
 Each round puts one question (``questions.py``) to one robot and build, of ``COUNT`` random inputs,
 and climbs ``TURNS`` times from the ``CLIMBS`` worst of them; drives and bodies are those there are,
@@ -25,12 +25,14 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
+from random import Random
 from typing import Any
 
 from compiled_packages import KINDS, Generated
 
 from .impacts import Robot
 from .questions import QUESTIONS
+from .record import Rows, summed, write
 from .robots import CLOSED, ROBOTS, package_of
 from .search import TURNS, Found, look
 
@@ -100,7 +102,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1, help="of the first round")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--journal", type=Path, default=Path("results/adversarial.jsonl"))
-    parser.add_argument("--out", type=Path, help="for the sums, JSON")
+    parser.add_argument("--record", action="store_true", help="what was found in packages and docs")
     told = parser.parse_args()
     widths = [width == "wide" for width in told.widths]
     kinds = [
@@ -127,6 +129,7 @@ def main() -> int:
             for k in range(rounds)
             for question, name, real, wide in kinds
         ]  # fmt: skip
+        Random(told.seed).shuffle(asked)  # so that a search that is ended has looked at all
         done = read(told.journal)
         left = [job for job in asked if key(job) not in done]
         print(f"{len(asked)} rounds, {len(asked) - len(left)} done before", flush=True)
@@ -143,7 +146,10 @@ def main() -> int:
                 found[key(job)] = result
                 rest = (time.monotonic() - start) / n * (len(left) - n)
                 say(job, result, f"{n}/{len(left)}, {rest / 60:.0f} min left")
-    return conclude([(job, found[key(job)]) for job in asked], told.out)
+    rows = [(job, found[key(job)]) for job in asked]
+    if told.record:
+        write(rows)
+    return conclude(rows)
 
 
 def key(job: Mapping[str, Any]) -> str:
@@ -173,23 +179,17 @@ def say(job: Mapping[str, Any], found: Mapping[str, Any], progress: str) -> None
         print(f"  {found['above']} ABOVE, such as {found['hardest'][0]}", flush=True)
 
 
-def conclude(rows: list[tuple[Mapping[str, Any], Mapping[str, Any]]], out: Path | None) -> int:
+def conclude(rows: Rows) -> int:
     """Print the sums of questions; return 1 if a force exceeds its limit."""
-    sums: dict[str, Found] = {}
-    for job, found in rows:
-        width = "wide" if job["wide"] else "plain"
-        for name in (f"{job['question']}, {width}", "all"):
-            sums[name] = sums.get(name, Found()).joined(Found(**found))
-    for name, total in sums.items():
+    sums = summed(rows)
+    for (question, width), total in sums.items():
         print(
-            f"{name}: {total.inputs} inputs, {total.answered} answered ({total.bounded} by a "
-            f"bound), {total.integrated} impacts, {total.above} above; worst {total.worst:.5f}, "
-            f"slower {total.below:.5f}, {total.slower:.5f} of the force at the safe speed"
+            f"{question}, {width}: {total.inputs} inputs, {total.answered} answered "
+            f"({total.bounded} by a bound), {total.integrated} impacts, {total.above} above; "
+            f"worst {total.worst:.5f}, slower {total.below:.5f}, {total.slower:.5f} of the force "
+            "at the answer"
         )
-    if out:
-        text = json.dumps({name: asdict(total) for name, total in sums.items()}, indent=1)
-        out.write_text(text + "\n", encoding="utf-8")
-    return int(sums["all"].above > 0)
+    return int(any(total.above for total in sums.values()))
 
 
 if __name__ == "__main__":

@@ -20,13 +20,10 @@ from softimpact.symbolic.robot.rigid import Array
 from .cases import Cases
 from .impacts import Robot
 from .laws import laws
-from .questions import QUESTIONS, Question
+from .questions import AT_REST, QUESTIONS, Question
 
 POOL = 400
 """Configurations of a closed chain from which one is chosen."""
-
-AT_REST = 1e-3
-"""Speed of a contact point that is not looked at [m/s]."""
 
 SPRINGS, ROTORS, GAINS = (300.0, 1e5), (0.05, 2.0), (10.0, 1e5)
 """What arms have: springs and gains [N·m/rad], reflected inertias [kg·m²]."""

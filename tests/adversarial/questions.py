@@ -26,6 +26,9 @@ FIELDS = {
 }
 """Fields of a package's parameters that have other names here."""
 
+AT_REST = 1e-3
+"""Speed of a contact point that is not looked at [m/s]."""
+
 LEAST = 0.05
 """Force [N] below which none matters: laws by tables are not told further."""
 
@@ -185,5 +188,7 @@ def answers(
         there, _ = called(package, "peak_force", cases, numbers, real)
         reached = np.where(there == SINGULAR, there, status)
         return Answers(reached, cases.speed, np.maximum(worst, LEAST))
+    if question.moves:  # of a point at rest nothing is said
+        status = np.where(moved > AT_REST, status, SINGULAR)
     speed = out["factor"] * moved if question.moves else out["speed"]
     return Answers(status, np.array(speed, float), cases.limit)

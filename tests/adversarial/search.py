@@ -42,6 +42,7 @@ class Found:
         bounded: of these, how many one from a bound.
         integrated: impacts integrated.
         above: inputs with a force above its limit at the safe speed or below it.
+        lost: inputs answered though motors cannot move the contact point along n at all.
         worst: largest force over its limit.
         below: the same at speeds below the safe one.
         slower: largest force at a speed below the safe one, over that at the safe one.
@@ -53,6 +54,7 @@ class Found:
     bounded: int = 0
     integrated: int = 0
     above: int = 0
+    lost: int = 0
     worst: float = 0.0
     below: float = 0.0
     slower: float = 0.0
@@ -60,7 +62,7 @@ class Found:
 
     def joined(self, other: Found) -> Found:
         """Return both together."""
-        sums = ("inputs", "answered", "bounded", "integrated", "above")
+        sums = ("inputs", "answered", "bounded", "integrated", "above", "lost")
         most = ("worst", "below", "slower")
         mine, theirs = vars(self), vars(other)
         hardest = sorted([*self.hardest, *other.hardest], key=lambda row: -row["share"])
@@ -100,6 +102,8 @@ class Search:
         asked, limits = cases.take(answered), told.limit[answered]
         speeds, status = told.speed[answered], told.status[answered]
         over, forces = self.over(asked, speeds, limits)
+        lost = np.isinf(over[:, 0])
+        over[lost] = forces[lost] = 0.0
         worst, slower = over.max(axis=1), over[:, 1:].max(axis=1, initial=0.0)
         out[answered] = slower if question.climbs else worst
         hardest = [
@@ -107,7 +111,7 @@ class Search:
              "at": float(self.at[k]), **asked.row(k)}
             for k in np.argsort(-worst)[:KEPT]
         ]  # fmt: skip
-        ratio = forces[:, 1:].max(axis=1, initial=0.0) / np.maximum(forces[:, 0], 1e-9)
+        ratio = forces[:, 1:].max(axis=1, initial=0.0) / np.maximum(forces[:, 0], 1e-3 * limits)
         self.found = self.found.joined(
             Found(
                 inputs=len(cases),
@@ -115,6 +119,7 @@ class Search:
                 bounded=int((status == BOUNDED).sum()),
                 integrated=over.size,
                 above=int((worst > 1).sum()),
+                lost=int(lost.sum()),
                 worst=float(worst.max()),
                 below=float(slower.max()),
                 slower=float(ratio.max()),

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,26 +18,28 @@ from adversarial.forces import forces
 from adversarial.impacts import Robot
 from adversarial.plain import plain_forces
 from adversarial.questions import QUESTIONS, Answers, Question
+from adversarial.record import PAGE, page, write
 from adversarial.robots import ROBOTS, package_of
-from adversarial.search import Search, look
+from adversarial.search import Found, Search, look
 from compiled_impacts import BOUNDED, DRIVEN, FREE, OK, SERVO, SINGULAR
 from compiled_packages import KINDS, Generated, mostly_slow
 from independent_impacts import arm_of, force_by_scipy
 
+from softimpact.codegen.searched import ASKED, record, searched
 from softimpact.simulate import Approach
 from softimpact.symbolic import REGIONS, Contact, Drives, Motors, impact_model
 
 FOUND = json.loads((Path(__file__).parents[1] / "adversarial/found.json").read_text())
 """Inputs that once had safe speeds that were none (``was``: the force over its limit)."""
 
-SINGULAR_ONCE = 2.0
+SINGULAR_ONCE = 3.0
 """What ``was`` exceeds where the contact point could not be moved along n at all."""
 
 
 def robot_of(package: Callable[[str], Generated], name: str, folder: Path) -> Robot:
     """Return a robot of the search."""
-    built_in = name not in ("two_links", "solo12")
-    return Robot(package(name) if built_in else package_of(name, folder / name), folder)
+    own = ("two_links", "solo12", "hanging", "cold", "five_bar")
+    return Robot(package_of(name, folder / name) if name in own else package(name), folder)
 
 
 def test_integrator_agrees_with_runge_and_kutta(
@@ -99,7 +101,8 @@ def test_integrator_agrees_with_scipy(
 
 
 @pytest.mark.parametrize(
-    "name", mostly_slow(["panda", "rr", "rmin", "two_links", "gen3"], ["panda", "rr"])
+    "name",
+    mostly_slow(["panda", "rr", "rmin", "two_links", "gen3", "five_bar"], ["panda", "rr"]),
 )
 def test_what_was_found_once_keeps_its_limit(
     package: Callable[[str], Generated], name: str, tmp_path: Path
@@ -135,6 +138,22 @@ def test_float_finds_what_double_does_where_slow_modes_carry_the_motion(
     (status, double), (_, single) = found
     assert (status == OK).all()
     np.testing.assert_allclose(single, double, rtol=1e-3)
+
+
+@pytest.mark.slow
+def test_stiff_springs_do_not_blur_what_soft_ones_do_where_gravity_pulls(
+    package: Callable[[str], Generated], tmp_path: Path
+) -> None:
+    robot, count = robot_of(package, "hanging", tmp_path), 200
+    random = np.random.default_rng(67)
+    cases = Draw(robot, random, wide=True).cases(count)
+    springs = np.where(random.random(cases.springs.shape) < 0.5, 10.0, 1e8)
+    cases = replace(cases, springs=springs, horizon=np.full(count, 0.1)).rounded()
+    status, speeds = robot.speeds(cases, "float")
+    told = (status == OK) | (status == BOUNDED)
+    assert told.sum() > 10
+    kept = cases.take(told)
+    assert (forces(robot, kept, speeds[told, None], 4.0)[:, 0] <= kept.limit).all()
 
 
 @pytest.mark.parametrize(
@@ -202,3 +221,37 @@ def test_a_journal_may_end_within_a_line(tmp_path: Path) -> None:
 
 def test_five_robots_and_more_are_looked_at() -> None:
     assert {"panda", "ur5e", "solo12", "rr", "rmin"} < set(ROBOTS)
+
+
+def test_packages_and_the_page_say_what_the_search_wrote(
+    package: Callable[[str], Generated], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = record()
+    assert PAGE.read_text(encoding="utf-8") == page(), "run `python -m adversarial.record`"
+    assert {one.question for one in told.sums} == set(QUESTIONS) == set(ASKED)
+    assert all(one.inputs > 0 and one.worst < np.inf for one in told.sums)
+    impact = package("panda").manifest.impact
+    assert impact is not None
+    assert impact.searched == searched()
+    monkeypatch.setattr("softimpact.codegen.searched.sources_digest", lambda: told.sources)
+    assert "before its last changes" not in searched()
+    monkeypatch.setattr("softimpact.codegen.searched.sources_digest", lambda: "other")
+    assert "before its last changes" in searched()
+
+
+def test_a_record_has_the_sums_of_all_rounds(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table = tmp_path / "page.md"
+    table.write_text("before\n\n<!-- searched -->\n\n<!-- /searched -->\n\nafter\n")
+    monkeypatch.setattr("adversarial.record.PAGE", table)
+    monkeypatch.setattr("adversarial.record.RECORD", tmp_path / "searched.json")
+    monkeypatch.setattr("adversarial.record.renew", lambda: None)
+    rounds = [
+        ({"question": "limit", "wide": False, "robot": robot, "seed": seed},
+         asdict(Found(inputs=10, above=k, worst=0.9 + k / 10)))
+        for k, (robot, seed) in enumerate([("panda", 3), ("rr", 4)])
+    ]  # fmt: skip
+    write(rounds)
+    (one,) = json.loads((tmp_path / "searched.json").read_text())["sums"]
+    assert (one["inputs"], one["above"], one["worst"]) == (20, 1, 1.0)

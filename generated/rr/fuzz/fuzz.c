@@ -12,6 +12,8 @@
 
 #include "rr.h"
 
+#define LAW_POINTS 4 /* at most, of a law by table */
+
 /* Everything that functions read, as plain numbers. */
 typedef struct {
     rr_real q[4];
@@ -23,6 +25,8 @@ typedef struct {
     rr_real region[4];
     rr_real number;
     rr_real dq[4];
+    rr_real place[3];
+    rr_law_point law[LAW_POINTS];
 } inputs;
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -57,6 +61,22 @@ static void decode(const uint8_t *data, size_t size, inputs *in)
         const rr_real x = (rr_real)(256*high + low - 32768)/(rr_real)4096;
         const rr_real positive = x*x*x*x;
         memcpy((unsigned char *)in + i*sizeof x, i < 7 ? &x : &positive, sizeof x);
+    }
+}
+
+/* Makes points a law: each number is what it rises by. */
+static void rise(rr_law_point law[LAW_POINTS])
+{
+    rr_real depth = 0;
+    rr_real force = 0;
+    for (int i = 0; i < LAW_POINTS; ++i) {
+        const rr_law_point by = law[i];
+        law[i].depth = depth;
+        law[i].force = force;
+        depth += (by.depth + by.knee_depth)/1024;
+        force += by.force + by.knee_force;
+        law[i].knee_depth = (law[i].depth + depth)/2;
+        law[i].knee_force = (law[i].force + force)/2;
     }
 }
 
@@ -134,6 +154,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         region.effective_mass = in.region[2];
         region.hertz_stiffness = in.region[3];
     }
+    if (size > 1 && data[1] % 4u == 1u) {
+        region.law_points = data[1] >> 4 & 7u; /* more than there are: refused, as points are no law */
+        region.law = in.law;
+        if ((data[1] & 128u) != 0u) {
+            rise(in.law);
+            region.law_points = 1 + region.law_points % LAW_POINTS;
+        }
+        region.law_points = region.law_points < LAW_POINTS ? region.law_points : LAW_POINTS;
+    }
     {
         rr_peak_force_t out;
         memset(&out, 0xA5, sizeof out);
@@ -154,6 +183,29 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (status == RR_OK && !(out.factor >= 0 && out.factor <= 1 && out.point >= -1 && out.point < RR_POINTS)) {
             abort();
         }
+    }
+    if (size % 4u == 2u) { /* until 0.6 s */
+        rr_real force;
+        memset(&force, 0xA5, sizeof force);
+        check(rr_pressing_force_at(in.q, 0, in.n, in.number, &region, &in.p, &force), &force, sizeof force);
+    }
+    if (size % 16u == 5u) { /* up to 15 times as long */
+        rr_allowed_speed_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = rr_allowed_speed_at(in.q, 0, in.n, &region, &in.p, &out);
+        check(status, &out.speed, sizeof out.speed);
+        check(status, &out.force, sizeof out.force);
+    }
+    if (size % 64u == 7u) { /* a hundred impacts */
+        rr_worst_direction_t out;
+        memset(&out, 0xA5, sizeof out);
+        check(rr_worst_direction_at(in.q, 0, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    if (size % 4u == 1u) {
+        rr_safe_speed_t out;
+        const int frame = size > 2 ? data[2] % 8 - 1 : 0;
+        memset(&out, 0xA5, sizeof out);
+        check(rr_safe_speed_on(in.q, frame, in.place, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
     }
     {
         rr_real poses[2][4];

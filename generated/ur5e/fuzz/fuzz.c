@@ -12,6 +12,8 @@
 
 #include "ur5e.h"
 
+#define LAW_POINTS 4 /* at most, of a law by table */
+
 /* Everything that functions read, as plain numbers. */
 typedef struct {
     ur5e_real q[6];
@@ -24,6 +26,8 @@ typedef struct {
     ur5e_real region[4];
     ur5e_real number;
     ur5e_real dq[6];
+    ur5e_real place[3];
+    ur5e_law_point law[LAW_POINTS];
 } inputs;
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -58,6 +62,22 @@ static void decode(const uint8_t *data, size_t size, inputs *in)
         const ur5e_real x = (ur5e_real)(256*high + low - 32768)/(ur5e_real)4096;
         const ur5e_real positive = x*x*x*x;
         memcpy((unsigned char *)in + i*sizeof x, i < 9 ? &x : &positive, sizeof x);
+    }
+}
+
+/* Makes points a law: each number is what it rises by. */
+static void rise(ur5e_law_point law[LAW_POINTS])
+{
+    ur5e_real depth = 0;
+    ur5e_real force = 0;
+    for (int i = 0; i < LAW_POINTS; ++i) {
+        const ur5e_law_point by = law[i];
+        law[i].depth = depth;
+        law[i].force = force;
+        depth += (by.depth + by.knee_depth)/1024;
+        force += by.force + by.knee_force;
+        law[i].knee_depth = (law[i].depth + depth)/2;
+        law[i].knee_force = (law[i].force + force)/2;
     }
 }
 
@@ -195,6 +215,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         region.effective_mass = in.region[2];
         region.hertz_stiffness = in.region[3];
     }
+    if (size > 1 && data[1] % 4u == 1u) {
+        region.law_points = data[1] >> 4 & 7u; /* more than there are: refused, as points are no law */
+        region.law = in.law;
+        if ((data[1] & 128u) != 0u) {
+            rise(in.law);
+            region.law_points = 1 + region.law_points % LAW_POINTS;
+        }
+        region.law_points = region.law_points < LAW_POINTS ? region.law_points : LAW_POINTS;
+    }
     {
         ur5e_peak_force_t out;
         memset(&out, 0xA5, sizeof out);
@@ -215,6 +244,29 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (status == UR5E_OK && !(out.factor >= 0 && out.factor <= 1 && out.point >= -1 && out.point < UR5E_POINTS)) {
             abort();
         }
+    }
+    if (size % 4u == 2u) { /* until 0.6 s */
+        ur5e_real force;
+        memset(&force, 0xA5, sizeof force);
+        check(ur5e_pressing_force_at(in.q, 0, in.n, in.number, &region, &in.p, &force), &force, sizeof force);
+    }
+    if (size % 16u == 5u) { /* up to 15 times as long */
+        ur5e_allowed_speed_t out;
+        memset(&out, 0xA5, sizeof out);
+        const int status = ur5e_allowed_speed_at(in.q, 0, in.n, &region, &in.p, &out);
+        check(status, &out.speed, sizeof out.speed);
+        check(status, &out.force, sizeof out.force);
+    }
+    if (size % 64u == 7u) { /* a hundred impacts */
+        ur5e_worst_direction_t out;
+        memset(&out, 0xA5, sizeof out);
+        check(ur5e_worst_direction_at(in.q, 0, in.number, &region, &in.p, &out), &out, sizeof out);
+    }
+    if (size % 4u == 1u) {
+        ur5e_safe_speed_t out;
+        const int frame = size > 2 ? data[2] % 9 - 1 : 0;
+        memset(&out, 0xA5, sizeof out);
+        check(ur5e_safe_speed_on(in.q, frame, in.place, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
     }
     {
         ur5e_real poses[2][6];
