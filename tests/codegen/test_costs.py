@@ -102,7 +102,7 @@ def test_no_input_exceeds_the_stated_bound_on_time(
     """Inputs that use up the budget, from where the adversarial search draws its own."""
     tool("qemu-system-arm")
     tool("arm-none-eabi-gcc")
-    generated, count = package("panda"), 2000
+    generated, count = package("panda"), 3000
     robot = Robot(generated, tmp_path)
     alike = {"motors": DRIVEN, "steps": FEW_STEPS, "reaction": 0.02, "horizon": 0.1}
     cases = Draw(robot, np.random.default_rng(51), wide=False).cases(count)
