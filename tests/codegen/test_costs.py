@@ -82,7 +82,7 @@ def test_a_safe_speed_is_bounded_as_the_design_asks(
 ) -> None:
     driven = panda_costs(package)["safe_speed (driven)"]
     assert driven.bound is not None
-    assert driven.m7.most <= 240_000 < driven.bound <= 280_000  # found, and proven of any input
+    assert driven.m7.most <= driven.bound <= 240_000  # found, and proven of any input
     assert driven.stack <= 10_500  # bytes
     assert panda_costs(package)["safe_speed"].m7.mean <= 150_000  # servos and free motors, too
 
@@ -116,7 +116,7 @@ def test_no_input_exceeds_the_stated_bound_on_time(
     most = Counter(generated, tmp_path)(cases.take(hard)).max()
     stated = panda_costs(package)["safe_speed (driven)"].bound
     assert stated is not None
-    assert 120_000 < most <= min(240_000, stated)
+    assert 110_000 < most <= stated
 
 
 def test_costs_come_back_for_their_sources_only(
