@@ -48,7 +48,7 @@ static void change_level(robot_state *s, int level)
     s->even = 0;
 }
 
-void robot_begin_phase(const robot_phase *phase, int level, robot_state *s)
+void robot_phase_begin(const robot_phase *phase, int level, robot_state *s)
 {
     s->phase = phase;
     s->ticks = phase->steps*(1 << (ROBOT_LEVELS - 1));
@@ -216,7 +216,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->impact = impact;
     s->speed = speed;
     s->scale = impact->scale;
-    robot_begin_phase(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
+    robot_phase_begin(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
     for (int i = 0; i < phase->active; ++i) {
         s->amplitude[i] = zero;

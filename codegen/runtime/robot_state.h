@@ -59,7 +59,7 @@ typedef struct {
 } robot_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */
-void robot_begin_phase(const robot_phase *phase, int level, robot_state *s);
+void robot_phase_begin(const robot_phase *phase, int level, robot_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate);

@@ -115,7 +115,7 @@ def test_what_was_found_once_keeps_its_limit(
             assert status[0] == SINGULAR, row
             continue
         assert status[0] in (OK, BOUNDED), row
-        shares = np.array([[1.0, 0.95, 0.8, 0.5]])
+        shares = np.array([[1.0, 0.95, 0.8, 0.74, 0.66, 0.5, 0.3]])
         right = forces(robot, cases, speed[0] * shares, 4.0) / cases.limit
         assert right.max() <= 1, row
 

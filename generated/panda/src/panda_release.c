@@ -141,6 +141,6 @@ void panda_release(panda_state *s)
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
     s->past = s->past > 1 ? 1 : s->past;
-    panda_begin_phase(next, s->touching ? LET_GO : 0, s);
+    panda_phase_begin(next, s->touching ? LET_GO : 0, s);
 }
 

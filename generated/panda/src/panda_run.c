@@ -48,7 +48,7 @@ static void change_level(panda_state *s, int level)
     s->even = 0;
 }
 
-void panda_begin_phase(const panda_phase *phase, int level, panda_state *s)
+void panda_phase_begin(const panda_phase *phase, int level, panda_state *s)
 {
     s->phase = phase;
     s->ticks = phase->steps*(1 << (PANDA_LEVELS - 1));
@@ -216,7 +216,7 @@ static void start(panda_impact *impact, panda_real speed, bool rough, panda_stat
     s->impact = impact;
     s->speed = speed;
     s->scale = impact->scale;
-    panda_begin_phase(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
+    panda_phase_begin(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
     for (int i = 0; i < phase->active; ++i) {
         s->amplitude[i] = zero;

@@ -59,7 +59,7 @@ typedef struct {
 } panda_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */
-void panda_begin_phase(const panda_phase *phase, int level, panda_state *s);
+void panda_phase_begin(const panda_phase *phase, int level, panda_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, panda_real *rate);

@@ -141,6 +141,6 @@ void rmin_release(rmin_state *s)
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
     s->past = s->past > 1 ? 1 : s->past;
-    rmin_begin_phase(next, s->touching ? LET_GO : 0, s);
+    rmin_phase_begin(next, s->touching ? LET_GO : 0, s);
 }
 

@@ -48,7 +48,7 @@ static void change_level(rmin_state *s, int level)
     s->even = 0;
 }
 
-void rmin_begin_phase(const rmin_phase *phase, int level, rmin_state *s)
+void rmin_phase_begin(const rmin_phase *phase, int level, rmin_state *s)
 {
     s->phase = phase;
     s->ticks = phase->steps*(1 << (RMIN_LEVELS - 1));
@@ -216,7 +216,7 @@ static void start(rmin_impact *impact, rmin_real speed, bool rough, rmin_state *
     s->impact = impact;
     s->speed = speed;
     s->scale = impact->scale;
-    rmin_begin_phase(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
+    rmin_phase_begin(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
     for (int i = 0; i < phase->active; ++i) {
         s->amplitude[i] = zero;

@@ -59,7 +59,7 @@ typedef struct {
 } rmin_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */
-void rmin_begin_phase(const rmin_phase *phase, int level, rmin_state *s);
+void rmin_phase_begin(const rmin_phase *phase, int level, rmin_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate);

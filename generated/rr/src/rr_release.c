@@ -141,6 +141,6 @@ void rr_release(rr_state *s)
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
     s->past = s->past > 1 ? 1 : s->past;
-    rr_begin_phase(next, s->touching ? LET_GO : 0, s);
+    rr_phase_begin(next, s->touching ? LET_GO : 0, s);
 }
 

@@ -48,7 +48,7 @@ static void change_level(rr_state *s, int level)
     s->even = 0;
 }
 
-void rr_begin_phase(const rr_phase *phase, int level, rr_state *s)
+void rr_phase_begin(const rr_phase *phase, int level, rr_state *s)
 {
     s->phase = phase;
     s->ticks = phase->steps*(1 << (RR_LEVELS - 1));
@@ -216,7 +216,7 @@ static void start(rr_impact *impact, rr_real speed, bool rough, rr_state *s)
     s->impact = impact;
     s->speed = speed;
     s->scale = impact->scale;
-    rr_begin_phase(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
+    rr_phase_begin(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
     for (int i = 0; i < phase->active; ++i) {
         s->amplitude[i] = zero;

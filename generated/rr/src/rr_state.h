@@ -59,7 +59,7 @@ typedef struct {
 } rr_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */
-void rr_begin_phase(const rr_phase *phase, int level, rr_state *s);
+void rr_phase_begin(const rr_phase *phase, int level, rr_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate);

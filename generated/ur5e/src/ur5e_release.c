@@ -141,6 +141,6 @@ void ur5e_release(ur5e_state *s)
     s->u += more*s->f;
     s->u_before += more*(s->f - s->rise);
     s->past = s->past > 1 ? 1 : s->past;
-    ur5e_begin_phase(next, s->touching ? LET_GO : 0, s);
+    ur5e_phase_begin(next, s->touching ? LET_GO : 0, s);
 }
 

@@ -48,7 +48,7 @@ static void change_level(ur5e_state *s, int level)
     s->even = 0;
 }
 
-void ur5e_begin_phase(const ur5e_phase *phase, int level, ur5e_state *s)
+void ur5e_phase_begin(const ur5e_phase *phase, int level, ur5e_state *s)
 {
     s->phase = phase;
     s->ticks = phase->steps*(1 << (UR5E_LEVELS - 1));
@@ -216,7 +216,7 @@ static void start(ur5e_impact *impact, ur5e_real speed, bool rough, ur5e_state *
     s->impact = impact;
     s->speed = speed;
     s->scale = impact->scale;
-    ur5e_begin_phase(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
+    ur5e_phase_begin(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
     for (int i = 0; i < phase->active; ++i) {
         s->amplitude[i] = zero;

@@ -59,7 +59,7 @@ typedef struct {
 } ur5e_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */
-void ur5e_begin_phase(const ur5e_phase *phase, int level, ur5e_state *s);
+void ur5e_phase_begin(const ur5e_phase *phase, int level, ur5e_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void ur5e_damp(const ur5e_phase *phase, ur5e_real speed, ur5e_real time, ur5e_real *rate);
