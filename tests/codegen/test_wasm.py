@@ -16,6 +16,7 @@ from sharing import once
 
 from softimpact.codegen import wasm
 from softimpact.codegen.errors import NoCrossCompiler, UnknownDeclaration
+from softimpact.codegen.inputs import SCALARS
 from softimpact.codegen.samples import Sample, draw_samples
 
 ASK = """
@@ -70,7 +71,8 @@ def test_functions_say_what_the_native_ones_say(
     for function, sample in asked:
         given: dict[str, Any] = {"q": list(sample.q)}
         given |= {"n": list(sample.n)} if function.direction else {}
-        scalars = dict(zip([s.name for s in function.scalars], sample.scalars, strict=False))
+        known = dict(zip(SCALARS, sample.scalars, strict=True))
+        scalars = {scalar.name: known[scalar] for scalar in function.scalars}
         p = fields(generated, sample) if function.parameters else None
         questions.append({"call": function.name, "given": {**given, **scalars}, "p": p})
     for (function, sample), found in zip(asked, ask(generated, questions), strict=True):
