@@ -99,8 +99,8 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     for (int i = 0; i < ROBOT_N; ++i) {
         z[i] = s.b[i];
         robot_real stiff[ROBOT_N];
-        for (int l = i; l < ROBOT_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        for (int l = 0; l < ROBOT_N; ++l) {
+            stiff[l] = l < i ? ROBOT_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             robot_real sum = i == j ? ROBOT_R(1.0) : ROBOT_R(0.0);

@@ -123,6 +123,7 @@ typedef struct {
 typedef struct {
     robot_real force; /* largest, N */
     robot_real time; /* of it since first touch, s */
+    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } robot_peak;

@@ -20,8 +20,6 @@
  * speeds and more.
  */
 #define SHARES 6
-static const robot_real SLOWER[SHARES] = {ROBOT_R(0.25), ROBOT_R(0.45), ROBOT_R(0.6), ROBOT_R(0.72),
-    ROBOT_R(0.84), ROBOT_R(0.94)};
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP ROBOT_R(8.0)
 
@@ -103,13 +101,15 @@ static bool find(robot_impact *impact, robot_real guess, robot_real cap, search 
 /* Lowers a speed that was found below the slowest share of it that is not safe; false if no speed is left. */
 static bool look_slower(robot_impact *impact, search *s, robot_budget *budget)
 {
+    static const robot_real slower[SHARES] = {ROBOT_R(0.25), ROBOT_R(0.45), ROBOT_R(0.6), ROBOT_R(0.72),
+        ROBOT_R(0.84), ROBOT_R(0.94)};
     const robot_real found = s->low;
     const robot_real force = s->low_force;
     s->low = ROBOT_R(0.0);
     for (int k = 0; k < SHARES; ++k) {
         robot_real unused;
         s->high = ROBOT_R(0.0);
-        if (!try_speed(impact, SLOWER[k]*found, false, s, budget, &unused) || s->high > ROBOT_R(0.0)) {
+        if (!try_speed(impact, slower[k]*found, false, s, budget, &unused) || s->high > ROBOT_R(0.0)) {
             return s->low > ROBOT_R(0.0);
         }
     }

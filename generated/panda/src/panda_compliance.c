@@ -99,8 +99,8 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     for (int i = 0; i < PANDA_N; ++i) {
         z[i] = s.b[i];
         panda_real stiff[PANDA_N];
-        for (int l = i; l < PANDA_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        for (int l = 0; l < PANDA_N; ++l) {
+            stiff[l] = l < i ? PANDA_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             panda_real sum = i == j ? PANDA_R(1.0) : PANDA_R(0.0);

@@ -82,6 +82,7 @@ static void see(const panda_state *s, panda_real force, panda_real since, panda_
     if (most > peak->force) {
         peak->force = most;
         peak->time = s->time + since;
+        peak->contact = peak->contacts;
     }
 }
 
@@ -123,10 +124,12 @@ static outcome step_pressed(panda_state *s, panda_trial *t, panda_real bends, in
         return TO_BE_SHORTER;
     }
     panda_take(t, s);
-    if (rise >= PANDA_R(0.0)) {
+    const bool rises = rise >= PANDA_R(0.0);
+    if (rises) {
         s->depth = t->f > peak->force ? t->depth : s->depth;
         see(s, t->f, s->step->h, peak);
-    } else if (s->past > 0 && s->rise >= PANDA_R(0.0)) {
+    }
+    if (!rises && s->past > 0 && s->rise >= PANDA_R(0.0)) {
         see_top(s, t, peak);
     }
     if (between > PANDA_R(0.0)) {
@@ -262,17 +265,14 @@ static bool run_phase(panda_state *s, panda_budget *budget, panda_peak *peak)
             continue;
         }
         tick(s, was == TAKEN_AND_STRAIGHT);
+        const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
+        falls += fell ? 1 : 0;
+        peak->ended = fell && (peak->force > budget->stop_above || (rough && !s->touching));
         if (budget->watch != NULL) {
-            if (panda_pass(s, budget->watch)) {
-                peak->ended = true;
-                return true;
-            }
-        } else if (s->f + s->swings < peak->force) {
-            if (peak->force > budget->stop_above || (rough && !s->touching)) {
-                peak->ended = true;
-                return true;
-            }
-            ++falls;
+            peak->ended = panda_pass(s, budget->watch);
+        }
+        if (peak->ended) {
+            return true;
         }
     }
     return true;
@@ -283,6 +283,7 @@ void panda_impact_run(panda_impact *impact, panda_real speed, panda_budget *budg
     panda_state s;
     peak->force = PANDA_R(0.0);
     peak->time = PANDA_R(0.0);
+    peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
     budget->steps -= PANDA_STEPS_OF_RUN;

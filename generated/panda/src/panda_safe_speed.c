@@ -20,8 +20,6 @@
  * speeds and more.
  */
 #define SHARES 6
-static const panda_real SLOWER[SHARES] = {PANDA_R(0.25), PANDA_R(0.45), PANDA_R(0.6), PANDA_R(0.72),
-    PANDA_R(0.84), PANDA_R(0.94)};
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP PANDA_R(8.0)
 
@@ -103,13 +101,15 @@ static bool find(panda_impact *impact, panda_real guess, panda_real cap, search 
 /* Lowers a speed that was found below the slowest share of it that is not safe; false if no speed is left. */
 static bool look_slower(panda_impact *impact, search *s, panda_budget *budget)
 {
+    static const panda_real slower[SHARES] = {PANDA_R(0.25), PANDA_R(0.45), PANDA_R(0.6), PANDA_R(0.72),
+        PANDA_R(0.84), PANDA_R(0.94)};
     const panda_real found = s->low;
     const panda_real force = s->low_force;
     s->low = PANDA_R(0.0);
     for (int k = 0; k < SHARES; ++k) {
         panda_real unused;
         s->high = PANDA_R(0.0);
-        if (!try_speed(impact, SLOWER[k]*found, false, s, budget, &unused) || s->high > PANDA_R(0.0)) {
+        if (!try_speed(impact, slower[k]*found, false, s, budget, &unused) || s->high > PANDA_R(0.0)) {
             return s->low > PANDA_R(0.0);
         }
     }

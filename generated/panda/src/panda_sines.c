@@ -60,7 +60,8 @@ void panda_sines_cosines(const panda_real *x, int count, panda_real *s, panda_re
         }
     }
     for (int i = 0; i < count; ++i) {
-        const int nearest = (int)(x[i]*PER_QUARTER + (ADDED + PANDA_R(0.5)));
+        const panda_real quarters = x[i]*PER_QUARTER + (ADDED + PANDA_R(0.5));
+        const int nearest = (int)quarters;
         const unsigned int quarter = (unsigned int)nearest;
         const panda_real k = (panda_real)nearest - ADDED;
         const panda_real about = (x[i] - k*QUARTER_1) - k*QUARTER_2;

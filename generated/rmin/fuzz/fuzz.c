@@ -22,7 +22,6 @@ typedef struct {
     rmin_real region[4];
     rmin_real number;
     rmin_real dq[6];
-    rmin_real place[3];
     rmin_law_point law[LAW_POINTS];
 } inputs;
 

@@ -99,8 +99,8 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     for (int i = 0; i < RMIN_N; ++i) {
         z[i] = s.b[i];
         rmin_real stiff[RMIN_N];
-        for (int l = i; l < RMIN_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        for (int l = 0; l < RMIN_N; ++l) {
+            stiff[l] = l < i ? RMIN_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             rmin_real sum = i == j ? RMIN_R(1.0) : RMIN_R(0.0);

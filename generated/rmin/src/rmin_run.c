@@ -82,6 +82,7 @@ static void see(const rmin_state *s, rmin_real force, rmin_real since, rmin_peak
     if (most > peak->force) {
         peak->force = most;
         peak->time = s->time + since;
+        peak->contact = peak->contacts;
     }
 }
 
@@ -123,10 +124,12 @@ static outcome step_pressed(rmin_state *s, rmin_trial *t, rmin_real bends, int s
         return TO_BE_SHORTER;
     }
     rmin_take(t, s);
-    if (rise >= RMIN_R(0.0)) {
+    const bool rises = rise >= RMIN_R(0.0);
+    if (rises) {
         s->depth = t->f > peak->force ? t->depth : s->depth;
         see(s, t->f, s->step->h, peak);
-    } else if (s->past > 0 && s->rise >= RMIN_R(0.0)) {
+    }
+    if (!rises && s->past > 0 && s->rise >= RMIN_R(0.0)) {
         see_top(s, t, peak);
     }
     if (between > RMIN_R(0.0)) {
@@ -262,17 +265,14 @@ static bool run_phase(rmin_state *s, rmin_budget *budget, rmin_peak *peak)
             continue;
         }
         tick(s, was == TAKEN_AND_STRAIGHT);
+        const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
+        falls += fell ? 1 : 0;
+        peak->ended = fell && (peak->force > budget->stop_above || (rough && !s->touching));
         if (budget->watch != NULL) {
-            if (rmin_pass(s, budget->watch)) {
-                peak->ended = true;
-                return true;
-            }
-        } else if (s->f + s->swings < peak->force) {
-            if (peak->force > budget->stop_above || (rough && !s->touching)) {
-                peak->ended = true;
-                return true;
-            }
-            ++falls;
+            peak->ended = rmin_pass(s, budget->watch);
+        }
+        if (peak->ended) {
+            return true;
         }
     }
     return true;
@@ -283,6 +283,7 @@ void rmin_impact_run(rmin_impact *impact, rmin_real speed, rmin_budget *budget, 
     rmin_state s;
     peak->force = RMIN_R(0.0);
     peak->time = RMIN_R(0.0);
+    peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
     budget->steps -= RMIN_STEPS_OF_RUN;

@@ -20,8 +20,6 @@
  * speeds and more.
  */
 #define SHARES 6
-static const rmin_real SLOWER[SHARES] = {RMIN_R(0.25), RMIN_R(0.45), RMIN_R(0.6), RMIN_R(0.72),
-    RMIN_R(0.84), RMIN_R(0.94)};
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP RMIN_R(8.0)
 
@@ -103,13 +101,15 @@ static bool find(rmin_impact *impact, rmin_real guess, rmin_real cap, search *s,
 /* Lowers a speed that was found below the slowest share of it that is not safe; false if no speed is left. */
 static bool look_slower(rmin_impact *impact, search *s, rmin_budget *budget)
 {
+    static const rmin_real slower[SHARES] = {RMIN_R(0.25), RMIN_R(0.45), RMIN_R(0.6), RMIN_R(0.72),
+        RMIN_R(0.84), RMIN_R(0.94)};
     const rmin_real found = s->low;
     const rmin_real force = s->low_force;
     s->low = RMIN_R(0.0);
     for (int k = 0; k < SHARES; ++k) {
         rmin_real unused;
         s->high = RMIN_R(0.0);
-        if (!try_speed(impact, SLOWER[k]*found, false, s, budget, &unused) || s->high > RMIN_R(0.0)) {
+        if (!try_speed(impact, slower[k]*found, false, s, budget, &unused) || s->high > RMIN_R(0.0)) {
             return s->low > RMIN_R(0.0);
         }
     }

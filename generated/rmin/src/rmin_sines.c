@@ -60,7 +60,8 @@ void rmin_sines_cosines(const rmin_real *x, int count, rmin_real *s, rmin_real *
         }
     }
     for (int i = 0; i < count; ++i) {
-        const int nearest = (int)(x[i]*PER_QUARTER + (ADDED + RMIN_R(0.5)));
+        const rmin_real quarters = x[i]*PER_QUARTER + (ADDED + RMIN_R(0.5));
+        const int nearest = (int)quarters;
         const unsigned int quarter = (unsigned int)nearest;
         const rmin_real k = (rmin_real)nearest - ADDED;
         const rmin_real about = (x[i] - k*QUARTER_1) - k*QUARTER_2;

@@ -99,8 +99,8 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     for (int i = 0; i < RR_N; ++i) {
         z[i] = s.b[i];
         rr_real stiff[RR_N];
-        for (int l = i; l < RR_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        for (int l = 0; l < RR_N; ++l) {
+            stiff[l] = l < i ? RR_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             rr_real sum = i == j ? RR_R(1.0) : RR_R(0.0);

@@ -123,6 +123,7 @@ typedef struct {
 typedef struct {
     rr_real force; /* largest, N */
     rr_real time; /* of it since first touch, s */
+    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } rr_peak;

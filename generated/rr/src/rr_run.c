@@ -82,6 +82,7 @@ static void see(const rr_state *s, rr_real force, rr_real since, rr_peak *peak)
     if (most > peak->force) {
         peak->force = most;
         peak->time = s->time + since;
+        peak->contact = peak->contacts;
     }
 }
 
@@ -123,10 +124,12 @@ static outcome step_pressed(rr_state *s, rr_trial *t, rr_real bends, int shortes
         return TO_BE_SHORTER;
     }
     rr_take(t, s);
-    if (rise >= RR_R(0.0)) {
+    const bool rises = rise >= RR_R(0.0);
+    if (rises) {
         s->depth = t->f > peak->force ? t->depth : s->depth;
         see(s, t->f, s->step->h, peak);
-    } else if (s->past > 0 && s->rise >= RR_R(0.0)) {
+    }
+    if (!rises && s->past > 0 && s->rise >= RR_R(0.0)) {
         see_top(s, t, peak);
     }
     if (between > RR_R(0.0)) {
@@ -262,17 +265,14 @@ static bool run_phase(rr_state *s, rr_budget *budget, rr_peak *peak)
             continue;
         }
         tick(s, was == TAKEN_AND_STRAIGHT);
+        const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
+        falls += fell ? 1 : 0;
+        peak->ended = fell && (peak->force > budget->stop_above || (rough && !s->touching));
         if (budget->watch != NULL) {
-            if (rr_pass(s, budget->watch)) {
-                peak->ended = true;
-                return true;
-            }
-        } else if (s->f + s->swings < peak->force) {
-            if (peak->force > budget->stop_above || (rough && !s->touching)) {
-                peak->ended = true;
-                return true;
-            }
-            ++falls;
+            peak->ended = rr_pass(s, budget->watch);
+        }
+        if (peak->ended) {
+            return true;
         }
     }
     return true;
@@ -283,6 +283,7 @@ void rr_impact_run(rr_impact *impact, rr_real speed, rr_budget *budget, rr_peak 
     rr_state s;
     peak->force = RR_R(0.0);
     peak->time = RR_R(0.0);
+    peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
     budget->steps -= RR_STEPS_OF_RUN;

@@ -20,8 +20,6 @@
  * speeds and more.
  */
 #define SHARES 6
-static const rr_real SLOWER[SHARES] = {RR_R(0.25), RR_R(0.45), RR_R(0.6), RR_R(0.72),
-    RR_R(0.84), RR_R(0.94)};
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP RR_R(8.0)
 
@@ -103,13 +101,15 @@ static bool find(rr_impact *impact, rr_real guess, rr_real cap, search *s,
 /* Lowers a speed that was found below the slowest share of it that is not safe; false if no speed is left. */
 static bool look_slower(rr_impact *impact, search *s, rr_budget *budget)
 {
+    static const rr_real slower[SHARES] = {RR_R(0.25), RR_R(0.45), RR_R(0.6), RR_R(0.72),
+        RR_R(0.84), RR_R(0.94)};
     const rr_real found = s->low;
     const rr_real force = s->low_force;
     s->low = RR_R(0.0);
     for (int k = 0; k < SHARES; ++k) {
         rr_real unused;
         s->high = RR_R(0.0);
-        if (!try_speed(impact, SLOWER[k]*found, false, s, budget, &unused) || s->high > RR_R(0.0)) {
+        if (!try_speed(impact, slower[k]*found, false, s, budget, &unused) || s->high > RR_R(0.0)) {
             return s->low > RR_R(0.0);
         }
     }

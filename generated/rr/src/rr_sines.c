@@ -60,7 +60,8 @@ void rr_sines_cosines(const rr_real *x, int count, rr_real *s, rr_real *c)
         }
     }
     for (int i = 0; i < count; ++i) {
-        const int nearest = (int)(x[i]*PER_QUARTER + (ADDED + RR_R(0.5)));
+        const rr_real quarters = x[i]*PER_QUARTER + (ADDED + RR_R(0.5));
+        const int nearest = (int)quarters;
         const unsigned int quarter = (unsigned int)nearest;
         const rr_real k = (rr_real)nearest - ADDED;
         const rr_real about = (x[i] - k*QUARTER_1) - k*QUARTER_2;

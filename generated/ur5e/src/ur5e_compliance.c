@@ -99,8 +99,8 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     for (int i = 0; i < UR5E_N; ++i) {
         z[i] = s.b[i];
         ur5e_real stiff[UR5E_N];
-        for (int l = i; l < UR5E_N; ++l) {
-            stiff[l] = s.S[l][i]/s.R[l];
+        for (int l = 0; l < UR5E_N; ++l) {
+            stiff[l] = l < i ? UR5E_R(0.0) : s.S[l][i]/s.R[l];
         }
         for (int j = 0; j <= i; ++j) {
             ur5e_real sum = i == j ? UR5E_R(1.0) : UR5E_R(0.0);

@@ -123,6 +123,7 @@ typedef struct {
 typedef struct {
     ur5e_real force; /* largest, N */
     ur5e_real time; /* of it since first touch, s */
+    int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
 } ur5e_peak;

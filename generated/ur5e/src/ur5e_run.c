@@ -82,6 +82,7 @@ static void see(const ur5e_state *s, ur5e_real force, ur5e_real since, ur5e_peak
     if (most > peak->force) {
         peak->force = most;
         peak->time = s->time + since;
+        peak->contact = peak->contacts;
     }
 }
 
@@ -123,10 +124,12 @@ static outcome step_pressed(ur5e_state *s, ur5e_trial *t, ur5e_real bends, int s
         return TO_BE_SHORTER;
     }
     ur5e_take(t, s);
-    if (rise >= UR5E_R(0.0)) {
+    const bool rises = rise >= UR5E_R(0.0);
+    if (rises) {
         s->depth = t->f > peak->force ? t->depth : s->depth;
         see(s, t->f, s->step->h, peak);
-    } else if (s->past > 0 && s->rise >= UR5E_R(0.0)) {
+    }
+    if (!rises && s->past > 0 && s->rise >= UR5E_R(0.0)) {
         see_top(s, t, peak);
     }
     if (between > UR5E_R(0.0)) {
@@ -262,17 +265,14 @@ static bool run_phase(ur5e_state *s, ur5e_budget *budget, ur5e_peak *peak)
             continue;
         }
         tick(s, was == TAKEN_AND_STRAIGHT);
+        const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
+        falls += fell ? 1 : 0;
+        peak->ended = fell && (peak->force > budget->stop_above || (rough && !s->touching));
         if (budget->watch != NULL) {
-            if (ur5e_pass(s, budget->watch)) {
-                peak->ended = true;
-                return true;
-            }
-        } else if (s->f + s->swings < peak->force) {
-            if (peak->force > budget->stop_above || (rough && !s->touching)) {
-                peak->ended = true;
-                return true;
-            }
-            ++falls;
+            peak->ended = ur5e_pass(s, budget->watch);
+        }
+        if (peak->ended) {
+            return true;
         }
     }
     return true;
@@ -283,6 +283,7 @@ void ur5e_impact_run(ur5e_impact *impact, ur5e_real speed, ur5e_budget *budget, 
     ur5e_state s;
     peak->force = UR5E_R(0.0);
     peak->time = UR5E_R(0.0);
+    peak->contact = 1;
     peak->contacts = 1;
     peak->ended = false;
     budget->steps -= UR5E_STEPS_OF_RUN;

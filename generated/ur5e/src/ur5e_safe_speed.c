@@ -20,8 +20,6 @@
  * speeds and more.
  */
 #define SHARES 6
-static const ur5e_real SLOWER[SHARES] = {UR5E_R(0.25), UR5E_R(0.45), UR5E_R(0.6), UR5E_R(0.72),
-    UR5E_R(0.84), UR5E_R(0.94)};
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP UR5E_R(8.0)
 
@@ -103,13 +101,15 @@ static bool find(ur5e_impact *impact, ur5e_real guess, ur5e_real cap, search *s,
 /* Lowers a speed that was found below the slowest share of it that is not safe; false if no speed is left. */
 static bool look_slower(ur5e_impact *impact, search *s, ur5e_budget *budget)
 {
+    static const ur5e_real slower[SHARES] = {UR5E_R(0.25), UR5E_R(0.45), UR5E_R(0.6), UR5E_R(0.72),
+        UR5E_R(0.84), UR5E_R(0.94)};
     const ur5e_real found = s->low;
     const ur5e_real force = s->low_force;
     s->low = UR5E_R(0.0);
     for (int k = 0; k < SHARES; ++k) {
         ur5e_real unused;
         s->high = UR5E_R(0.0);
-        if (!try_speed(impact, SLOWER[k]*found, false, s, budget, &unused) || s->high > UR5E_R(0.0)) {
+        if (!try_speed(impact, slower[k]*found, false, s, budget, &unused) || s->high > UR5E_R(0.0)) {
             return s->low > UR5E_R(0.0);
         }
     }

@@ -60,7 +60,8 @@ void ur5e_sines_cosines(const ur5e_real *x, int count, ur5e_real *s, ur5e_real *
         }
     }
     for (int i = 0; i < count; ++i) {
-        const int nearest = (int)(x[i]*PER_QUARTER + (ADDED + UR5E_R(0.5)));
+        const ur5e_real quarters = x[i]*PER_QUARTER + (ADDED + UR5E_R(0.5));
+        const int nearest = (int)quarters;
         const unsigned int quarter = (unsigned int)nearest;
         const ur5e_real k = (ur5e_real)nearest - ADDED;
         const ur5e_real about = (x[i] - k*QUARTER_1) - k*QUARTER_2;

@@ -121,6 +121,8 @@ static void lump(const robot_reduced_model_t *reduced, robot_impact *impact)
     modes->row[1] = ROBOT_SQRT(reduced->m_a/(reduced->m_c*both));
     modes->start[0] = ROBOT_SQRT(both);
     modes->start[1] = ROBOT_R(0.0);
+    modes->noise[0] = ROBOT_R(0.0);
+    modes->noise[1] = ROBOT_R(0.0);
     robot_phase_steps(impact, ROBOT_HORIZON(impact->p), &impact->phase[ROBOT_LOOSE]);
 }
 #endif

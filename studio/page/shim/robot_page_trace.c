@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force of an impact of robot_ over time: the runtime's own steps, each of them written down. */
 #define robot_impact_run robot_impact_run_seen /* nobody calls it */
+#define robot_phase_begin robot_phase_begin_seen /* the same as the runtime's */
 #include "robot_run.c" /* the runtime's, whose steps are its own */
 #undef robot_impact_run
+#undef robot_phase_begin
 
 #include "robot_page_steps.h"
 
@@ -39,18 +41,16 @@ static void write_down(const robot_state *s, pace *p, robot_follow_t *out)
 static bool step_on(robot_state *s, int *left, robot_peak *peak)
 {
     robot_trial t;
-    bool taken = false;
-    while (!taken) { /* steps on trial count, too */
+    outcome was = TO_BE_SHORTER;
+    while (was == TO_BE_SHORTER) { /* steps on trial count, too */
         if (--*left < 0 || peak->contacts > MOST_CONTACTS) {
             return false;
         }
         robot_glide(s, &t);
-        taken = s->touching ? step_pressed(s, &t, s->impact->smooth*DRAWN*BENDS, SHORTEST, peak)
-                            : step_apart(s, &t, SHORTEST, peak);
+        was = s->touching ? step_pressed(s, &t, s->impact->smooth*DRAWN*BENDS, SHORTEST, peak)
+                          : step_apart(s, &t, SHORTEST_APART, peak);
     }
-    if (s->phase->damped) {
-        robot_damp(s->phase, s->speed, ROBOT_R(0.5)*s->h, s->rate);
-    }
+    tick(s, was == TAKEN_AND_STRAIGHT);
     return true;
 }
 
