@@ -39,8 +39,8 @@ LEG = """
 
 OFF = pytest.mark.xfail(
     strict=True,
-    reason="the peak force of one golden input is 2.03e-3 off in float, where 2e-3 are stated, since "
-    "modes of servos come from QR steps; neither shorter steps nor more iterations change it",
+    reason="the peak force of one golden input is 2.03e-3 off in float, where 2e-3 are stated; "
+    "neither shorter steps nor more iterations change it",
 )
 """Open: of a light leg in float."""
 
