@@ -97,9 +97,7 @@ def safe_speeds(
     for name, end in ends.items():
         speed = largest_safe_speed(model, approach, contact, allowed, motors=end, **run)
         at = replace(approach, speed=speed)
-        there = simulate_impact(model, at, contact, motors=end, **run)
-        error = largest_linear_error(model, at, {name: there})
-        speeds[name] = nonlinear_safe_speed(model, at, contact, allowed, end, run, error)
+        speeds[name], error = nonlinear_safe_speed(model, at, contact, allowed, end, run)
         if error is not None and not lines and (error > TRUSTED or speeds[name] < speed):
             off = f"at the safe speed the linear model may be off by {100 * error:.0f} %"
             lines.append(f"{off}: {CHECKED}")
@@ -113,16 +111,18 @@ def nonlinear_safe_speed(
     allowed: ForceLimits,
     end: Motors | Controller | None,
     run: Mapping[str, Any],
-    error: float | None,
-) -> float:
+) -> tuple[float, float | None]:
     """Return the approach's speed if the nonlinear robot keeps its limits, else the largest it may.
 
-    It is not asked where the linear model's error counts as none, or is not known.
+    It is not asked where the linear model's error, which is returned, too, counts as none, or is
+    not known.
     """
+    linear = simulate_impact(model, approach, contact, motors=end, **run)
+    error = largest_linear_error(model, approach, {"": linear})
     if error is None or error <= EXACT:
-        return approach.speed
+        return approach.speed, error
     full = {**run, "fidelity": "full"}
     history = simulate_impact(model, approach, contact, motors=end, **full)
     if share_of_limit(history, allowed, "peak") <= 1 + ACCURACY:
-        return approach.speed
-    return largest_safe_speed(model, approach, contact, allowed, motors=end, **full)
+        return approach.speed, error
+    return largest_safe_speed(model, approach, contact, allowed, motors=end, **full), error

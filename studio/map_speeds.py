@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from softimpact.simulate import Approach, simulate_impact
+from softimpact.simulate import Approach
 from softimpact.simulate.assessment import force_limits
 from softimpact.simulate.sampled import SampledImpacts, Samples
 from softimpact.simulate.sampled_speeds import safe_speeds
-from softimpact.simulate.trust import largest_linear_error, nonlinear_safe_speed
+from softimpact.simulate.trust import nonlinear_safe_speed
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
@@ -29,7 +29,7 @@ FASTER = 1.4
 DOUBLINGS = 6
 """Times that a speed which is still safe is doubled; faster ones count as this fast."""
 
-DOUBTED = 10
+SLOWEST_ASKED = 10
 """Postures, the slowest ones, at which the nonlinear robot is asked where the linear may be off."""
 
 
@@ -101,16 +101,14 @@ def lowered_slowest(
         horizon: up to which forces count [s].
     """
     allowed = force_limits(limits_of(body.region, body.clamped))
-    slowest = np.argsort(safe)[:DOUBTED]
+    slowest = np.argsort(safe)[:SLOWEST_ASKED]
     lowered = safe.copy()
     for k in slowest:
         q, n, rate = at.q[k], at.direction[k], at.link_velocity[k]
-        for name, motors in ends.items():
+        for motors in ends.values():
             approach = Approach(q, n, lowered[k], rate)
             run = {"horizon": horizon}
-            history = simulate_impact(model, approach, body, motors=motors, horizon=horizon)
-            error = largest_linear_error(model, approach, {name: history})
-            lowered[k] = nonlinear_safe_speed(model, approach, body, allowed, motors, run, error)
+            lowered[k], _ = nonlinear_safe_speed(model, approach, body, allowed, motors, run)
     less = 1 - lowered / safe
     if not less.any():
         return lowered, []

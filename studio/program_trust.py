@@ -6,9 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from softimpact.simulate import simulate_impact
 from softimpact.simulate.assessment import force_limits
-from softimpact.simulate.trust import largest_linear_error, nonlinear_safe_speed
+from softimpact.simulate.trust import nonlinear_safe_speed
 
 from .program_moments import Question, approach_at, at_point
 
@@ -23,18 +22,14 @@ def nonlinear_share(
         ``linear_error``; and a line if that share is below 1.
     """
     least, seen, lines = 1.0, [], []
-    run: dict[str, Any] = {"horizon": question.horizon}
+    run = {"horizon": question.horizon}
     for moment in moments:
         at, body = at_point(question.model, moment["point"]), question.bodies[moment["body"]]
         approach = approach_at(question, moment, moment["factor"] * moment["speed"])
         allowed = force_limits(body.limits)
         errors = []
-        for kind, motors in question.ends.items():
-            history = simulate_impact(
-                at, approach, body.contact, motors=motors, horizon=question.horizon
-            )
-            error = largest_linear_error(at, approach, {kind: history})
-            safe = nonlinear_safe_speed(at, approach, body.contact, allowed, motors, run, error)
+        for motors in question.ends.values():
+            safe, error = nonlinear_safe_speed(at, approach, body.contact, allowed, motors, run)
             errors += [error] if error is not None else []
             if safe < least * approach.speed:
                 least = safe / approach.speed
