@@ -510,7 +510,8 @@ typedef struct {
 
 /*
  * As panda_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. PANDA_UNRESOLVED if no speed is known to keep both.
+ * region->quasi_static_limit from 0.5 to 0.6 s. PANDA_UNRESOLVED if no speed is known to keep both. What
+ * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at a slower one.
  */
 int panda_allowed_speed_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
     const panda_region *region, const panda_params *p, panda_allowed_speed_t *out);

@@ -492,7 +492,9 @@ inline result<panda_worst_direction_t> worst_direction_on(
 /* As panda_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and,
  * clamped,
  * region->quasi_static_limit from 0.5 to 0.6 s. PANDA_UNRESOLVED if no speed is known to keep
- * both. */
+ * both. What
+ * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at
+ * a slower one. */
 inline result<panda_allowed_speed_t> allowed_speed_at(
     const vector<7> &q,
     int point,

@@ -345,7 +345,8 @@ typedef struct {
 
 /*
  * As rmin_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. RMIN_UNRESOLVED if no speed is known to keep both.
+ * region->quasi_static_limit from 0.5 to 0.6 s. RMIN_UNRESOLVED if no speed is known to keep both. What
+ * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at a slower one.
  */
 int rmin_allowed_speed_at(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
     const rmin_region *region, const rmin_params *p, rmin_allowed_speed_t *out);

@@ -307,7 +307,10 @@ inline result<rmin_worst_direction_t> worst_direction_at(
 
 /* As rmin_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and,
  * clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. RMIN_UNRESOLVED if no speed is known to keep both. */
+ * region->quasi_static_limit from 0.5 to 0.6 s. RMIN_UNRESOLVED if no speed is known to keep both.
+ * What
+ * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at
+ * a slower one. */
 inline result<rmin_allowed_speed_t> allowed_speed_at(
     const vector<6> &q,
     int point,

@@ -374,7 +374,8 @@ typedef struct {
 
 /*
  * As rr_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. RR_UNRESOLVED if no speed is known to keep both.
+ * region->quasi_static_limit from 0.5 to 0.6 s. RR_UNRESOLVED if no speed is known to keep both. What
+ * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at a slower one.
  */
 int rr_allowed_speed_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
     const rr_region *region, const rr_params *p, rr_allowed_speed_t *out);

@@ -369,7 +369,10 @@ inline result<rr_worst_direction_t> worst_direction_on(
 
 /* As rr_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and,
  * clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. RR_UNRESOLVED if no speed is known to keep both. */
+ * region->quasi_static_limit from 0.5 to 0.6 s. RR_UNRESOLVED if no speed is known to keep both.
+ * What
+ * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at
+ * a slower one. */
 inline result<rr_allowed_speed_t> allowed_speed_at(
     const vector<4> &q,
     int point,

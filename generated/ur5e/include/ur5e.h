@@ -496,7 +496,8 @@ typedef struct {
 
 /*
  * As ur5e_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. UR5E_UNRESOLVED if no speed is known to keep both.
+ * region->quasi_static_limit from 0.5 to 0.6 s. UR5E_UNRESOLVED if no speed is known to keep both. What
+ * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at a slower one.
  */
 int ur5e_allowed_speed_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
     const ur5e_region *region, const ur5e_params *p, ur5e_allowed_speed_t *out);

@@ -491,7 +491,10 @@ inline result<ur5e_worst_direction_t> worst_direction_on(
 
 /* As ur5e_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and,
  * clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. UR5E_UNRESOLVED if no speed is known to keep both. */
+ * region->quasi_static_limit from 0.5 to 0.6 s. UR5E_UNRESOLVED if no speed is known to keep both.
+ * What
+ * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at
+ * a slower one. */
 inline result<ur5e_allowed_speed_t> allowed_speed_at(
     const vector<6> &q,
     int point,
