@@ -116,7 +116,7 @@ def test_no_input_exceeds_the_stated_bound_on_time(
     most = Counter(generated, tmp_path)(cases.take(hard)).max()
     stated = panda_costs(package)["safe_speed (driven)"].bound
     assert stated is not None
-    assert 110_000 < most <= stated
+    assert stated / 2 < most <= stated  # else the search or the bound is not worth much
 
 
 def test_costs_come_back_for_their_sources_only(
