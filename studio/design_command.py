@@ -179,20 +179,19 @@ def _package_beside(model: ImpactModel, folder: Path) -> Iterator[None]:
 
 
 def _write_package(model: ImpactModel, folder: Path) -> None:
-    """Write the C of a model; that of a floating robot has its base held, and heavier.
+    """Write the C of a model, where it has all of it; ``design_warnings`` says where not.
 
-    It has no springs beside motors that have others behind them: ``design_warnings`` says so.
+    That of a floating robot has its base held, and heavier.
     """
     from softimpact.codegen import generate_package
-    from softimpact.optimize.machine.coordinates import beside_motors
-    from softimpact.symbolic.impact.floating import base_held, is_floating
+    from softimpact.symbolic.impact.floating import is_floating
 
-    if beside_motors(model).any():
-        return
-    floating = is_floating(model.robot)
-    if floating:
-        model = base_held(model)
-    generate_package(model.robot, folder / "c", drives=model.drives, floating=floating)
+    from .cautions import in_c
+
+    held = in_c(model)
+    if held is not None:
+        floating = is_floating(model.robot)
+        generate_package(held.robot, folder / "c", drives=held.drives, floating=floating)
 
 
 def _written(figures: str, folder: Path) -> str:
