@@ -19,9 +19,9 @@ from softimpact.optimize.posture.tip_pose import tip_pose
 from softimpact.optimize.robust.robust import RobustDesign, robust_design
 from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.studio.checks import Check
+from softimpact.studio.design.checks import Check
+from softimpact.studio.design.scenario_checks import CheckedScenario, doubts_in_words
 from softimpact.studio.figures.robust import figure_of_robust_design
-from softimpact.studio.scenario_checks import CheckedScenario, doubts_in_words
 from softimpact.symbolic import InvalidValue, impact_model, limits_of, with_load
 from softimpact.symbolic.robot.rigid import Array
 
