@@ -118,19 +118,14 @@ def generate(
     from ..output.printed import print_json, print_warnings
     from ..output.progress import progress_bar
     from ..typed.pose_table import pose_table
-    from ..typed.situation import (
-        drives_of,
-        gravity_of,
-        loaded_arm,
-        whole_robot,
-    )
+    from ..typed.situation import drives_of, gravity_of
     from ..typed.values import one_of
 
     number: Real = one_of("number type", real, Real)
     if floating and arm.hold_base:
         raise InvalidValue("hold_base", "excludes floating; give one of them")
-    robot = whole_robot(arm.model, arm.tip) if floating else loaded_arm(arm).robot
-    print_warnings([*robot.warnings, *_left_out(robot)])
+    robot, warnings = _robot(arm, floating=floating)
+    print_warnings([*warnings, *_left_out(robot)])
     known = drives_of(robot, drives)
     write = partial(
         generate_package,
@@ -189,6 +184,17 @@ def _compiler() -> tuple[str, ...] | None:
     what = "there is no C compiler" if found is None else f"'{' '.join(found)}' makes no programs"
     typer.echo(f"warning: {what}, so the package's own test was not run", err=True)
     return None
+
+
+def _robot(arm: TypedArm, *, floating: bool) -> tuple[Robot, tuple[str, ...]]:
+    """Return the robot that a package is of, and what there is to say about it."""
+    from ..typed.situation import loaded_arm, whole_robot
+
+    if floating:
+        robot = whole_robot(arm.model, arm.tip)
+        return robot, robot.warnings
+    loaded = loaded_arm(arm)
+    return loaded.robot, loaded.warnings
 
 
 def _points(given: list[str]) -> dict[str, str]:

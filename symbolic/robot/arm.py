@@ -63,7 +63,7 @@ def arm_of(
     for name in locks:
         if name not in robot.joint_names:
             raise UnknownName("joint", name, robot.joint_names)
-    warnings = []
+    warnings = held_base(robot)
     if end is None:
         end, beyond = _default_end(robot, contact.name)
         if beyond:
@@ -90,6 +90,18 @@ def arm_of(
             "followed; lock some",
         )
     return Arm(replace(chain, tip=contact.name), end, tuple(warnings))
+
+
+def held_base(robot: Robot) -> list[str]:
+    """Return a line if an arm's base is one that may move in truth: others start at it, too."""
+    chains = sum(joint.parent == BASE for joint in robot.joints)
+    mass = robot.base_inertia.mass
+    if chains < 2 or mass <= 0:
+        return []
+    return [
+        f"the base of {robot.name} ({mass:.3g} kg, at which {chains} chains of joints start) is "
+        "taken as held: it does not give way"
+    ]
 
 
 def _default_end(robot: Robot, contact: str) -> tuple[str, list[str]]:
