@@ -58,6 +58,7 @@ def _broken_rules(package: Generated, real: str) -> set[str]:
     return {match[1] for match in map(MISRA.search, found) if match}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("robot", COMMITTED)
 def test_cppcheck_finds_listed_deviations_only(
     package: Callable[[str], Generated], robot: str

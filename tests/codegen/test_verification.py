@@ -55,6 +55,7 @@ def test_valgrind_finds_nothing(
     assert re.search(r"total heap usage: [12] allocs", said)  # printf's own
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("real", ["double", "float"])
 @pytest.mark.parametrize("robot", COMMITTED)
 def test_fuzzer_finds_nothing(

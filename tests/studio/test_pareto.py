@@ -247,6 +247,7 @@ def test_figures_are_legible_and_the_same_each_time(report: ParetoReport, tmp_pa
         assert path.read_bytes() == (folders[1] / path.name).read_bytes()
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_tables_say_what_was_found(tmp_path: Path) -> None:
     study = written(tmp_path, changed(HEAD, ("q9",)))
