@@ -135,5 +135,5 @@ def _one_line(error: Exception) -> str:
         place = "the result cannot be written" if error.filename is None else error.filename
         text = f"{place}: {error.strerror}"
     elif hasattr(error, "format_message"):  # usage errors
-        text = error.format_message()
+        text = error.format_message().replace("Value error, ", "")  # pydantic's, of choices
     return " ".join(text.split())

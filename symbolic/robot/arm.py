@@ -63,7 +63,7 @@ def arm_of(
     for name in locks:
         if name not in robot.joint_names:
             raise UnknownName("joint", name, robot.joint_names)
-    warnings = held_base(robot)
+    warnings = []
     if end is None:
         end, beyond = _default_end(robot, contact.name)
         if beyond:
@@ -89,7 +89,7 @@ def arm_of(
             f"{chain.n} joints lie on the way to '{end}', but no more than {MOST_JOINTS} are "
             "followed; lock some",
         )
-    return Arm(replace(chain, tip=contact.name), end, tuple(warnings))
+    return Arm(replace(chain, tip=contact.name), end, (*warnings, *held_base(robot)))
 
 
 def held_base(robot: Robot) -> list[str]:

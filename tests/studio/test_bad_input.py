@@ -286,6 +286,7 @@ def _along(angle: float) -> str:
         (["analyze"], "Missing argument"),
         (["analyze", *PANDA, "--stiffness", "1"], "No such option: --stiffness"),
         (["analyze", "panda", "--q", Q], "Missing option '--direction'"),
+        (["reproduce", "--out", "x", "--paper", "mms"], "for '--paper': 'mms' is not one of"),
     ],
 )
 def test_usage(words: list[str], reason: str) -> None:
