@@ -4,13 +4,22 @@
 
 /* When it does, s. */
 #define LATE ROBOT_R(0.5)
+/*
+ * From when on contacts after the first count where slower speeds matter, too: those of slower speeds come later, by
+ * 1.8 times at a twentieth of the speed (Hertz's contact lasts as v^-1/5), and oscillate with other phases.
+ */
+#define AGAIN ROBOT_R(0.25)
+/* Until when forces of a contact count that began before it was late. */
+#define COUNTS_UNTIL ROBOT_R(0.6005)
 /* Steps after which it is looked whether the rest matters. */
 #define LOOKS_LATE 2
 
 bool robot_pass(const robot_state *s, robot_watch *watch)
 {
-    if (s->time >= LATE) {
-        const robot_real share = ROBOT_FMIN((s->time - LATE)/s->h, ROBOT_R(1.0));
+    watch->apart = s->touching ? watch->apart : s->time;
+    const robot_real from = watch->slower && watch->apart > ROBOT_R(0.0) ? AGAIN : LATE;
+    if (s->time >= from && (s->time <= COUNTS_UNTIL || watch->apart > LATE)) {
+        const robot_real share = ROBOT_FMIN((s->time - from)/s->h, ROBOT_R(1.0));
         const robot_real then = share*watch->last + (ROBOT_R(1.0) - share)*s->f;
         const robot_real up = watch->last - watch->before;
         const robot_real down = watch->last - s->f;
@@ -25,6 +34,7 @@ bool robot_pass(const robot_state *s, robot_watch *watch)
     watch->before = watch->last;
     watch->last = s->f;
     const robot_real matters = watch->matters - s->swings;
-    return s->f < matters && s->past % LOOKS_LATE == 0
+    watch->settled = s->f < matters && s->past % LOOKS_LATE == 0
         && robot_is_settled(s, matters, watch->depth, ROBOT_R(1.0));
+    return watch->settled;
 }
