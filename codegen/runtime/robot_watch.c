@@ -10,7 +10,7 @@
  */
 #define AGAIN ROBOT_R(0.25)
 /* Until when forces of a contact count that began before it was late. */
-#define COUNTS_UNTIL ROBOT_R(0.6005)
+#define COUNTS_UNTIL ROBOT_R(0.6)
 /* Steps after which it is looked whether the rest matters. */
 #define LOOKS_LATE 2
 
@@ -18,12 +18,14 @@ bool robot_pass(const robot_state *s, robot_watch *watch)
 {
     watch->apart = s->touching ? watch->apart : s->time;
     const robot_real from = watch->slower && watch->apart > ROBOT_R(0.0) ? AGAIN : LATE;
-    if (s->time >= from && (s->time <= COUNTS_UNTIL || watch->apart > LATE)) {
+    const robot_real until = watch->apart > LATE ? s->time : ROBOT_FMIN(COUNTS_UNTIL, s->time);
+    if (s->time >= from && until > s->time - s->h) {
         const robot_real share = ROBOT_FMIN((s->time - from)/s->h, ROBOT_R(1.0));
         const robot_real then = share*watch->last + (ROBOT_R(1.0) - share)*s->f;
+        const robot_real now = s->f - (s->time - until)/s->h*(s->f - watch->last);
         const robot_real up = watch->last - watch->before;
         const robot_real down = watch->last - s->f;
-        watch->late = ROBOT_FMAX(watch->late, ROBOT_FMAX(then, s->f) + s->swings);
+        watch->late = ROBOT_FMAX(watch->late, ROBOT_FMAX(then, now) + s->swings);
         if (s->past > 1 && up >= ROBOT_R(0.0) && down > ROBOT_R(0.0)) { /* a top between nodes */
             const robot_real bend = (up/s->h_before + down/s->h)/(s->h + s->h_before);
             const robot_real slope = up/s->h_before - bend*s->h_before;
