@@ -22,6 +22,7 @@ typedef struct {
     robot_real n[3]; /* the worst so far */
     robot_real force;
     bool bounded, unknown;
+    bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
 /* Tries a direction over those in which the robot moves; says whether it is worse than all before. */
@@ -40,6 +41,7 @@ static bool try_direction(const robot_region *region, const robot_params *p, con
     if (status == ROBOT_OK) {
         status = robot_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->lost = w->lost || status == ROBOT_SINGULAR;
     w->unknown = w->unknown || (status != ROBOT_OK && status != ROBOT_BOUNDED && status != ROBOT_SINGULAR);
     const bool worse = (status == ROBOT_OK || status == ROBOT_BOUNDED) && found.force > w->force;
     if (worse) {
@@ -62,6 +64,50 @@ static void direction_of(int k, robot_real along[3])
     along[1] = flat*ROBOT_SIN(turn);
     along[2] = up;
 }
+
+#if ROBOT_REACH > 1
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const robot_region *region, const robot_params *p, hardest *w)
+{
+    const robot_real (*const J)[ROBOT_N] = (const robot_real (*)[ROBOT_N])&w->impact.arrival.links.J[3*w->point];
+    robot_matrix square;
+    robot_matrix vectors;
+    robot_real values[ROBOT_SYSTEM];
+    for (int k = 0; k < ROBOT_REACH; ++k) {
+        for (int l = 0; l < ROBOT_REACH; ++l) {
+            const robot_real *const a = robot_directions[k];
+            const robot_real *const b = robot_directions[l];
+            square[k][l] = ROBOT_R(0.0);
+            for (int i = 0; i < ROBOT_N; ++i) {
+                const robot_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
+                const robot_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                square[k][l] += robot_has_motor[i] ? by_a*by_b : ROBOT_R(0.0);
+            }
+        }
+    }
+    if (!robot_spectrum(ROBOT_REACH, ROBOT_EPSILON*ROBOT_EPSILON, square, values, vectors)) {
+        w->unknown = true;
+        return;
+    }
+    int least = 0;
+    for (int k = 1; k < ROBOT_REACH; ++k) {
+        least = values[k] < values[least] ? k : least;
+    }
+    const robot_real *const a = vectors[(least + 1) % ROBOT_REACH];
+    const robot_real *const b = vectors[(least + 2) % ROBOT_REACH];
+    for (int k = 0; k < (ROBOT_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
+        const robot_real turn = HALF_A_TURN*(robot_real)k/(robot_real)OVER_A_CIRCLE;
+        robot_real along[3] = {ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
+        for (int l = 0; l < ROBOT_REACH; ++l) {
+            along[l] = ROBOT_REACH > 2 ? ROBOT_COS(turn)*a[l] + ROBOT_SIN(turn)*b[l] : a[l];
+        }
+        (void)try_direction(region, p, along, w);
+    }
+}
+#endif
 
 /* Looks around the worst, wider where that helps. */
 static void look_around(const robot_region *region, const robot_params *p, hardest *w)
@@ -98,11 +144,17 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
     w->force = ROBOT_R(0.0);
     w->bounded = false;
     w->unknown = false;
+    w->lost = false;
     for (int k = 0; k < count; ++k) {
         robot_real along[3];
         direction_of(k, along);
         (void)try_direction(region, p, along, w);
     }
+#if ROBOT_REACH > 1
+    if (w->lost) {
+        try_across(region, p, w);
+    }
+#endif
     if (w->unknown) {
         return ROBOT_UNRESOLVED;
     }
