@@ -12,6 +12,9 @@
 #define NARROW ROBOT_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
+/* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
+#define STARTS 3
+#define ALIKE ROBOT_R(0.94)
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (ROBOT_R(1.0) - ROBOT_KEPT)
 
@@ -21,6 +24,7 @@ typedef struct {
     robot_real speed;
     robot_real n[3]; /* the worst so far */
     robot_real force;
+    robot_real tried; /* force of the last direction that was tried */
     bool bounded, unknown;
     bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
@@ -43,6 +47,7 @@ static bool try_direction(const robot_region *region, const robot_params *p, con
     }
     w->lost = w->lost || status == ROBOT_SINGULAR;
     w->unknown = w->unknown || (status != ROBOT_OK && status != ROBOT_BOUNDED && status != ROBOT_SINGULAR);
+    w->tried = found.force;
     const bool worse = (status == ROBOT_OK || status == ROBOT_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
@@ -137,6 +142,39 @@ static void look_around(const robot_region *region, const robot_params *p, harde
     }
 }
 
+/* Looks around the directions that were hardest, beside the hardest, of those over the ball. */
+static void look_elsewhere(const robot_region *region, const robot_params *p, int count, robot_real *forces, hardest *w)
+{
+    for (int start = 0; start < STARTS; ++start) {
+        const robot_real n[3] = {w->n[0], w->n[1], w->n[2]};
+        const robot_real force = w->force;
+        const bool bounded = w->bounded;
+        int best = 0;
+        for (int k = 1; k < count; ++k) {
+            best = forces[k] > forces[best] ? k : best;
+        }
+        if (!(forces[best] > ROBOT_R(0.0))) {
+            return;
+        }
+        direction_of(best, w->n);
+        w->force = forces[best];
+        for (int k = 0; k < count; ++k) {
+            robot_real along[3];
+            direction_of(k, along);
+            const robot_real cosine = along[0]*w->n[0] + along[1]*w->n[1] + along[2]*w->n[2];
+            forces[k] = ROBOT_FABS(cosine) > ALIKE ? ROBOT_R(0.0) : forces[k];
+        }
+        look_around(region, p, w);
+        if (!(w->force > force)) {
+            w->force = force;
+            w->bounded = bounded;
+            for (int k = 0; k < 3; ++k) {
+                w->n[k] = n[k];
+            }
+        }
+    }
+}
+
 /* Looks everywhere. */
 static int find_hardest(const robot_region *region, const robot_params *p, hardest *w, robot_worst_direction_t *out)
 {
@@ -145,10 +183,12 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
     w->bounded = false;
     w->unknown = false;
     w->lost = false;
+    robot_real forces[OVER_A_BALL];
     for (int k = 0; k < count; ++k) {
         robot_real along[3];
         direction_of(k, along);
         (void)try_direction(region, p, along, w);
+        forces[k] = w->tried;
     }
 #if ROBOT_REACH > 1
     if (w->lost) {
@@ -163,6 +203,7 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
     }
     const robot_real seen = w->force;
     look_around(region, p, w);
+    look_elsewhere(region, p, count, forces, w);
     if (w->unknown) { /* so may be the hardest */
         return ROBOT_UNRESOLVED;
     }
