@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from textwrap import wrap
 from typing import ClassVar
 
 import casadi as ca
@@ -14,7 +16,8 @@ from .description import CFunction, Output
 from .graph import Graph, Node
 from .inputs import SCALARS, Parameter
 from .manifest import FunctionRecord
-from .printer import Statements, print_graph
+from .printer import INDENT, LINE, Call, Statements, print_graph
+from .sharing import Split, Stage
 
 Q, DIRECTION = 0, 1
 """Places of q and of the direction among a function's symbols."""
@@ -30,6 +33,7 @@ class CSource:
         parameters: all parameters of the package.
         function: what it computes.
         record: its cost and accuracy.
+        split: its graph with calls of what it shares with others; None if it calls none.
     """
 
     prefix: str
@@ -37,6 +41,7 @@ class CSource:
     parameters: Sequence[Parameter]
     function: CFunction
     record: FunctionRecord
+    split: Split | None = None
 
     @property
     def name(self) -> str:
@@ -134,7 +139,29 @@ class CSource:
             *([self._local(output, place) for place in output.places] for output in self.outputs),
             *([f"guard{i + 1}"] for i in range(len(self.function.guards))),
         ]
-        return print_graph(self.function.graph, self.places, names, self.prefix, self.angles)
+        if self.split is None:
+            return print_graph(self.function.graph, self.places, names, self.prefix, self.angles)
+        calls = list(self._calls(len(self.function.symbols), len(names)))
+        places = [*self.places, *[[f"{c.variable}[{k}]" for k in range(c.size)] for c in calls]]
+        return print_graph(self.split.graph, places, names, self.prefix, self.angles, calls)
+
+    def _calls(self, inputs: int, results: int) -> Iterator[Call]:
+        """Yield the calls of stages, whose arguments are the graph's last results."""
+        seen: Counter[str] = Counter()
+        for k, stage in enumerate(self.split.calls if self.split else ()):
+            seen[stage.name] += 1
+            again = f"_{seen[stage.name]}" if seen[stage.name] > 1 else ""
+            names = [argument.name for argument in stage.arguments]
+            yield Call(
+                name=f"{self.prefix}_{stage.name}",
+                variable=f"{stage.name}{again}",
+                size=stage.size,
+                input=inputs + k,
+                arguments=range(results, results + len(names)),
+                names=names,
+                last=["p"] * stage.reads_parameters,
+            )
+            results += len(names)
 
     @property
     def outputs(self) -> tuple[Output, ...]:
@@ -205,6 +232,49 @@ class CSource:
     def _is_sparse(self, output: Output) -> bool:
         texts = self.statements.results[self.outputs.index(output)]
         return len(output.shape) == 2 and 2 * texts.count(self._zero) > len(texts)
+
+
+@dataclass(frozen=True, eq=False)
+class StageSource:
+    """What several functions of a package call, in C.
+
+    Attributes:
+        prefix: of the package's names.
+        parameters: all parameters of the package.
+        stage: what it computes.
+    """
+
+    prefix: str
+    parameters: Sequence[Parameter]
+    stage: Stage
+
+    @property
+    def name(self) -> str:
+        """Full name."""
+        return f"{self.prefix}_{self.stage.name}"
+
+    @property
+    def declaration(self) -> str:
+        """Prototype without the semicolon."""
+        real = f"{self.prefix}_real"
+        arguments = [f"const {real} {a.name}[{len(a.elements)}]" for a in self.stage.arguments]
+        arguments += [f"const {self.prefix}_params *p"] * self.stage.reads_parameters
+        line = f"void {self.name}({', '.join([*arguments, f'{real} out[{self.stage.size}]'])})"
+        return "\n".join(wrap(line, LINE, subsequent_indent=INDENT))
+
+    @cached_property
+    def statements(self) -> Statements:
+        """The computation."""
+        count = len(self.stage.symbols) + 2
+        places: list[list[str]] = [[]] * count
+        for i, p in enumerate(self.parameters):
+            places[DIRECTION + 1 + i] = [f"p->{place}" for place in p.places]
+        for a in self.stage.arguments:
+            (number,) = {element[0] for element in a.elements}
+            read = {element[1]: f"{a.name}[{k}]" for k, element in enumerate(a.elements)}
+            places[number] = [read.get(k, "") for k in range(max(read) + 1)]
+        names = [[f"x{k + 1}" for k in range(self.stage.size)]]
+        return print_graph(self.stage.graph, places, names, self.prefix)
 
 
 def _brackets(output: Output) -> str:
