@@ -182,7 +182,7 @@ class _Printer:
         """Name what is a result; the first of several equal results gives the name."""
         for result, names in zip(self.shown, result_names, strict=True):
             for index, name in zip(result, names, strict=True):
-                if self._is_computed(index):
+                if name and self._is_computed(index):
                     self.names.setdefault(index, name)
 
     def _is_computed(self, index: int) -> bool:

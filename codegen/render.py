@@ -28,7 +28,8 @@ from .interface import interface_of
 from .law_points import MOST_POINTS
 from .manifest import Real
 from .samples import Sample
-from .source import CSource, StageSource
+from .source import CSource
+from .stage_source import StageSource
 
 TEMPLATES = Path(__file__).parent / "templates"
 

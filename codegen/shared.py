@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a package's functions share, as the templates show it."""
+"""A package whose functions call what several of them compute."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from dataclasses import replace
 from .functions import Symbols, stages_of
 from .render import Package
 from .sharing import split_all
-from .source import CSource, StageSource
+from .source import CSource
+from .stage_source import StageSource
 
 
 def with_stages(package: Package, symbols: Symbols) -> Package:

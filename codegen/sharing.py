@@ -358,7 +358,7 @@ class _Cut:
                     return tuple(range(first, len(nodes)))
             return tuple(map(place_of, argument))
 
-        results = [tuple(moved[i] for i in result) for result in self.graph.results]
+        results = [places_of(tuple(self.values[i] for i in r)) for r in self.graph.results]
         results += [places_of(a) for use in self.calls for a in use.arguments]
         stages = tuple(use.stage for use in self.calls)
         return Split(Graph(tuple(nodes), tuple(results)), stages)

@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from textwrap import wrap
 from typing import ClassVar
 
 import casadi as ca
@@ -16,8 +15,8 @@ from .description import CFunction, Output
 from .graph import Graph, Node
 from .inputs import SCALARS, Parameter
 from .manifest import FunctionRecord
-from .printer import INDENT, LINE, Call, Statements, print_graph
-from .sharing import Split, Stage
+from .printer import INDENT, Call, Statements, print_graph
+from .sharing import Split
 
 Q, DIRECTION = 0, 1
 """Places of q and of the direction among a function's symbols."""
@@ -136,7 +135,7 @@ class CSource:
     def statements(self) -> Statements:
         """The computation."""
         names = [
-            *([self._local(output, place) for place in output.places] for output in self.outputs),
+            *(self._locals(output) for output in self.outputs),
             *([f"guard{i + 1}"] for i in range(len(self.function.guards))),
         ]
         if self.split is None:
@@ -167,6 +166,12 @@ class CSource:
     def outputs(self) -> tuple[Output, ...]:
         """What it writes."""
         return self.function.outputs
+
+    def _locals(self, output: Output) -> list[str]:
+        """Return the names of an output's entries; empty ones need none."""
+        if self._is_handed_on(output):
+            return [""] * len(output.places)
+        return [self._local(output, place) for place in output.places]
 
     def _local(self, output: Output, place: tuple[int, ...]) -> str:
         if not place:
@@ -216,6 +221,9 @@ class CSource:
         lines = []
         for output, texts in zip(self.outputs, self.statements.results, strict=False):
             target = f"out->{output.name}" if self.struct else output.name
+            if self._is_handed_on(output):
+                lines += _mirrored(target, texts[0].removesuffix("[0]"), output.shape[0])
+                continue
             if not output.shape and not self.struct:
                 target = f"*{target}"
             for place, text in zip(output.places, texts, strict=True):
@@ -224,6 +232,17 @@ class CSource:
                 mirrored = {place, place[::-1]} if output.symmetric else {place}
                 lines += [f"{target}{_index(at)} = {text};" for at in sorted(mirrored)]
         return lines
+
+    def _is_handed_on(self, output: Output) -> bool:
+        """Whether an internal function copies a matrix from what a call computes."""
+        if self.split is None or not (output.symmetric and self.function.open_ended):
+            return False
+        result = self.split.graph.results[self.outputs.index(output)]
+        nodes = [self.split.graph.nodes[i] for i in result]
+        first = nodes[0].element[0]
+        expected = [(first, k) for k in range(len(nodes))]
+        called = all(_is_input(node) for node in nodes) and first >= len(self.function.symbols)
+        return called and [node.element for node in nodes] == expected
 
     @property
     def _zero(self) -> str:
@@ -234,51 +253,20 @@ class CSource:
         return len(output.shape) == 2 and 2 * texts.count(self._zero) > len(texts)
 
 
-@dataclass(frozen=True, eq=False)
-class StageSource:
-    """What several functions of a package call, in C.
-
-    Attributes:
-        prefix: of the package's names.
-        parameters: all parameters of the package.
-        stage: what it computes.
-    """
-
-    prefix: str
-    parameters: Sequence[Parameter]
-    stage: Stage
-
-    @property
-    def name(self) -> str:
-        """Full name."""
-        return f"{self.prefix}_{self.stage.name}"
-
-    @property
-    def declaration(self) -> str:
-        """Prototype without the semicolon."""
-        real = f"{self.prefix}_real"
-        arguments = [f"const {real} {a.name}[{len(a.elements)}]" for a in self.stage.arguments]
-        arguments += [f"const {self.prefix}_params *p"] * self.stage.reads_parameters
-        line = f"void {self.name}({', '.join([*arguments, f'{real} out[{self.stage.size}]'])})"
-        return "\n".join(wrap(line, LINE, subsequent_indent=INDENT))
-
-    @cached_property
-    def statements(self) -> Statements:
-        """The computation."""
-        count = len(self.stage.symbols) + 2
-        places: list[list[str]] = [[]] * count
-        for i, p in enumerate(self.parameters):
-            places[DIRECTION + 1 + i] = [f"p->{place}" for place in p.places]
-        for a in self.stage.arguments:
-            (number,) = {element[0] for element in a.elements}
-            read = {element[1]: f"{a.name}[{k}]" for k, element in enumerate(a.elements)}
-            places[number] = [read.get(k, "") for k in range(max(read) + 1)]
-        names = [[f"x{k + 1}" for k in range(self.stage.size)]]
-        return print_graph(self.stage.graph, places, names, self.prefix)
-
-
 def _brackets(output: Output) -> str:
     return _index(output.shape)
+
+
+def _mirrored(target: str, packed: str, size: int) -> list[str]:
+    """Return statements that fill a symmetric matrix from its rows up to the diagonal."""
+    return [
+        f"for (int i = 0; i < {size}; ++i) {{",
+        f"{INDENT}for (int j = 0; j <= i; ++j) {{",
+        f"{2 * INDENT}{target}[i][j] = {packed}[i*(i + 1)/2 + j];",
+        f"{2 * INDENT}{target}[j][i] = {target}[i][j];",
+        f"{INDENT}}}",
+        "}",
+    ]
 
 
 def _index(place: tuple[int, ...]) -> str:
