@@ -261,6 +261,7 @@ def _split(graph: Graph, uses: Iterable[Use], values: Values, inputs: int) -> Sp
     found = values.of(graph, {})
     at = {value: index for index, value in reversed(list(enumerate(found)))}
     cut = _Cut(graph, found, at)
+    cut.left = cut.needed([], {})
     for use in uses:
         cut.consider(use)
     return cut.split(inputs)
@@ -275,6 +276,7 @@ class _Cut:
     at: dict[Value, int]
     calls: list[Use] = field(default_factory=list)
     leaves: dict[int, tuple[int, int]] = field(default_factory=dict)  # (call, place) by node
+    left: set[int] = field(default_factory=set)
 
     def needed(self, calls: Sequence[Use], leaves: Mapping[int, object]) -> set[int]:
         """Return the nodes that are left to compute, and the leaves that are read."""
@@ -293,25 +295,25 @@ class _Cut:
 
     def consider(self, use: Use) -> None:
         """Take a stage out where that is worth it."""
-        before = self.needed(self.calls, self.leaves)
         places = {
             self.at[signed]: (len(self.calls), k)
             for k, value in enumerate(use.outputs)
             for signed in (-value, value)
             if signed in self.at and self._is_computed(self.at[signed])
         }
-        places = {i: place for i, place in places.items() if i in before and i not in self.leaves}
+        places = {
+            i: place for i, place in places.items() if i in self.left and i not in self.leaves
+        }
         arguments = (value for a in use.arguments for value in a)
         if not places or not all(v == ZERO or {v, -v} & self.at.keys() for v in arguments):
             return
         calls, leaves = [*self.calls, use], {**self.leaves, **places}
         after = self.needed(calls, leaves)
-        saved = self._operations(before - self.leaves.keys()) - self._operations(
-            after - leaves.keys()
-        )
+        then = after - leaves.keys()
+        saved = self._operations(now) - self._operations(then)
         least = max(WORTH_A_CALL * use.stage.plain.flops, LEAST_OPERATIONS + use.stage.size)
         if saved > least:
-            self.calls, self.leaves = calls, leaves
+            self.calls, self.leaves, self.left = calls, leaves, after
 
     def _is_computed(self, index: int) -> bool:
         return self.graph.nodes[index].operation not in FREE

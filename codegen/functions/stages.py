@@ -46,21 +46,21 @@ class Stages:
     def uses_at(self, q: Matrix) -> Iterator[Use]:
         """Yield the stages at joint coordinates, those first that others are part of."""
         s, model = self.symbols, self.symbols.model
-        row = model.direction_row(q, s.n)
         jacobians = [model.jacobian(q, axes) for axes in axes_of_factors(s)]
-        for mass, rotors in _masses(s, q):
-            for J in jacobians:
-                yield self._on(self.mobility, mass, rotors, J)
-            for stage in (self.inverse, self.answer):
-                yield self._on(stage, mass, rotors, row)
-        at = {Q: self._values([q])[0]}
+        masses = list(_masses(s, q))
+        columns = [q, model.direction_row(q, s.n), *jacobians]
+        columns += [part for mass, rotors in masses for part in (_lower(mass), rotors)]
+        at_q, row, *others = self._values([ca.vec(ca.densify(ca.SX(x))) for x in columns])
+        found, parts = others[: len(jacobians)], others[len(jacobians) :]
+        for M, b in zip(parts[::2], parts[1::2], strict=True):
+            yield from (self._on(self.mobility, M, b, J) for J in found)
+            yield from (self._on(stage, M, b, row) for stage in (self.inverse, self.answer))
         for stage in (self.mass, self.jacobian, self.row):
-            yield stage.on(self.values, at)
+            yield stage.on(self.values, {Q: at_q})
 
-    def _on(self, stage: Stage, mass: Matrix, rotors: Matrix, j: Matrix) -> Use:
+    def _on(self, stage: Stage, *inputs: Sequence[Value]) -> Use:
         first = len(self.symbols.inputs)
-        columns = [_lower(mass), ca.densify(ca.SX(rotors)), ca.vec(ca.densify(ca.SX(j)))]
-        return stage.on(self.values, {first + i: x for i, x in enumerate(self._values(columns))})
+        return stage.on(self.values, {first + i: column for i, column in enumerate(inputs)})
 
     def _values(self, columns: Sequence[Matrix]) -> list[list[Value]]:
         graph = graph_of(self.symbols.inputs, columns)
