@@ -10,215 +10,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import NamedTuple
 
 import casadi as ca
 
-from softimpact.symbolic import Matrix
-
-from .graph import FREE, Graph, Node, graph_of
-from .operations import operation
-from .reciprocals import with_reciprocals
+from .graph import FREE, Graph, Node
+from .stage import Stage, Use
+from .values import ZERO, Value, Values
 
 WORTH_A_CALL = 0.7
 """Share of a stage's operations that a call must save at least; the rest is computed twice."""
 
 LEAST_OPERATIONS = 40
 """Stages that compute less, and a number for each that they pass on, are not worth a function."""
-
-
-class Value(NamedTuple):
-    """A number that graphs compute, or minus it."""
-
-    number: int
-    sign: int = 1
-
-    def times(self, sign: int) -> Value:
-        """Return it, or minus it."""
-        return self if self == ZERO else Value(self.number, self.sign * sign)
-
-    def __neg__(self) -> Value:
-        return self.times(-1)
-
-
-ZERO = Value(-1)
-
-
-class Values:
-    """Numbers what graphs compute: the same for the same operations on the same inputs."""
-
-    def __init__(self) -> None:
-        self._known: dict[tuple[object, ...], int] = {}
-
-    def of(self, graph: Graph, given: Mapping[tuple[int, int], Value]) -> list[Value]:
-        """Return the value of each node of a graph.
-
-        Args:
-            graph: any.
-            given: values of elements of inputs; the others stand for themselves.
-        """
-        found: list[Value] = []
-        for node in graph.nodes:
-            known = given.get(node.element) if node.operation == ca.OP_INPUT else None
-            found.append(known or self._of(node, [found[i] for i in node.operands]))
-        return found
-
-    def _of(self, node: Node, operands: list[Value]) -> Value:
-        match node.operation:
-            case ca.OP_INPUT:
-                return self._numbered("input", *node.element)
-            case ca.OP_CONST:
-                return self._numbered("constant", node.value) if node.value else ZERO
-            case ca.OP_NEG:
-                return -operands[0]
-            case ca.OP_ADD:
-                return self._sum(*operands)
-            case ca.OP_SUB:
-                return self._sum(operands[0], -operands[1])
-            case number:
-                return self._result(number, operands)
-
-    def _result(self, number: int, operands: list[Value]) -> Value:
-        if ZERO in operands and number in (ca.OP_MUL, ca.OP_SQ):
-            return ZERO
-        known = operation(number)
-        ordered = sorted(operands) if known.commutes else operands
-        if known.parity is None:
-            return self._numbered(number, *ordered)
-        value = self._numbered(number, *(x.number for x in ordered))
-        odd = known.parity == "odd" and sum(x.sign < 0 for x in ordered) % 2 == 1
-        return -value if odd else value
-
-    def _sum(self, a: Value, b: Value) -> Value:
-        if ZERO in (a, b):
-            return b if a == ZERO else a
-        first, second = sorted((a, b))
-        value = self._numbered(ca.OP_ADD, first.number, second.number, first.sign * second.sign)
-        return value.times(first.sign)
-
-    def _numbered(self, *key: object) -> Value:
-        return Value(self._known.setdefault(key, len(self._known)))
-
-
-class Argument(NamedTuple):
-    """A vector that a stage reads.
-
-    Attributes:
-        name: in C.
-        elements: of the stage's inputs, one for each entry.
-    """
-
-    name: str
-    elements: tuple[tuple[int, int], ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Stage:
-    """A part of several functions.
-
-    Attributes:
-        name: without the package's prefix.
-        summary: one line.
-        symbols: of all inputs of the package, then its own.
-        names: of its own inputs, in C.
-        value: what it computes, over the symbols.
-    """
-
-    name: str
-    summary: str
-    symbols: tuple[Matrix, ...] = field(repr=False)
-    names: tuple[str, ...]
-    value: Matrix = field(repr=False)
-
-    @cached_property
-    def plain(self) -> Graph:
-        """Its graph as functions hold it, with sines and cosines."""
-        return graph_of(self.symbols, [self.value])
-
-    @cached_property
-    def graph(self) -> Graph:
-        """The same over sines and cosines, two further inputs."""
-        nodes = [
-            Node(ca.OP_INPUT, element=self._turns[i]) if i in self._turns else node
-            for i, node in enumerate(self.plain.nodes)
-        ]
-        return with_reciprocals(Graph(tuple(nodes), self.plain.results).only([0]))
-
-    @cached_property
-    def _turns(self) -> dict[int, tuple[int, int]]:
-        """Sines and cosines among the nodes, by their element of the further inputs."""
-        found: dict[int, tuple[int, int]] = {}
-        for kind, operation_ in enumerate((ca.OP_SIN, ca.OP_COS)):
-            nodes = [i for i, node in enumerate(self.plain.nodes) if node.operation == operation_]
-            nodes.sort(key=self._joint)
-            found |= {i: (len(self.symbols) + kind, k) for k, i in enumerate(nodes)}
-        return found
-
-    def _joint(self, index: int) -> tuple[int, int]:
-        """Return the first input element of a node, so that joints come in order."""
-        waiting, read = [index], []
-        while waiting:
-            node = self.plain.nodes[waiting.pop()]
-            waiting += node.operands
-            read += [node.element[1]] * (node.operation == ca.OP_INPUT)
-        return min(read), index
-
-    @cached_property
-    def arguments(self) -> tuple[Argument, ...]:
-        """The vectors that it reads."""
-        read = sorted({n.element for n in self.graph.nodes if n.operation == ca.OP_INPUT})
-        first = len(self.symbols) - len(self.names)
-        names = ["q", "n", *[""] * (first - 2), *self.names, "s", "c"]
-        return tuple(
-            Argument(name, tuple(element for element in read if element[0] == i))
-            for i, name in enumerate(names)
-            if name and any(element[0] == i for element in read)
-        )
-
-    @cached_property
-    def reads_parameters(self) -> bool:
-        """Whether it reads the parameter struct."""
-        own = {0, 1, *range(len(self.symbols) - len(self.names), len(self.symbols) + 2)}
-        return any(n.operation == ca.OP_INPUT and n.element[0] not in own for n in self.graph.nodes)
-
-    @property
-    def size(self) -> int:
-        """Number of values that it passes on."""
-        return len(self.plain.results[0])
-
-    def on(self, values: Values, inputs: Mapping[int, Sequence[Value]]) -> Use:
-        """Return a use of it.
-
-        Args:
-            values: of the package.
-            inputs: values of those inputs that do not stand for themselves.
-        """
-        given = {(i, k): value for i, column in inputs.items() for k, value in enumerate(column)}
-        found = values.of(self.plain, given)
-        turns = {element: found[i] for i, element in self._turns.items()}
-        elements = {
-            n.element: found[i]
-            for i, n in enumerate(self.plain.nodes)
-            if n.operation == ca.OP_INPUT
-        } | turns
-        arguments = tuple(tuple(elements[e] for e in a.elements) for a in self.arguments)
-        return Use(self, arguments, tuple(found[i] for i in self.plain.results[0]))
-
-
-@dataclass(frozen=True, eq=False)
-class Use:
-    """A stage at some inputs.
-
-    Attributes:
-        stage: which.
-        arguments: values of what it reads.
-        outputs: values of what it computes.
-    """
-
-    stage: Stage
-    arguments: tuple[tuple[Value, ...], ...] = field(repr=False)
-    outputs: tuple[Value, ...] = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,7 +64,6 @@ def _split(graph: Graph, uses: Iterable[Use], values: Values, inputs: int) -> Sp
     found = values.of(graph, {})
     at = {value: index for index, value in reversed(list(enumerate(found)))}
     cut = _Cut(graph, found, at)
-    cut.left = cut.needed([], {})
     for use in uses:
         cut.consider(use)
     return cut.split(inputs)
@@ -276,7 +78,10 @@ class _Cut:
     at: dict[Value, int]
     calls: list[Use] = field(default_factory=list)
     leaves: dict[int, tuple[int, int]] = field(default_factory=dict)  # (call, place) by node
-    left: set[int] = field(default_factory=set)
+    left: set[int] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.left = self.needed([], {})
 
     def needed(self, calls: Sequence[Use], leaves: Mapping[int, object]) -> set[int]:
         """Return the nodes that are left to compute, and the leaves that are read."""
@@ -301,9 +106,8 @@ class _Cut:
             for signed in (-value, value)
             if signed in self.at and self._is_computed(self.at[signed])
         }
-        places = {
-            i: place for i, place in places.items() if i in self.left and i not in self.leaves
-        }
+        now = self.left - self.leaves.keys()
+        places = {i: place for i, place in places.items() if i in now}
         arguments = (value for a in use.arguments for value in a)
         if not places or not all(v == ZERO or {v, -v} & self.at.keys() for v in arguments):
             return

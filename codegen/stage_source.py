@@ -10,8 +10,8 @@ from textwrap import wrap
 
 from .inputs import Parameter
 from .printer import INDENT, LINE, Statements, print_graph
-from .sharing import Stage
 from .source import DIRECTION
+from .stage import Stage
 
 
 @dataclass(frozen=True, eq=False)

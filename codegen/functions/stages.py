@@ -13,7 +13,8 @@ from softimpact.symbolic.matrices import Factorisation, symmetric
 
 from ..graph import graph_of
 from ..inputs import is_elastic
-from ..sharing import Stage, Use, Value, Values
+from ..stage import Stage, Use
+from ..values import Value, Values
 from .impact_factors import axes_of_factors
 from .symbols import Symbols
 

@@ -18,8 +18,10 @@ from softimpact.codegen.package import package_of
 from softimpact.codegen.printer import Call, print_graph
 from softimpact.codegen.render import Package
 from softimpact.codegen.samples import as_columns, draw_samples
-from softimpact.codegen.sharing import Split, Stage, Value, Values, split_all
+from softimpact.codegen.sharing import Split, split_all
 from softimpact.codegen.source import CSource
+from softimpact.codegen.stage import Stage
+from softimpact.codegen.values import Value, Values
 from softimpact.symbolic import load_robot
 
 X = ca.SX.sym("x", 3)
