@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import casadi as ca
 
 from .graph import FREE, Graph, Node
-from .stage import Stage, Use
+from .shared_stage import SharedStage, Use
 from .values import ZERO, Value, Values
 
 WORTH_A_CALL = 0.7
@@ -35,7 +35,7 @@ class Split:
     """
 
     graph: Graph = field(repr=False)
-    calls: tuple[Stage, ...]
+    calls: tuple[SharedStage, ...]
 
 
 def split_all(

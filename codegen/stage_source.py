@@ -10,8 +10,8 @@ from textwrap import wrap
 
 from .inputs import Parameter
 from .printer import INDENT, LINE, Statements, print_graph
+from .shared_stage import SharedStage
 from .source import DIRECTION
-from .stage import Stage
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +26,7 @@ class StageSource:
 
     prefix: str
     parameters: Sequence[Parameter]
-    stage: Stage
+    stage: SharedStage
 
     @property
     def name(self) -> str:

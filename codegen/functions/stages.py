@@ -13,7 +13,7 @@ from softimpact.symbolic.matrices import Factorisation, symmetric
 
 from ..graph import graph_of
 from ..inputs import is_elastic
-from ..stage import Stage, Use
+from ..shared_stage import SharedStage, Use
 from ..values import Value, Values
 from .impact_factors import axes_of_factors
 from .symbols import Symbols
@@ -37,12 +37,12 @@ class Stages:
 
     symbols: Symbols
     values: Values
-    mass: Stage
-    jacobian: Stage
-    row: Stage
-    mobility: Stage
-    inverse: Stage
-    answer: Stage
+    mass: SharedStage
+    jacobian: SharedStage
+    row: SharedStage
+    mobility: SharedStage
+    inverse: SharedStage
+    answer: SharedStage
 
     def uses_at(self, q: Matrix) -> Iterator[Use]:
         """Yield the stages at joint coordinates, those first that others are part of."""
@@ -59,7 +59,7 @@ class Stages:
         for stage in (self.mass, self.jacobian, self.row):
             yield stage.on(self.values, {Q: at_q})
 
-    def _on(self, stage: Stage, *inputs: Sequence[Value]) -> Use:
+    def _on(self, stage: SharedStage, *inputs: Sequence[Value]) -> Use:
         first = len(self.symbols.inputs)
         return stage.on(self.values, {first + i: column for i, column in enumerate(inputs)})
 
@@ -76,13 +76,13 @@ def stages_of(s: Symbols) -> Stages:
     full = _filled(_lower(s.mass_matrix), M)
     H = symmetric(lambda i, j: full[i * (i + 1) // 2 + j] + (b[i] if i == j else 0), m)
 
-    def over(name: str, summary: str, build: Build, like: Matrix) -> Stage:
+    def over(name: str, summary: str, build: Build, like: Matrix) -> SharedStage:
         j = ca.SX.sym("j", like.numel())
         value = build(H, ca.reshape(j, *like.shape))
-        return Stage(name, summary, (*s.inputs, M, b, j), ("M", "b", "j"), value)
+        return SharedStage(name, summary, (*s.inputs, M, b, j), ("M", "b", "j"), value)
 
-    def at_q(name: str, summary: str, value: Matrix) -> Stage:
-        return Stage(name, summary, s.inputs, (), value)
+    def at_q(name: str, summary: str, value: Matrix) -> SharedStage:
+        return SharedStage(name, summary, s.inputs, (), value)
 
     row = s.model.direction_row(s.q, s.n)
     return Stages(

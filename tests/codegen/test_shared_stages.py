@@ -18,9 +18,9 @@ from softimpact.codegen.package import package_of
 from softimpact.codegen.printer import Call, print_graph
 from softimpact.codegen.render import Package
 from softimpact.codegen.samples import as_columns, draw_samples
+from softimpact.codegen.shared_stage import SharedStage
 from softimpact.codegen.sharing import Split, split_all
 from softimpact.codegen.source import CSource
-from softimpact.codegen.stage import Stage
 from softimpact.codegen.values import Value, Values
 from softimpact.symbolic import load_robot
 
@@ -35,9 +35,9 @@ def work(a: ca.SX, b: ca.SX) -> ca.SX:
     return a - b
 
 
-def stage() -> Stage:
+def stage() -> SharedStage:
     j = ca.SX.sym("j", 2)
-    return Stage("worked", "Work.", (X, ca.SX.sym("n", 3), j), ("j",), work(j[0], j[1]))
+    return SharedStage("worked", "Work.", (X, ca.SX.sym("n", 3), j), ("j",), work(j[0], j[1]))
 
 
 def at(values: Values, column: ca.SX) -> list[Value]:

@@ -30,7 +30,7 @@ class Argument(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
+class SharedStage:
     """A part of several functions.
 
     Attributes:
@@ -132,6 +132,6 @@ class Use:
         outputs: values of what it computes.
     """
 
-    stage: Stage
+    stage: SharedStage
     arguments: tuple[tuple[Value, ...], ...] = field(repr=False)
     outputs: tuple[Value, ...] = field(repr=False)
