@@ -287,7 +287,7 @@ int panda_rotor_influence(
  * Absorption factor of each joint alone (GIAF III.B).
  * giaf: dimensionless; with the rotor of each joint alone.
  * Of p it reads rotor_inertia.
- * 1658 operations, 14 sines and cosines. Error: 1e-12 in double, 3e-05 in float.
+ * 1294 operations, 14 sines and cosines. Error: 1e-12 in double, 3e-05 in float.
  */
 int panda_single_joint_giaf(const panda_real q[7], const panda_params *p, panda_real giaf[7]);
 
@@ -320,7 +320,7 @@ int panda_joint_impulse(
  * error: dimensionless; share of the force.
  * speed: m/s, > 0; of approach along n.
  * duration: s, >= 0; from first touch to the peak, or to the reaction.
- * 2375 operations, 28 sines and cosines. Error: 1e-12 in double, 0.0003 in float.
+ * 2290 operations, 28 sines and cosines. Error: 1e-12 in double, 0.0003 in float.
  */
 int panda_linear_error(
     const panda_real q[7],

@@ -278,7 +278,7 @@ int ur5e_rotor_influence(const ur5e_real q[6], const ur5e_params *p, ur5e_rotor_
  * Absorption factor of each joint alone (GIAF III.B).
  * giaf: dimensionless; with the rotor of each joint alone.
  * Of p it reads rotor_inertia.
- * 1147 operations, 12 sines and cosines. Error: 1e-12 in double, 8e-05 in float.
+ * 916 operations, 12 sines and cosines. Error: 1e-12 in double, 9e-05 in float.
  */
 int ur5e_single_joint_giaf(const ur5e_real q[6], const ur5e_params *p, ur5e_real giaf[6]);
 
@@ -311,7 +311,7 @@ int ur5e_joint_impulse(
  * error: dimensionless; share of the force.
  * speed: m/s, > 0; of approach along n.
  * duration: s, >= 0; from first touch to the peak, or to the reaction.
- * 1691 operations, 24 sines and cosines. Error: 1e-12 in double, 0.0001 in float.
+ * 1624 operations, 24 sines and cosines. Error: 1e-12 in double, 0.0001 in float.
  */
 int ur5e_linear_error(
     const ur5e_real q[6],
