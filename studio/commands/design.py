@@ -186,7 +186,7 @@ def _write_package(model: ImpactModel, folder: Path) -> None:
     from softimpact.codegen import generate_package
     from softimpact.symbolic.impact.floating import is_floating
 
-    from .cautions import in_c
+    from ..output.cautions import in_c
 
     held = in_c(model)
     if held is not None:

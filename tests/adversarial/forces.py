@@ -120,7 +120,7 @@ def linear(robot: Robot, cases: Cases) -> Linear:
         row=row,
         pull=pull,
         reached=reached,
-        pulled=P.any(axis=(1, 2)),
+        pulled=np.asarray(P.any(axis=(1, 2))),
     )
 
 
