@@ -186,6 +186,7 @@ def test_other_packages_say_that_nothing_was_measured(tmp_path: Path) -> None:
     assert "has not been measured" in (tmp_path / "p/README.md").read_text()
 
 
+@pytest.mark.long
 @pytest.mark.embedded
 @pytest.mark.parametrize("robot", COMMITTED)
 def test_costs_are_those_measured_again(
