@@ -14,6 +14,7 @@ from typing import NamedTuple
 import casadi as ca
 
 from softimpact.symbolic import Contact, Matrix
+from softimpact.symbolic.matrices import MatrixExpression
 
 from .motor_laws import LAW, MotorLaws
 
@@ -92,7 +93,7 @@ def contact_forces(
     step: Matrix,
     nodes: int,
     substeps: int,
-) -> Matrix:
+) -> MatrixExpression:
     """Return the force at ``nodes`` equidistant times, length ``nodes`` [N], differentiable.
 
     Between contacts the force is zero and the body comes back; every contact counts.
@@ -106,7 +107,7 @@ def contact_forces(
         substeps: time steps from node to node.
     """
     D, K_V = dynamics.joint_damping, dynamics.potential
-    parameters = ca.vertcat(
+    given: list[Matrix] = [
         ca.vec(dynamics.mobility),
         dynamics.jacobian.T,
         dynamics.springs,
@@ -119,19 +120,22 @@ def contact_forces(
         ca.vec(dynamics.carried),
         *([] if D is None else [_nonzeros(D)]),
         *([] if K_V is None else [ca.vec(K_V)]),
-    )
+    ]
+    parameters: MatrixExpression = ca.vertcat(*given)
     n = dynamics.springs.shape[0]
     gains, rigid = dynamics.gains.sparsity(), dynamics.rigid
     damping = ca.Sparsity(n, n) if D is None else D.sparsity()
     node = _leapfrog(n, substeps, gains, rigid, damping, K_V is not None)
+    velocity: MatrixExpression = dynamics.velocity
     start = ca.vertcat(
         ca.MX.zeros(2 * n),
-        dynamics.velocity,
-        dynamics.velocity,
+        velocity,
+        velocity,
         ca.MX.zeros(len(BodyState._fields)),
     )
-    given = ca.vertcat(ca.repmat(parameters, 1, nodes), laws.at_nodes(step, substeps, nodes))
-    states = node.mapaccum("impact", nodes, 1, FEW_DIRECTIONS)(start, given)
+    motors: MatrixExpression = laws.at_nodes(step, substeps, nodes)
+    told = ca.vertcat(ca.repmat(parameters, 1, nodes), motors)
+    states = node.mapaccum("impact", nodes, 1, FEW_DIRECTIONS)(start, told)
     return states[4 * n + BodyState._fields.index("force"), :].T
 
 
