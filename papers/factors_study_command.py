@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from softimpact.studio import options as o
+from softimpact.studio.typed import options as o
 
 if TYPE_CHECKING:
     from .factor_study import FactorStudy
@@ -24,8 +24,8 @@ def factors_study(
 ) -> None:
     """Show impact factors over the poses and the self-motion, and how well they foretell force."""
     from softimpact.optimize import load_study
-    from softimpact.studio.output import print_json, write_json
-    from softimpact.studio.results_folder import (
+    from softimpact.studio.output.printed import print_json, write_json
+    from softimpact.studio.output.results_folder import (
         RESULTS,
         replaced_folder,
         require_replaceable_results,
@@ -49,7 +49,7 @@ def factors_study(
 
 
 def _print(found: FactorStudy, folder: Path) -> None:
-    from softimpact.studio.output import print_table, say
+    from softimpact.studio.output.printed import print_table, say
 
     rows = []
     for (tip, name), factors in found.factors.items():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from softimpact.studio import options as o
+from softimpact.studio.typed import options as o
 
 if TYPE_CHECKING:
     from .msm.compute import Results
@@ -52,9 +52,9 @@ def reproduce(
     json: o.JsonOption = False,
 ) -> None:
     """Recompute both papers (MSM, GIAF) and hold what they print and say against our numbers."""
-    from softimpact.studio.design_report import versions
-    from softimpact.studio.output import print_json, write_json
-    from softimpact.studio.results_folder import (
+    from softimpact.studio.design.report import versions
+    from softimpact.studio.output.printed import print_json, write_json
+    from softimpact.studio.output.results_folder import (
         RESULTS,
         replaced_folder,
         require_replaceable_results,
@@ -124,7 +124,7 @@ def _impact_factors(folder: Path) -> dict[str, Any]:
 
 def _computed(names: tuple[str, ...]) -> Results:
     """Compute with a progress bar on stderr."""
-    from softimpact.studio.progress import progress_bar
+    from softimpact.studio.output.progress import progress_bar
 
     from .msm.compute import compute, work_of
 
@@ -154,7 +154,7 @@ def _record(results: Results, comparisons: Any) -> dict[str, Any]:
 
 
 def _print(record: dict[str, Any], out: Path) -> None:
-    from softimpact.studio.output import print_table, say
+    from softimpact.studio.output.printed import print_table, say
 
     if "comparisons" in record:
         _print_verdicts("Printed numbers of MSM", record["verdicts"])
@@ -186,7 +186,7 @@ def _print(record: dict[str, Any], out: Path) -> None:
 
 
 def _print_verdicts(title: str, verdicts: dict[str, int]) -> None:
-    from softimpact.studio.output import print_table
+    from softimpact.studio.output.printed import print_table
 
     rows = [(str(verdict), float(count)) for verdict, count in verdicts.items()]
     print_table(title, ("verdict", "count"), rows)

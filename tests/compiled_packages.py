@@ -24,7 +24,7 @@ from softimpact.codegen.inputs import SCALARS, Parameter, freeze, parameters_of
 from softimpact.codegen.interface import Interface, read_interface
 from softimpact.codegen.manifest import Manifest
 from softimpact.codegen.samples import Sample
-from softimpact.studio.pose_table import pose_table
+from softimpact.studio.typed.pose_table import pose_table
 from softimpact.symbolic import Robot
 from softimpact.symbolic.robot.rigid import Array
 

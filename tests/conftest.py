@@ -33,6 +33,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         )
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     for marker, reason in OPTIONAL.items():
         if config.getoption(f"--{marker}"):
@@ -41,6 +42,21 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items:
             if marker in item.keywords:
                 item.add_marker(skip)
+    _begin_with_long(items)
+
+
+def _begin_with_long(items: list[pytest.Item]) -> None:
+    """Put long tests where each process begins, so that none is waited for at the end.
+
+    xdist gives each process a part of the list, in order; who is done takes from others' ends.
+    """
+    count = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    long = [item for item in items if "long" in item.keywords]
+    others = [item for item in items if "long" not in item.keywords]
+    size = -(-len(others) // count)
+    items[:] = [
+        item for i in range(count) for item in (*long[i::count], *others[i * size : (i + 1) * size])
+    ]
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -53,7 +69,13 @@ def _no_log_file() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def shared_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder that all processes of a test run share; ``sharing.once`` fills it."""
+    """A folder that all processes of a test run share; ``sharing.once`` fills it.
+
+    Runs of the same sources share it, too, where SOFTIMPACT_TESTS_SHARED names one.
+    """
+    if kept := os.environ.get("SOFTIMPACT_TESTS_SHARED"):
+        Path(kept).mkdir(parents=True, exist_ok=True)
+        return Path(kept)
     base = tmp_path_factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "shared"
     folder.mkdir(exist_ok=True)

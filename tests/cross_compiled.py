@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
 from compiled_packages import WARNINGS, Generated, run, tool
+from sharing import once
 
 BOARD = Path(__file__).parent / "codegen" / "cortex_m"
 """Start-up code, linker script and the program that counts instructions."""
@@ -68,8 +70,22 @@ def build(
 def compile_one(
     package: Generated, core: str, real: str, out: Path, source: Path, *defines: str
 ) -> Path:
-    """Compile one source; return the object."""
-    target = out / f"{source.stem}.o"
+    """Compile one source; return the object.
+
+    The package's own are compiled once in a test run, and put where they are wanted.
+    """
+    if defines or package.folder not in source.parents:
+        return _compiled(package, core, real, out / f"{source.stem}.o", source, *defines)
+    shared = package.folder.with_suffix(f".{core}.{real}") / f"{source.stem}.o"
+    once(shared, lambda target: str(_compiled(package, core, real, target, source)))
+    for file in shared.parent.glob(f"{source.stem}.*"):
+        shutil.copy(file, out)
+    return out / shared.name
+
+
+def _compiled(
+    package: Generated, core: str, real: str, target: Path, source: Path, *defines: str
+) -> Path:
     lenient = ["-Wno-pedantic"] if source.parent == BOARD else []
     told = [*flags(package, real), *machine(core), "-g", "-fcallgraph-info=su", *lenient, *defines]
     run(GCC, *told, "-c", source, "-o", target)

@@ -13,7 +13,7 @@ from softimpact.optimize import Design, Outcome, PoseResult, Study, design, load
 from softimpact.optimize.co_design import Answers, DesignReference
 from softimpact.optimize.impact.timing import Timing
 from softimpact.optimize.study.poses import Candidate, candidates
-from softimpact.studio.design_report import DesignReport, design_report
+from softimpact.studio.design.report import DesignReport, design_report
 
 PANDA = """
 title = "three poses of the Panda"

@@ -22,8 +22,14 @@ MAY_IMPORT = {
     "studio": {"robots", "symbolic", "codegen", "simulate", "optimize", "batch", "toolchain"},
     "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }
-OF_OPTIMIZE = ("machine", "posture", "search", "robust", "front")
-"""Folders of optimize, each of which may import those before it."""
+ORDER = {
+    "optimize": ("machine", "posture", "search", "robust", "front"),
+    "studio": (
+        *("typed", "output", "robot", "impact", "program", "map", "design", "front"),
+        *("figures", "report", "page", "commands"),
+    ),
+}
+"""Folders of a folder, each of which may import those before it."""
 
 
 def tracked(*patterns: str) -> list[Path]:
@@ -50,6 +56,18 @@ def imported_folders(path: Path) -> Iterator[str]:
         yield from (name.split(".")[1] for name in names if name.startswith("softimpact."))
 
 
+def siblings_imported(path: Path, folder: str) -> Iterator[str]:
+    """Yield the folders beside a module's own, of those in ``folder``, that it imports."""
+    depth = len(path.relative_to(ROOT / folder).parts)
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom):
+            module = node.module or ""
+            if node.level == depth:
+                yield module.split(".")[0]
+            elif node.level == 0 and module.startswith(f"softimpact.{folder}."):
+                yield module.split(".")[2]
+
+
 @pytest.mark.parametrize("folder", MAY_IMPORT)
 def test_arrows_point_one_way(folder: str) -> None:
     modules = tracked(f"{folder}/*.py")
@@ -58,14 +76,13 @@ def test_arrows_point_one_way(folder: str) -> None:
         assert set(imported_folders(path)) <= MAY_IMPORT[folder] | {folder}, path
 
 
-def test_folders_of_optimize_build_on_those_before() -> None:
-    for place, folder in enumerate(OF_OPTIMIZE):
-        modules = tracked(f"optimize/{folder}/*.py")
+@pytest.mark.parametrize("folder", ORDER)
+def test_folders_build_on_those_before(folder: str) -> None:
+    for place, part in enumerate(ORDER[folder]):
+        modules = tracked(f"{folder}/{part}/*.py")
         assert modules
         for path in modules:
-            nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-            found = [n.module or "" for n in nodes if isinstance(n, ast.ImportFrom) and n.level > 1]
-            later = {name.split(".")[0] for name in found} & set(OF_OPTIMIZE[place + 1 :])
+            later = set(siblings_imported(path, folder)) & set(ORDER[folder][place + 1 :])
             assert not later, path
 
 

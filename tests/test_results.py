@@ -170,7 +170,7 @@ def test_bad_input_among_several_is_found_before_the_work(
     def work(*arguments: object) -> None:
         raise AssertionError("nothing may be simulated")
 
-    monkeypatch.setattr("softimpact.studio.impacts.impact", work)
+    monkeypatch.setattr("softimpact.studio.impact.impacts.impact", work)
     asked = ("--direction", "0,1,0", "--region", "chest", "--region", "nose", "--speed", "0.3")
     assert "unknown body region 'nose'" in refusal("simulate", *TYPED, *asked)
     asked = ("--direction", "0,1,0", "--region", "chest", "--region", "hand", "--speed", "0.3")

@@ -33,7 +33,7 @@ typedef struct {
     robot_real bump; /* what the bend adds to the force on average of the last step */
     robot_real f, rise; /* force, and by how much it grew in the last step */
     robot_real u, u_before; /* deformation of the skin and of what stands */
-    robot_real now; /* depth of the skin */
+    robot_real now, root; /* depth of the skin, and its root under Hertz's law */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
     robot_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -43,6 +43,9 @@ typedef struct {
 struct robot_watch {
     robot_real matters; /* force that may still come, N */
     robot_real depth; /* of the skin under it, m */
+    bool slower; /* whether slower speeds matter, so that later contacts count earlier */
+    robot_real apart; /* when robot and body last were so, s; 0 for never */
+    bool settled; /* no force that matters can come */
     robot_real late; /* the largest force from 0.5 s on, N */
     robot_real before, last; /* forces of the last steps, N */
 };
@@ -55,7 +58,7 @@ typedef struct {
     robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
     robot_real x, v; /* of the contact point without the force at the end */
     robot_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    robot_real u, depth;
+    robot_real u, depth, root;
 } robot_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from softimpact.robots import built_in_studies
+from softimpact.robots import built_in_robots, built_in_studies
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.errors import did_you_mean
@@ -200,9 +200,10 @@ def read_toml(source: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(source.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
-        known = built_in_studies()
-        meant = did_you_mean(str(source), known)
-        reason = f"no such study file; built in: {', '.join(known)}{meant}"
+        name, known = str(source), built_in_studies()
+        reason = f"no such study file; built in: {', '.join(known)}{did_you_mean(name, known)}"
+        if name in built_in_robots():
+            reason = f"is a robot, not a study; softimpact init {name} > study.toml begins one"
         raise InvalidValue(str(source), reason) from None
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidValue(str(source), f"cannot be read: {error}") from None

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +29,7 @@ from softimpact.symbolic.impact.floating import BASE_COORDINATES, is_floating
 from softimpact.symbolic.loops.closure import closed_near, require_closed_at
 from softimpact.symbolic.loops.couplings import whole_configuration
 from softimpact.symbolic.loops.loops import closed_chain
+from softimpact.symbolic.robot.arm import held_base
 from softimpact.symbolic.robot.rigid import Array
 from softimpact.symbolic.robot.robot import vector_of
 
@@ -65,7 +67,8 @@ def chain_of(robot: Robot, section: RobotSection) -> Robot:
     chain = lock_joints(chain, {k: v for k, v in section.lock.items() if k in chain.joint_names})
     if chain.n == 0:
         raise InvalidValue("tip", f"frame '{tip}' is fixed to the base; name one that moves")
-    return chain
+    held = [] if section.floating else held_base(robot)
+    return replace(chain, warnings=(*chain.warnings, *held))
 
 
 def require_held_joints(chain: Robot) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from softimpact.studio.design_report import versions
+from softimpact.studio.design.report import versions
 
 from .agreement import STIFFNESSES
 from .heavy_base import MASSES

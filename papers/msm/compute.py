@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from softimpact.optimize.running.workers import as_completed, workers
+from softimpact.optimize.running.workers import as_completed, cores, workers
 from softimpact.simulate import Decoupling, decoupling_stiffness
 from softimpact.symbolic import Contact, InvalidValue, body_region, static_stiffness
 from softimpact.symbolic.robot.rigid import Array
@@ -182,7 +182,7 @@ def compute(
     """
     tasks = work_of(scenarios, between)
     found: dict[Job, Any] = {}
-    with workers(len(tasks)) as pool:
+    with workers(min(len(tasks), cores())) as pool:
         futures: dict[Future[Any], Job] = {
             pool.submit(WORK[kind], *arguments): (kind, arguments) for kind, arguments in tasks
         }

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import get_args
 
 from softimpact.simulate import Decoupling
-from softimpact.studio.output import shown
+from softimpact.studio.output.printed import shown
 
 from .compare import Comparison, PrintedVerdict, mean_error
 from .compute import DECOUPLED, Results

@@ -19,21 +19,21 @@ from .console import accept_any_console
 from .interruption import INTERRUPTED, interruptible, report
 from .papers.factors_study_command import factors_study
 from .papers.reproduce_command import reproduce
-from .studio.analyze_command import analyze
-from .studio.check_command import check
-from .studio.common_options import common
-from .studio.design_command import design
-from .studio.factors_command import factors
-from .studio.generate_command import generate
-from .studio.init_command import init
-from .studio.inspect_command import inspect
-from .studio.map_command import safety_map
-from .studio.pareto_command import pareto
-from .studio.program_command import SeveralValues, program
-from .studio.robots_command import robots
-from .studio.select_command import select
-from .studio.simulate_command import simulate
-from .studio.studio_command import studio
+from .studio.commands.analyze import analyze
+from .studio.commands.check import check
+from .studio.commands.common import common
+from .studio.commands.design import design
+from .studio.commands.factors import factors
+from .studio.commands.generate import generate
+from .studio.commands.init import init
+from .studio.commands.inspect import inspect
+from .studio.commands.map import safety_map
+from .studio.commands.pareto import pareto
+from .studio.commands.program import SeveralValues, program
+from .studio.commands.robots import robots
+from .studio.commands.select import select
+from .studio.commands.simulate import simulate
+from .studio.commands.studio import studio
 
 USER_ERROR = 2
 """Exit code; a failed solver's is 3 and comes with its exception."""
@@ -135,5 +135,5 @@ def _one_line(error: Exception) -> str:
         place = "the result cannot be written" if error.filename is None else error.filename
         text = f"{place}: {error.strerror}"
     elif hasattr(error, "format_message"):  # usage errors
-        text = error.format_message()
+        text = error.format_message().replace("Value error, ", "")  # pydantic's, of choices
     return " ".join(text.split())

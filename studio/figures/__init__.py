@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from softimpact.studio.design_report import DesignReport
+from softimpact.studio.design.report import DesignReport
 
 from .forces import figure_of_forces
 from .gains import figure_of_gains

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from softimpact.simulate import ImpactHistory
-from softimpact.studio.design_report import DesignReport
+from softimpact.studio.design.report import DesignReport
 from softimpact.symbolic.robot.rigid import Array
 
 from .style import (

@@ -9,7 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from softimpact.optimize import Gains
-from softimpact.studio.design_report import DesignReport, has_other_postures, task_result
+from softimpact.studio.design.report import DesignReport, has_other_postures, task_result
 
 from .style import (
     BEFORE,

@@ -9,7 +9,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from softimpact.studio.pareto_report import CheckedFrontPoint, ParetoReport
+from softimpact.studio.front.pareto_report import CheckedFrontPoint, ParetoReport
 
 from .pareto_designs import figure_of_designs
 from .style import (

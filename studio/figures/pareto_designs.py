@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from softimpact.optimize.machine.coordinates import sprung
-from softimpact.studio.pareto_report import ParetoReport
+from softimpact.studio.front.pareto_report import ParetoReport
 from softimpact.symbolic import JointKind
 
 from .style import (

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from softimpact.studio.design_report import DesignReport
+from softimpact.studio.design.report import DesignReport
 from softimpact.symbolic import Loop, Matrix, Robot
 from softimpact.symbolic.dynamics.kinematics import motions, poses
 from softimpact.symbolic.robot.rigid import Array

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from softimpact.studio.program_table import NOTHING, ProgramTable
+from softimpact.studio.program.table import NOTHING, ProgramTable
 from softimpact.symbolic.robot.rigid import Array
 
 from .style import (

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from softimpact.optimize import Outcome
-from softimpact.studio.design_report import DesignReport, RankedPose
+from softimpact.studio.design.report import DesignReport, RankedPose
 
 from .style import (
     BEFORE,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from softimpact.studio.safety_map import SafetyMap
+from softimpact.studio.map.safety_map import SafetyMap
 from softimpact.symbolic import limits_of
 from softimpact.symbolic.robot.rigid import Array
 

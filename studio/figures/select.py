@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from softimpact.optimize import Study
-from softimpact.studio.selection import NAMES, Criterion, PoseFigures
+from softimpact.studio.design.selection import NAMES, Criterion, PoseFigures
 
 from .style import BLUE, LIMIT, SMALL, TEXT, new_figure, tidy
 

@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 
 from softimpact.optimize import Outcome
 from softimpact.optimize.machine.coordinates import sprung
-from softimpact.studio.design_report import DesignReport
+from softimpact.studio.design.report import DesignReport
 from softimpact.symbolic import JointKind
 
 from .style import (

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from softimpact.optimize import Study
-from softimpact.studio.design_report import DesignReport, limit_kind
+from softimpact.studio.design.report import DesignReport, limit_kind
 
 # Okabe and Ito's colours, told apart by the colour-blind too
 BLACK, BLUE, ORANGE = "#000000", "#0072B2", "#E69F00"

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from softimpact.optimize.units import ratio_in_words
-from softimpact.studio.trade_off_report import TradeOffReport, View, broken_before
-from softimpact.studio.trade_off_words import best_and_loosest
+from softimpact.studio.front.trade_off_report import TradeOffReport, View, broken_before
+from softimpact.studio.front.trade_off_words import best_and_loosest
 
 from .style import BEFORE, BLACK, BOTH, LIMIT, SMALL, TEXT, legend_below, new_figure, save, tidy
 from .trade_off_hardware import figure_of_hardware

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from softimpact.optimize.machine.coordinates import sprung
-from softimpact.studio.trade_off_report import TradeOffReport
+from softimpact.studio.front.trade_off_report import TradeOffReport
 from softimpact.symbolic import JointKind
 
 from .style import BLACK, BOTH, TEXT, new_figure, tidy

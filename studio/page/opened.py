@@ -29,13 +29,16 @@ from softimpact.symbolic.impact.floating import BASE_COORDINATES, base_held, is_
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
-from .. import design_report, map_files, pareto_record, program_record, trade_off_record
-from ..first_study import NOMINAL, first_posture
-from ..motion_file import read_motion
-from ..results_folder import RESULTS
-from ..situation import loaded_arm
-from ..typed import TypedArm
-from ..waypoints import read_waypoints
+from ..design import report as design_report
+from ..front import pareto_record, trade_off_record
+from ..output.results_folder import RESULTS
+from ..program import record as program_record
+from ..program.motion_file import read_motion
+from ..program.waypoints import read_waypoints
+from ..report import map_files
+from ..robot.first_study import NOMINAL, first_posture
+from ..typed.groups import TypedArm
+from ..typed.situation import loaded_arm
 
 SPEED = 0.5
 """To begin with [m/s]."""

@@ -12,7 +12,7 @@ from typing import Any
 
 from softimpact.codegen.wasm import GLUE
 
-from ..design_report import versions
+from ..design.report import versions
 from .content import content_of
 from .module import module_of
 from .opened import Opened

@@ -8,14 +8,16 @@ from pathlib import Path
 
 from softimpact.optimize.robust.robust import RobustDesign
 
-from ..design_report import (
+from ..design.report import (
     DesignReport,
     band_in_words,
     gains_in_words,
     nominal_in_words,
     reactions_in_words,
 )
-from ..design_tables import ranking_rows
+from ..design.robust import meets_limit, robust_in_words
+from ..design.scenario_checks import CheckedScenario, place_in_words
+from ..design.tables import ranking_rows
 from ..figures import (
     figure_of_forces,
     figure_of_gains,
@@ -23,9 +25,7 @@ from ..figures import (
     figure_of_springs,
 )
 from ..figures.robust import figure_of_robust_design
-from ..output import Cell
-from ..robust_report import meets_limit, robust_in_words
-from ..scenario_checks import CheckedScenario, place_in_words
+from ..output.printed import Cell
 from .arms import ORIGIN, arm_picture
 from .page import Hit, Section, TableOfNumbers, write_page
 from .study_pages import impact_in_words, joints, study_page

@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 
 from softimpact.simulate import Approach, simulate_impact
 
-from ..design_report import versions
+from ..design.report import versions
 from ..figures.style import BLUE, FAINT, LIMIT, ORANGE, SMALL, TEXT, new_figure, tidy
-from ..impact import Answer
-from ..output import shown
+from ..impact.impact import Answer
+from ..output.printed import shown
 from .arms import ORIGIN, arm_picture
 from .page import ArmPicture, Hit, Page, Section, TableOfNumbers, write_page
 from .provenance import command

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from softimpact.symbolic.record import plain
 from softimpact.symbolic.robot.rigid import Array
 
-from ..output import Cell, shown
+from ..output.printed import Cell, shown
 
 TEMPLATES = Path(__file__).parent / "templates"
 

@@ -10,12 +10,12 @@ import numpy as np
 
 from softimpact.optimize import Study
 
+from ..design.selection import NAMES, Criterion, PoseFigures, figures_table
 from ..figures.pareto import figure_of_fronts, figure_of_speeds
 from ..figures.pareto_designs import figure_of_designs
 from ..figures.select import figure_of_selection
-from ..pareto_report import ParetoReport
-from ..pareto_words import columns, in_words, rows
-from ..selection import NAMES, Criterion, PoseFigures, figures_table
+from ..front.pareto_report import ParetoReport
+from ..front.pareto_words import columns, in_words, rows
 from .arms import ORIGIN, arm_picture
 from .page import Hit, Section, TableOfNumbers, write_page
 from .study_pages import impact_in_words, study_page
@@ -116,7 +116,7 @@ def write_selection_report(
 
 
 def _rungs(study: Study, best: PoseFigures) -> str:
-    from ..checks import simulated
+    from ..design.checks import simulated
 
     full = simulated(study, best.q, study.nominal, "full").peak
     off = 100 * (full / best.peak_force - 1)

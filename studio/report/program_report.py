@@ -11,12 +11,12 @@ import numpy as np
 
 from softimpact.simulate import simulate_impact
 
-from ..design_report import versions
+from ..design.report import versions
 from ..figures.program import program_figure
-from ..output import Cell, shown
-from ..program_moments import approach_at, at_point
-from ..program_record import COLUMNS, ProgramResult, in_a_sentence, moment_row
-from ..program_table import LIMITS
+from ..output.printed import Cell, shown
+from ..program.moments import approach_at, at_point
+from ..program.record import COLUMNS, ProgramResult, in_a_sentence, moment_row
+from ..program.table import LIMITS
 from .arms import ORIGIN, arm_picture
 from .page import ArmPicture, Hit, Page, Section, TableOfNumbers, write_page
 from .provenance import command, digest_of

@@ -12,9 +12,9 @@ from softimpact.optimize.machine.coordinates import sprung
 from softimpact.optimize.study.study_scenarios import contacts_of
 from softimpact.symbolic.robot.rigid import Array
 
-from ..cautions import not_permitted, study_warnings
-from ..design_report import peak_in_words, versions
-from ..output import Cell
+from ..design.report import peak_in_words, versions
+from ..output.cautions import not_permitted, study_warnings
+from ..output.printed import Cell
 from .page import Page, Section, TableOfNumbers
 from .provenance import command, digest_of
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..design.robust import meets_limit, share_of_limit
 from ..figures.trade_off import figure_of_front
 from ..figures.trade_off_hardware import figure_of_hardware
-from ..robust_report import meets_limit, share_of_limit
-from ..trade_off_report import TradeOffReport
-from ..trade_off_words import columns, in_words, rows, values_in_words
+from ..front.trade_off_report import TradeOffReport
+from ..front.trade_off_words import columns, in_words, rows, values_in_words
 from .arms import ORIGIN, arm_picture
 from .page import Hit, Section, TableOfNumbers, write_page
 from .study_pages import study_page

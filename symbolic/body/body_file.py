@@ -13,9 +13,9 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from ..errors import InvalidValue, UnknownName
+from ..errors import InvalidValue, UnknownName, did_you_mean
 from ..file_section import FileSection, NotNegative, Positive
-from .bodies import body_region
+from .bodies import BODIES, body_region
 from .contact import naming
 from .laws import Law, in_series
 from .laws.named import law_from
@@ -160,11 +160,20 @@ def _in_file(path: str | Path) -> Iterator[None]:
         raise InvalidValue(f"{path}: {error.field}", error.reason) from None
 
 
+def _missing(name: str, section: type[FileSection]) -> str:
+    """Return what to do about a file that is not there."""
+    if section is CoverFile:
+        return f"no such file, nor a pad ({', '.join(PADS)}){did_you_mean(name, PADS)}"
+    if name in BODIES:
+        return "no such file, but a region, area or device: it goes by --region"
+    return "no such file; a body is described in TOML"
+
+
 def _read(path: Path, section: type[_AnySection]) -> _AnySection:
     try:
         return section.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
     except FileNotFoundError:
-        raise InvalidValue(str(path), f"no such file, nor a pad ({', '.join(PADS)})") from None
+        raise InvalidValue(str(path), _missing(str(path), section)) from None
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidValue(str(path), f"cannot be read: {error}") from None
     except tomllib.TOMLDecodeError as error:

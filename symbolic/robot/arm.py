@@ -89,7 +89,19 @@ def arm_of(
             f"{chain.n} joints lie on the way to '{end}', but no more than {MOST_JOINTS} are "
             "followed; lock some",
         )
-    return Arm(replace(chain, tip=contact.name), end, tuple(warnings))
+    return Arm(replace(chain, tip=contact.name), end, (*warnings, *held_base(robot)))
+
+
+def held_base(robot: Robot) -> list[str]:
+    """Return a line if an arm's base is one that may move in truth: others start at it, too."""
+    chains = sum(joint.parent == BASE for joint in robot.joints)
+    mass = robot.base_inertia.mass
+    if chains < 2 or mass <= 0:
+        return []
+    return [
+        f"the base of {robot.name} ({mass:.3g} kg, at which {chains} chains of joints start) is "
+        "taken as held: it does not give way"
+    ]
 
 
 def _default_end(robot: Robot, contact: str) -> tuple[str, list[str]]:

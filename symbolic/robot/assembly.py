@@ -108,6 +108,8 @@ class _Assembly:
                     f"joint '{body.free_joint}' is a free joint; hold the robot's base "
                     "by --hold-base or hold_base=True, or free it by --floating or floating=True",
                 )
+        if self.base == "held" and not self._main_floats:
+            self.warnings.append("the file holds the base already: hold_base changes nothing")
         if beside:
             names = ", ".join(f"'{name}'" for name in beside)
             self.warnings.append(f"free bodies beside the robot do not count: {names}")

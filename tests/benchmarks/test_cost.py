@@ -61,6 +61,7 @@ def test_page_shows_ratios_and_who_is_missing() -> None:
     assert "microcontroller" not in text
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_all_contenders_agree(tmp_path: Path) -> None:
     tool("g++")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from softimpact.studio.program_run import AGREED
+from softimpact.studio.program.run import AGREED
 
 ROOT = Path(__file__).parents[2]
 
@@ -17,8 +17,8 @@ RUNTIME = ROOT / "codegen/runtime"
 FREE = [
     "codegen/templates/header_impact.h.jinja",
     "docs/programs.md",
-    "studio/program_engine.py",
-    "studio/program_run.py",
+    "studio/program/engine.py",
+    "studio/program/run.py",
 ]
 """Texts that say what is left free, in per cent."""
 

@@ -15,7 +15,7 @@ from compiled_packages import KINDS, Generated
 
 from softimpact.codegen import generate_package
 from softimpact.optimize import load_study
-from softimpact.studio.selection import PoseFigures, ranking
+from softimpact.studio.design.selection import PoseFigures, ranking
 from softimpact.symbolic import InvalidValue, load_robot
 from softimpact.symbolic.robot.rigid import Array
 

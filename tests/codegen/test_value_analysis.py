@@ -75,6 +75,7 @@ def undecided(alarm: str) -> bool:
 
 
 # the others take Eva minutes since packages have the new runtime, and its bounds are open for all
+@pytest.mark.long
 @pytest.mark.parametrize("robot", ["rr"])
 def test_eva_finds_no_access_out_of_bounds(
     package: Callable[[str], Generated], robot: str, tmp_path: Path

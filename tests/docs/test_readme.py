@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import json
 import re
 import shlex
 import shutil
@@ -12,15 +15,16 @@ from pathlib import Path
 import pytest
 from command_line import run
 
-from softimpact.symbolic import analyse, drives, impact_model, load_robot
+from softimpact.symbolic import body_region
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"^\$ softimpact (.+)$", README, re.MULTILINE)
+PYTHON = re.findall(r"^```python\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)[0]
 (PROGRAM,) = re.findall(r"^```c\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
 
 
-def test_c_program_prints_what_python_computes(tmp_path: Path) -> None:
+def test_c_and_python_print_the_speed_that_the_page_states(tmp_path: Path) -> None:
     compiler = shutil.which("cc") or shutil.which("gcc")
     assert compiler is not None, "a C compiler is needed"
     source, program = tmp_path / "main.c", tmp_path / "main"
@@ -30,10 +34,23 @@ def test_c_program_prints_what_python_computes(tmp_path: Path) -> None:
     flags = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{package / 'include'}"]
     subprocess.run([compiler, *flags, source, *sources, "-o", program, "-lm"], check=True)
     printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout
-    panda = load_robot("panda")
-    model = impact_model(panda, drives=drives(panda, 3000.0))
-    found = analyse(model, [-1.22, 0.84, 0.72, -2.41, 0.79, 1.97, -2.04], [0.0, 1.0, 0.0])
-    assert printed == f"m_c = {found.m_c:.2f} kg, k_r = {found.k_r:.0f} N/m\n"
+    speed, force = map(float, re.findall(r"^([\d.]+) m/s: (\d+) N at most$", printed)[0])
+    assert f"Both say {speed:.2f} m/s." in README
+    limit = body_region("chest").transient_limit
+    assert limit is not None
+    assert force < limit
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        exec(PYTHON, {})
+    assert f"; {speed:.2f} m/s keep every limit" in said.getvalue()
+
+
+def test_readme_says_what_safe_speeds_cost() -> None:
+    costs = json.loads((ROOT / "generated/panda/manifest.json").read_text())["costs"]["functions"]
+    mean = {f["name"].removeprefix("panda_safe_speed"): f["m7"]["mean"] / 1e6 for f in costs}
+    said = re.search(r"([\d.]+) million instructions.*?([\d.]+) million for driven", README, re.S)
+    assert said is not None
+    assert [float(x) for x in said.groups()] == [round(mean[x], 2) for x in ("", " (driven)")]
 
 
 def test_readme_shows_commands() -> None:

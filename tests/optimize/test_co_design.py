@@ -308,6 +308,7 @@ def test_starts_are_just_accurate(found: Design) -> None:
         assert pose.table.force < start
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize("region", ["chest", "head"])
 def test_the_whole_study(region: str) -> None:

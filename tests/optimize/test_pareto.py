@@ -363,6 +363,7 @@ def test_nothing_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     assert np.isfinite(caught.value.best.force)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_whole_study() -> None:
     study = load_study(PANDA_24)

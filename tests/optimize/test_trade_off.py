@@ -32,11 +32,11 @@ from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.optimize.study_check import study_problems
 from softimpact.studio.figures.trade_off import figure_of_front
 from softimpact.studio.figures.trade_off_hardware import figure_of_hardware
+from softimpact.studio.front.trade_off_record import trade_off_record, write_points
+from softimpact.studio.front.trade_off_report import TradeOffReport, trade_off_report
+from softimpact.studio.front.trade_off_schema import ObjectivesResults
+from softimpact.studio.front.trade_off_words import front_words, heading, in_words
 from softimpact.studio.report.trade_off_pages import write_trade_off_report
-from softimpact.studio.trade_off_record import trade_off_record, write_points
-from softimpact.studio.trade_off_report import TradeOffReport, trade_off_report
-from softimpact.studio.trade_off_schema import ObjectivesResults
-from softimpact.studio.trade_off_words import front_words, heading, in_words
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.record import plain
 from softimpact.symbolic.robot.rigid import Array

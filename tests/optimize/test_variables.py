@@ -29,7 +29,7 @@ from softimpact.optimize.search.problem import felt_numbers, sought_parts, study
 from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.optimize.variables import Variable
 from softimpact.simulate import Approach, simulate_impact
-from softimpact.studio.scenario_checks import checked_worst
+from softimpact.studio.design.scenario_checks import checked_worst
 from softimpact.symbolic import (
     InvalidValue,
     PowerLaw,

@@ -15,6 +15,7 @@ import pytest
 from command_line import refusal
 from matplotlib.colors import to_rgb
 
+from softimpact.optimize.running.workers import cores
 from softimpact.papers.msm.compare import Comparison, compared, grid_points
 from softimpact.papers.msm.compute import Results, compute
 from softimpact.papers.msm.figures import STYLE, draw
@@ -90,6 +91,7 @@ def reproduced(paper: str, out: Path) -> dict[str, Any]:
     return record
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_whole_paper(tmp_path: Path) -> None:
     out = tmp_path / "msm"
@@ -105,6 +107,7 @@ def test_the_whole_paper(tmp_path: Path) -> None:
     assert (out / "report.md").read_text().count("![") == 11
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_paper_on_impact_factors(tmp_path: Path) -> None:
     """39 statements: six for each of two tips and three sets of rotors, and one a set on bases."""
@@ -141,6 +144,22 @@ def test_foreign_folders_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("keep")
     assert "choose another folder" in refusal("reproduce", "--out", tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_there_are_no_more_processes_than_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Stop(Exception):
+        pass
+
+    asked = []
+
+    def workers(count: int) -> None:
+        asked.append(count)
+        raise Stop
+
+    monkeypatch.setattr("softimpact.papers.msm.compute.workers", workers)
+    with pytest.raises(Stop):
+        compute()
+    assert asked == [cores()]
 
 
 def test_a_folder_to_write_into_is_needed() -> None:

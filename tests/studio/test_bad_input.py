@@ -14,8 +14,8 @@ from command_line import refusal, run
 from oracles import example_urdf
 
 from softimpact import cli
-from softimpact.studio.generate_command import RealOption
-from softimpact.studio.values import one_of
+from softimpact.studio.commands.generate import RealOption
+from softimpact.studio.typed.values import one_of
 from softimpact.symbolic import load_robot
 
 Q = "[0, 0.3, 0, -1.8, 0.1, 2, 0.5]"
@@ -286,6 +286,7 @@ def _along(angle: float) -> str:
         (["analyze"], "Missing argument"),
         (["analyze", *PANDA, "--stiffness", "1"], "No such option: --stiffness"),
         (["analyze", "panda", "--q", Q], "Missing option '--direction'"),
+        (["reproduce", "--out", "x", "--paper", "mms"], "for '--paper': 'mms' is not one of"),
     ],
 )
 def test_usage(words: list[str], reason: str) -> None:
@@ -337,7 +338,7 @@ def test_a_full_disk_behind_stdout_is_told(monkeypatch: pytest.MonkeyPatch) -> N
     def full(*_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("softimpact.studio.output.print_json", full)
+    monkeypatch.setattr("softimpact.studio.output.printed.print_json", full)
     lost = "error: the result cannot be written: No space left on device\n"
     assert refusal("analyze", *PANDA, "--json") == lost
 

@@ -68,7 +68,9 @@ def test_without_limits_the_worse_end_still_counts() -> None:
     [
         (("--region", "chest", "--shape", "cone:1"), "shape: must be sphere:RADIUS"),
         (("--region", "chest", "--cover", "absent.toml"), "absent.toml: no such file"),
+        (("--region", "chest", "--cover", "sh1"), "did you mean 'sh10'?"),
         (("--body", "absent.toml"), "absent.toml: no such file"),
+        (("--body", "chest"), "it goes by --region"),
         (("--region", "sternun"), "unknown body region 'sternun'"),
     ],
 )

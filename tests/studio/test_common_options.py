@@ -15,10 +15,10 @@ import typer
 from command_line import refusal, run, run_json
 
 from softimpact.cli import app
-from softimpact.studio.common_options import common
-from softimpact.studio.output import folded, print_table, say, shown, tables_as_csv
-from softimpact.studio.progress import working
-from softimpact.studio.typed import But
+from softimpact.studio.commands.common import common
+from softimpact.studio.output.printed import folded, print_table, say, shown, tables_as_csv
+from softimpact.studio.output.progress import working
+from softimpact.studio.typed.groups import But
 
 COMMANDS = {command.name or "": command for command in app.registered_commands}
 ANALYZE = ("analyze", "rr", "--q", "[0.1, 0, 0.4, 0]", "--direction", "[1, 0, 0]")
@@ -89,7 +89,7 @@ def test_verbose_says_what_is_done_and_leaves_no_trace() -> None:
 def test_a_terminal_sees_that_a_command_is_at_work(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("softimpact.studio.progress.PATIENCE", 0.0)
+    monkeypatch.setattr("softimpact.studio.output.progress.PATIENCE", 0.0)
     with working("simulating"):
         time.sleep(0.05)
     assert capsys.readouterr().err == ""  # no terminal

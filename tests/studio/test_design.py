@@ -16,8 +16,8 @@ from small_arm import small_study as arm_study
 from studies import InProcess
 
 from softimpact.optimize import design
-from softimpact.studio.checks import doubts
-from softimpact.studio.design_report import (
+from softimpact.studio.design.checks import doubts
+from softimpact.studio.design.report import (
     design_record,
     design_report,
     gains_in_words,

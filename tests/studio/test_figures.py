@@ -17,7 +17,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from pages import well_formed
 
 from softimpact.optimize.posture.tip_pose import tip_pose
-from softimpact.studio.design_report import DesignReport, gains_in_words
+from softimpact.studio.design.report import DesignReport, gains_in_words
 from softimpact.studio.figures import (
     draw_figures,
     figure_of_forces,

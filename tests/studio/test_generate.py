@@ -9,7 +9,7 @@ import pytest
 from command_line import refusal, run, run_json
 
 from softimpact.codegen import Payload, generate_package
-from softimpact.studio.pose_table import pose_table
+from softimpact.studio.typed.pose_table import pose_table
 from softimpact.symbolic import drives, load_robot
 
 STUDY = Path(__file__).parents[2] / "robots/studies/panda_24_poses.toml"

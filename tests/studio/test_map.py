@@ -15,7 +15,7 @@ from command_line import refusal, run, run_json
 from softimpact.batch import NoCompiler
 from softimpact.simulate.sampled import Samples
 from softimpact.simulate.sampled_speeds import safe_speeds
-from softimpact.studio import worst_directions
+from softimpact.studio.map import worst_directions
 from softimpact.studio.page.opened import opened
 from softimpact.symbolic import (
     Contact,

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from softimpact.studio.motion_file import MotionFileError, read_motion
+from softimpact.studio.program.motion_file import MotionFileError, read_motion
 from softimpact.symbolic import InvalidValue, load_robot
 
 UR = load_robot("ur5e")

@@ -27,10 +27,10 @@ from softimpact.studio.figures.pareto import (
     figure_of_speeds,
 )
 from softimpact.studio.figures.pareto_designs import figure_of_designs
-from softimpact.studio.pareto_record import pareto_record
-from softimpact.studio.pareto_report import ParetoReport, pareto_report
-from softimpact.studio.pareto_schema import ParetoResults
-from softimpact.studio.pareto_words import front_words, in_words, rows
+from softimpact.studio.front.pareto_record import pareto_record
+from softimpact.studio.front.pareto_report import ParetoReport, pareto_report
+from softimpact.studio.front.pareto_schema import ParetoResults
+from softimpact.studio.front.pareto_words import front_words, in_words, rows
 from softimpact.studio.report.pareto_pages import write_pareto_report
 
 POSES = ("q9", "q18")
@@ -247,6 +247,7 @@ def test_figures_are_legible_and_the_same_each_time(report: ParetoReport, tmp_pa
         assert path.read_bytes() == (folders[1] / path.name).read_bytes()
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_tables_say_what_was_found(tmp_path: Path) -> None:
     study = written(tmp_path, changed(HEAD, ("q9",)))

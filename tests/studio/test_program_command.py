@@ -108,7 +108,7 @@ def test_table(motion: Path) -> None:
 
 
 def test_points_by_default_are_the_end_and_some_along_the_arm() -> None:
-    from softimpact.studio.program import default_points
+    from softimpact.studio.program.program import default_points
 
     points = default_points(PANDA, REST)
     assert points[0] == "hand_tcp"

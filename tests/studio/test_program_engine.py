@@ -17,8 +17,8 @@ from softimpact.batch import NoCompiler, compiled_arm
 from softimpact.simulate.bracket import bracket
 from softimpact.simulate.sampled import SampledImpacts, Samples
 from softimpact.simulate.zones import Somebody
-from softimpact.studio import program_engine
-from softimpact.studio.program_engine import why_not_in_c
+from softimpact.studio.program import engine as program_engine
+from softimpact.studio.program.engine import why_not_in_c
 from softimpact.symbolic import (
     Contact,
     Motors,
@@ -234,7 +234,7 @@ def test_without_a_compiler_python_does_it_and_says_so(
         raise NoCompiler
 
     monkeypatch.setattr(program_engine, "compiled_arm", missing)
-    monkeypatch.setattr("softimpact.studio.program_run.FEW", 10)
+    monkeypatch.setattr("softimpact.studio.program.run.FEW", 10)
     found = answer(files, *QUICK)
     assert found["engine"] == {"name": "python"}
     assert any("no C compiler found" in line for line in found["warnings"])

@@ -15,9 +15,9 @@ from impact_cases import CHEST
 from softimpact.simulate import simulate_impact
 from softimpact.simulate.trust import TRUSTED
 from softimpact.simulate.zones import Somebody
-from softimpact.studio.program_moments import Question, approach_at
-from softimpact.studio.program_table import Names, ProgramTable
-from softimpact.studio.program_trust import nonlinear_share
+from softimpact.studio.program.moments import Question, approach_at
+from softimpact.studio.program.table import Names, ProgramTable
+from softimpact.studio.program.trust import nonlinear_share
 from softimpact.symbolic import (
     Motors,
     Robot,

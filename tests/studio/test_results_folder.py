@@ -10,7 +10,11 @@ from pathlib import Path
 import pytest
 
 from softimpact.codegen import FolderNotWritable, ForeignFolder
-from softimpact.studio.results_folder import RESULTS, replaced_folder, require_replaceable_results
+from softimpact.studio.output.results_folder import (
+    RESULTS,
+    replaced_folder,
+    require_replaceable_results,
+)
 
 MINE = "softimpact test"
 

@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
-from command_line import refusal, run
+from command_line import refusal, run, run_json
 from oracles import example_urdf
 from robot_files import two_links, two_links_urdf
 
@@ -146,6 +146,30 @@ def test_a_study_of_an_arm_whose_base_floats(tmp_path: Path) -> None:
     path = written(tmp_path, f"<mujoco><worldbody>{body}</worldbody></mujoco>")
     assert "hold the robot's base by --hold-base" in refusal("init", path, "--tip", "tool")
     assert "hold_base = true" in run("init", path, "--tip", "tool", "--hold-base").out
+
+
+LEG = ("mini_cheetah", "--q", "[0, -0.8, 1.6]", "--direction", "[0, 0, -1]")
+
+
+def test_what_is_taken_for_a_base_that_may_move_is_said() -> None:
+    held = "the base of mini_cheetah (3.52 kg, at which 4 chains of joints start) is taken as held"
+    (line,) = run_json("analyze", *LEG)["warnings"]
+    assert line.startswith(held)
+    nothing, line = run_json("analyze", *LEG, "--hold-base")["warnings"]
+    assert nothing == "the file holds the base already: hold_base changes nothing"
+    assert line.startswith(held)
+    assert held in run("init", "mini_cheetah").err
+    assert run("init", "panda").err == ""
+
+
+def test_a_first_study_for_machines() -> None:
+    found = run_json("init", "ur5e")
+    assert found["text"] == run("init", "ur5e").out
+    assert found["study"]["robot"]["tip"] == "flange"
+
+
+def test_a_robot_is_no_study() -> None:
+    assert "softimpact init panda > study.toml" in refusal("check", "panda")
 
 
 def test_inspect_of_a_file_that_is_none(tmp_path: Path) -> None:

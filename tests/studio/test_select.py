@@ -12,7 +12,7 @@ from command_line import refusal, run, run_json
 from pages import well_formed
 
 from softimpact.robots import FOLDER
-from softimpact.studio import selection
+from softimpact.studio.design import selection
 
 STUDY = FOLDER / "studies/panda_24_poses.toml"
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from oracles import column
 
-from softimpact.studio.motion_file import MotionFileError
-from softimpact.studio.waypoints import JOINT_STEP, PLACE_STEP, read_waypoints
+from softimpact.studio.program.motion_file import MotionFileError
+from softimpact.studio.program.waypoints import JOINT_STEP, PLACE_STEP, read_waypoints
 from softimpact.symbolic import SoftImpactError, frame_pose, load_robot
 
 UR = load_robot("ur5e")

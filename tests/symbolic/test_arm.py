@@ -24,7 +24,8 @@ def test_the_end_is_the_robots_own_where_the_contact_lies_on_the_way(
 def test_elsewhere_the_contact_is_the_end_and_what_is_beyond_is_welded_with_a_word() -> None:
     arm = arm_of(load_robot("mini_cheetah"), "thigh_fr")  # its own tip is another leg's foot
     assert (arm.end, arm.robot.n) == ("thigh_fr", 2)
-    (line,) = arm.warnings
+    line, held = arm.warnings
+    assert "3.52 kg, at which 4 chains of joints start) is taken as held" in held
     assert "joint 'knee_fr' is beyond the contact point 'thigh_fr' welded" in line
 
 

@@ -147,6 +147,7 @@ static outcome step_pressed(panda_state *s, panda_trial *t, panda_real bends, in
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
+    s->root = t->root;
     s->x = t->x;
     ++s->past;
     return straight ? TAKEN_AND_STRAIGHT : TAKEN;
@@ -163,6 +164,7 @@ static void touch(panda_state *s)
     s->rise = PANDA_R(0.0);
     s->bump = PANDA_R(0.0);
     s->now = PANDA_R(0.0);
+    s->root = PANDA_R(0.0);
 }
 
 /* A step out of contact. */
@@ -244,7 +246,7 @@ static bool run_phase(panda_state *s, panda_budget *budget, panda_peak *peak)
     const panda_real share = rough ? ROUGHLY : PANDA_R(1.0);
     const int shortest = rough ? SHORTEST_ROUGH : SHORTEST;
     panda_trial t;
-    int falls = 0; /* steps of a falling force since it was looked whether the rest matters */
+    int falls = 0; /* steps of a falling force, or of none, since it was looked whether the rest matters */
     while (s->ticks > 0) {
         if (budget->steps <= 0 || peak->contacts > MOST_CONTACTS) {
             return false;
@@ -266,7 +268,7 @@ static bool run_phase(panda_state *s, panda_budget *budget, panda_peak *peak)
         }
         tick(s, was == TAKEN_AND_STRAIGHT);
         const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
-        falls += fell ? 1 : 0;
+        falls += fell && s->phase->settles && !(s->rise > PANDA_R(0.0)) ? 1 : 0;
         peak->ended = fell && (peak->force > budget->stop_above || (rough && !s->touching));
         if (budget->watch != NULL) {
             peak->ended = panda_pass(s, budget->watch);
