@@ -20,6 +20,9 @@ from .source import CSource
 
 ROWS = "batch/rows.c"
 
+WHOLE = [f for f in fields(CSource) if f.name != "split"]
+"""Lanes have a function's graph as a whole: calls would break them up."""
+
 
 def batch_sources(package: Package, header: str, show: Templates) -> dict[str, str]:
     """Return a source for each function that maps rows to one result, by its path.
@@ -35,7 +38,7 @@ def batch_sources(package: Package, header: str, show: Templates) -> dict[str, s
     for entry in interface.entries.values():
         if is_mapped(entry):
             source = closed.get(entry.name)
-            lanes = Lanes(*(getattr(source, f.name) for f in fields(CSource))) if source else None
+            lanes = Lanes(*(getattr(source, f.name) for f in WHOLE)) if source else None
             files[f"batch/{entry.name}.c"] = show(ROWS, lanes=lanes, **_call(name, entry))
     return files
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from softimpact.symbolic import Drives, InvalidValue, Robot, UnknownName
 
-from .inputs import POSITIVE, Parameter, freeze
+from .inputs import POSITIVE, Parameter, freeze, lacks_springs
 
 ALL = "all"
 """Stands for all parameters where some are named."""
@@ -52,7 +52,7 @@ def defaults_of(
         payload: what it carries, if anything.
 
     Raises:
-        InvalidValue: a payload that no robot can carry.
+        InvalidValue: a payload that no robot can carry, or springs that a package leaves out.
     """
     known: dict[str, Sequence[float] | None] = {
         "joint_stiffness": None,
@@ -61,6 +61,12 @@ def defaults_of(
         "damping_gain": [0.0] * robot.n,
     }
     if drives is not None:
+        if lacks_springs(robot, drives):
+            raise InvalidValue(
+                "joint_stiffness",
+                f"the C of '{robot.name}' has no springs behind motors, as it has "
+                f"{_own_compliance(robot)}; leave it out",
+            )
         known = {
             "joint_stiffness": np.array(drives.springs).ravel().tolist(),
             "rotor_inertia": np.array(drives.rotors).ravel().tolist(),
@@ -78,6 +84,13 @@ def defaults_of(
         usable = values is not None and (parameter.range is not POSITIVE or min(values) > 0)
         defaults.append(Default(parameter, tuple(values) if usable and values else None))
     return tuple(defaults)
+
+
+def _own_compliance(robot: Robot) -> str:
+    """Return in words why joints of a package get no springs behind their motors."""
+    if robot.loops:
+        return "loops or coupled joints"
+    return "springs of its own" if robot.has_springs else "passive joints"
 
 
 def _check(robot: Robot, payload: Payload) -> None:

@@ -86,6 +86,7 @@ class CFunction:
         open_ended: whether some results may not be finite, which its callers look at.
         divides: whether divisions stay divisions; for results that cannot afford the rounding of
             a reciprocal.
+        elsewhere: joint coordinates other than q at which it needs what others need at q.
     """
 
     name: str
@@ -98,14 +99,23 @@ class CFunction:
     guards: tuple[Guard, ...] = ()
     open_ended: bool = False
     divides: bool = False
+    elsewhere: tuple[Matrix, ...] = field(default=(), repr=False)
 
     @cached_property
     def graph(self) -> Graph:
         """The outputs' compared entries, then the guards."""
+        return self.with_reciprocals(self.plain)
+
+    def with_reciprocals(self, graph: Graph) -> Graph:
+        """Return a graph of the function with reciprocals, if it can afford them."""
+        return graph if self.divides else with_reciprocals(graph)
+
+    @cached_property
+    def plain(self) -> Graph:
+        """The same with all divisions that CasADi has."""
         values = [ca.vertcat(*[o.entry(place) for place in o.places]) for o in self.outputs]
         guards = [guard.value for guard in self.guards]
-        graph = graph_of(self.symbols, [*values, *guards])
-        return graph if self.divides else with_reciprocals(graph)
+        return graph_of(self.symbols, [*values, *guards])
 
     @cached_property
     def scales(self) -> Graph:

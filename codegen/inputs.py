@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from softimpact.symbolic import Robot
+from softimpact.symbolic import Drives, Robot
 
 
 @dataclass(frozen=True)
@@ -142,3 +142,8 @@ def is_elastic(robot: Robot) -> bool:
     """
     plain = not robot.loops and not robot.has_springs
     return plain and all(robot.actuated)
+
+
+def lacks_springs(robot: Robot, known: Drives) -> bool:
+    """Return whether a package leaves out springs behind motors that the robot has."""
+    return any(known.elastic) and not is_elastic(robot)

@@ -30,6 +30,7 @@ from .poses import checked_poses
 from .render import MEASURED_SAMPLES, Package, render
 from .replay import replay
 from .samples import Sample, as_columns, draw_samples
+from .shared import with_stages
 from .source import CSource
 
 LONGEST_CHAIN = 8
@@ -228,7 +229,7 @@ def package_of(
     for field in ("poses", "contacts"):
         if getattr(package, field) and not package.impact:
             raise InvalidValue(field, f"robot '{robot.name}' has no impacts to use them in")
-    return package
+    return with_stages(package, symbols)
 
 
 def checked_points(robot: Robot, points: Mapping[str, str]) -> dict[str, str]:

@@ -29,6 +29,7 @@ from .law_points import MOST_POINTS
 from .manifest import Real
 from .samples import Sample
 from .source import CSource
+from .stage_source import StageSource
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -63,6 +64,7 @@ class Package:
         floating: whether a function sets the base free.
         poses: built-in candidates for ``select_configuration``, by name.
         contacts: built-in bodies and covers.
+        stages: what its functions share.
     """
 
     prefix: str
@@ -81,6 +83,7 @@ class Package:
     floating: bool = False
     poses: Mapping[str, Sequence[float]] = field(default_factory=dict)
     contacts: tuple[BuiltIn, ...] = ()
+    stages: tuple[StageSource, ...] = ()
 
     @property
     def elastic(self) -> bool:
@@ -173,6 +176,8 @@ def sources(package: Package, show: Templates) -> dict[str, str]:
         internal = [package.impact.links, package.impact.joint_frames]
     for source in [*package.functions, *filter(None, internal)]:
         files[f"src/{source.name}.c"] = show("function.c", f=source)
+    for stage in package.stages:
+        files[f"src/{stage.name}.c"] = show("stage.c", f=stage)
     if package.impact:
         files[f"src/{name}_model.c"] = show("model.c")
         files |= runtime(name, without=() if package.impact.joint_frames else (POINT,))

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
@@ -14,7 +15,8 @@ from .description import CFunction, Output
 from .graph import Graph, Node
 from .inputs import SCALARS, Parameter
 from .manifest import FunctionRecord
-from .printer import Statements, print_graph
+from .printer import INDENT, Call, Statements, print_graph
+from .sharing import Split
 
 Q, DIRECTION = 0, 1
 """Places of q and of the direction among a function's symbols."""
@@ -30,6 +32,7 @@ class CSource:
         parameters: all parameters of the package.
         function: what it computes.
         record: its cost and accuracy.
+        split: its graph with calls of what it shares with others; None if it calls none.
     """
 
     prefix: str
@@ -37,6 +40,7 @@ class CSource:
     parameters: Sequence[Parameter]
     function: CFunction
     record: FunctionRecord
+    split: Split | None = None
 
     @property
     def name(self) -> str:
@@ -131,15 +135,43 @@ class CSource:
     def statements(self) -> Statements:
         """The computation."""
         names = [
-            *([self._local(output, place) for place in output.places] for output in self.outputs),
+            *(self._locals(output) for output in self.outputs),
             *([f"guard{i + 1}"] for i in range(len(self.function.guards))),
         ]
-        return print_graph(self.function.graph, self.places, names, self.prefix, self.angles)
+        if self.split is None:
+            return print_graph(self.function.graph, self.places, names, self.prefix, self.angles)
+        calls = list(self._calls(len(self.function.symbols), len(names)))
+        places = [*self.places, *[[f"{c.variable}[{k}]" for k in range(c.size)] for c in calls]]
+        return print_graph(self.split.graph, places, names, self.prefix, self.angles, calls)
+
+    def _calls(self, inputs: int, results: int) -> Iterator[Call]:
+        """Yield the calls of stages, whose arguments are the graph's last results."""
+        seen: Counter[str] = Counter()
+        for k, stage in enumerate(self.split.calls if self.split else ()):
+            seen[stage.name] += 1
+            again = f"_{seen[stage.name]}" if seen[stage.name] > 1 else ""
+            names = [argument.name for argument in stage.arguments]
+            yield Call(
+                name=f"{self.prefix}_{stage.name}",
+                variable=f"{stage.name}{again}",
+                size=stage.size,
+                input=inputs + k,
+                arguments=range(results, results + len(names)),
+                names=names,
+                last=["p"] * stage.reads_parameters,
+            )
+            results += len(names)
 
     @property
     def outputs(self) -> tuple[Output, ...]:
         """What it writes."""
         return self.function.outputs
+
+    def _locals(self, output: Output) -> list[str]:
+        """Return the names of an output's entries; empty ones need none."""
+        if self._is_handed_on(output):
+            return [""] * len(output.places)
+        return [self._local(output, place) for place in output.places]
 
     def _local(self, output: Output, place: tuple[int, ...]) -> str:
         if not place:
@@ -189,6 +221,9 @@ class CSource:
         lines = []
         for output, texts in zip(self.outputs, self.statements.results, strict=False):
             target = f"out->{output.name}" if self.struct else output.name
+            if self._is_handed_on(output):
+                lines += _mirrored(target, texts[0].removesuffix("[0]"), output.shape[0])
+                continue
             if not output.shape and not self.struct:
                 target = f"*{target}"
             for place, text in zip(output.places, texts, strict=True):
@@ -197,6 +232,17 @@ class CSource:
                 mirrored = {place, place[::-1]} if output.symmetric else {place}
                 lines += [f"{target}{_index(at)} = {text};" for at in sorted(mirrored)]
         return lines
+
+    def _is_handed_on(self, output: Output) -> bool:
+        """Whether an internal function copies a matrix from what a call computes."""
+        if self.split is None or not (output.symmetric and self.function.open_ended):
+            return False
+        result = self.split.graph.results[self.outputs.index(output)]
+        nodes = [self.split.graph.nodes[i] for i in result]
+        first = nodes[0].element[0]
+        expected = [(first, k) for k in range(len(nodes))]
+        called = all(_is_input(node) for node in nodes) and first >= len(self.function.symbols)
+        return called and [node.element for node in nodes] == expected
 
     @property
     def _zero(self) -> str:
@@ -209,6 +255,18 @@ class CSource:
 
 def _brackets(output: Output) -> str:
     return _index(output.shape)
+
+
+def _mirrored(target: str, packed: str, size: int) -> list[str]:
+    """Return statements that fill a symmetric matrix from its rows up to the diagonal."""
+    return [
+        f"for (int i = 0; i < {size}; ++i) {{",
+        f"{INDENT}for (int j = 0; j <= i; ++j) {{",
+        f"{2 * INDENT}{target}[i][j] = {packed}[i*(i + 1)/2 + j];",
+        f"{2 * INDENT}{target}[j][i] = {target}[i][j];",
+        f"{INDENT}}}",
+        "}",
+    ]
 
 
 def _index(place: tuple[int, ...]) -> str:

@@ -84,6 +84,7 @@ def rounds(line: str, name: str, n: int) -> Rounds:
         (r"compliance.*(l = i; l >= 0)", (n + 1) / 2),
         (r"compliance.*i = end", n),
         (r"(j|l) <= i|l = i; l <", (n + 1) / 2),
+        (r"links\.c .*i < \d", n),
         (r"linear.*(i = j \+ 1|k < [ij];|k = i \+ 1)", (n - 1) / 2),
         (r"ITERATIONS", ITERATIONS),
         (rf"{N}_LEVELS", LEVELS),

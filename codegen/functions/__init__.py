@@ -3,6 +3,7 @@
 
 from .arrival import has_potential, links_of
 from .catalogue import functions_of
+from .stages import stages_of
 from .symbols import Symbols, coordinates_of, symbols_of
 
 __all__ = [
@@ -11,5 +12,6 @@ __all__ = [
     "functions_of",
     "has_potential",
     "links_of",
+    "stages_of",
     "symbols_of",
 ]

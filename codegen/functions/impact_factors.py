@@ -37,11 +37,16 @@ def impact_factors(s: Symbols) -> CFunction:
 
     Those are the first joint's, where J has most zeros, or those in which J itself takes fewest.
     """
+    found = (_impact_factors_in(s, axes) for axes in axes_of_factors(s))
+    return min(found, key=lambda function: function.flops)
+
+
+def axes_of_factors(s: Symbols) -> list[int]:
+    """Return the joints in whose axes, or the base's, the factors may be."""
     robot = s.robot
     path = robot.ancestors(robot.frame(s.model.tip).joint)
     leanest = min(reversed(path), key=lambda axes: count_flops(s.model.jacobian(s.q, axes)))
-    axes = dict.fromkeys((BASE, min(path), leanest))
-    return min((_impact_factors_in(s, a) for a in axes), key=lambda function: function.flops)
+    return list(dict.fromkeys((BASE, min(path), leanest)))
 
 
 def _impact_factors_in(s: Symbols, axes: int) -> CFunction:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 
 from softimpact.symbolic import least_velocity, linearisation_error
@@ -30,4 +32,5 @@ def linear_error(s: Symbols) -> CFunction:
         Guard(ca.dot(turn, turn), -1.0, FARTHEST_TURN**2),
     )
     summary = "Share of the force by which the linear robot may be off at an impact."
-    return function_over(s, "linear_error", summary, (output,), guards)
+    built = function_over(s, "linear_error", summary, (output,), guards)
+    return replace(built, elsewhere=(s.q + turn,))

@@ -6,6 +6,8 @@
 #define OUTSIDE ROBOT_R(1e-6)
 /* Most that the speed along n may err by where motors can hardly move the contact point that way. */
 #define ASTRAY ROBOT_R(1e-3)
+/* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
+#define ROUNDING (ROBOT_R(8.0)*ROBOT_EPSILON)
 #define MOST_STEPS 1000000
 
 int robot_check_impact(const robot_region *region, const robot_params *p)
@@ -80,7 +82,7 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
         return ROBOT_SINGULAR;
     }
     for (int k = 0; k < ROBOT_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > ROBOT_EPSILON*whole)) {
+        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
             return ROBOT_SINGULAR;
         }
     }

@@ -198,6 +198,75 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
 }
 #endif
 
+#if !ROBOT_POTENTIAL
+/* Sweeps that make what modes bend orthogonal, which it nearly is. */
+#define SWEEPS_OF_SERVO 2
+
+static robot_real dot(const robot_real a[ROBOT_SYSTEM], const robot_real b[ROBOT_SYSTEM])
+{
+    robot_real sum = ROBOT_R(0.0);
+    for (int k = 0; k < ROBOT_SYSTEM; ++k) {
+        sum += a[k]*b[k];
+    }
+    return sum;
+}
+
+/* Turns two rows by an angle of tangent t. */
+static void turn(robot_real t, robot_real a[ROBOT_SYSTEM], robot_real b[ROBOT_SYSTEM])
+{
+    const robot_real c = ROBOT_R(1.0)/ROBOT_SQRT(ROBOT_R(1.0) + t*t);
+    for (int k = 0; k < ROBOT_SYSTEM; ++k) {
+        const robot_real x = a[k];
+        a[k] = c*(x - t*b[k]);
+        b[k] = c*(b[k] + t*x);
+    }
+}
+
+/*
+ * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
+ * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
+ * orthogonal (Jacobi's rotations from one side).
+ */
+static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes)
+{
+    (void)p;
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        robot_real off = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_N; ++j) {
+            const int motor = ROBOT_SYSTEM - ROBOT_N + j;
+            const robot_real turned = modes->shape[i][motor];
+            const robot_real gain = ROBOT_SQRT(ROBOT_GAIN(p, j));
+            bent[i][motor] = gain*turned;
+            off += gain*ROBOT_FABS(turned);
+#if ROBOT_ELASTIC
+            const robot_real root = ROBOT_SQRT(ROBOT_SPRING(p, j));
+            bent[i][j] = root*(modes->shape[i][j] - turned);
+            off += root*(ROBOT_FABS(modes->shape[i][j]) + ROBOT_FABS(turned));
+#endif
+        }
+        modes->squared[i] = dot(bent[i], bent[i]);
+        off *= ROBOT_EPSILON;
+        modes->noise[i] = off*(off + ROBOT_R(2.0)*ROBOT_SQRT(modes->squared[i]));
+    }
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+        for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+            for (int j = 0; j < i; ++j) {
+                const robot_real off = dot(bent[i], bent[j]);
+                if (off*off > ROBOT_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    const robot_real half = ROBOT_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
+                    const robot_real length = ROBOT_FABS(half) + ROBOT_SQRT(half*half + ROBOT_R(1.0));
+                    const robot_real t = (half < ROBOT_R(0.0) ? ROBOT_R(-1.0) : ROBOT_R(1.0))/length;
+                    turn(t, bent[i], bent[j]);
+                    turn(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = dot(bent[i], bent[i]);
+                    modes->squared[j] = dot(bent[j], bent[j]);
+                }
+            }
+        }
+    }
+}
+#endif
+
 int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real *drift)
 {
@@ -222,18 +291,24 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
         return ROBOT_SINGULAR;
     }
     for (int i = 0; i < ROBOT_SYSTEM; ++i) {
-        robot_real row = ROBOT_R(0.0);
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
             robot_real shape = ROBOT_R(0.0);
             for (int k = j; k < ROBOT_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
-            row += j < ROBOT_N ? arrival->row[j]*shape : ROBOT_R(0.0);
         }
-        modes->noise[i] = ROBOT_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
-        modes->row[i] = row;
+        modes->noise[i] = ROBOT_EPSILON*all;
+    }
+#if !ROBOT_POTENTIAL
+    sharpen(p, mass, modes);
+#endif
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        modes->row[i] = ROBOT_R(0.0);
         modes->start[i] = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_N; ++j) {
+            modes->row[i] += arrival->row[j]*modes->shape[i][j];
+        }
     }
     modes->count = ROBOT_SYSTEM;
     modes->rigid = 0;

@@ -2,10 +2,23 @@
 /* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
 #include "robot_state.h"
 
-/* Until when it is looked, s. */
+/* Until when it is looked, s; at contacts that began late beyond that, as these may come a little earlier. */
 #define PRESSED_UNTIL ROBOT_R(0.6)
+#define PRESSED_AGAIN_UNTIL ROBOT_R(0.62)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
+/*
+ * Share of a limit that counts where the law of contact is a table: forces that swing about what presses fell by up to
+ * 7 % as the speed rose, between the shares that are tried.
+ */
+#define KEPT_OF_TABLES ROBOT_R(0.9)
+/*
+ * Share of a limit that no later force may reach if slower speeds need not be looked at: motions by Hertz's law grow
+ * nearly with the speed, so what parts for good at one does at slower ones.
+ */
+#define CALM ROBOT_R(0.5)
+/* Else shares of the speed that are tried: arms may bounce past 0.5 s at slower speeds and not at that one. */
+#define SHARES 10
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -14,6 +27,7 @@ typedef struct {
     robot_budget budget;
     robot_watch watch;
     bool bounded; /* some force is a bound */
+    bool calm; /* what was asked last cannot press harder at slower speeds */
 } robot_pressing;
 
 /*
@@ -25,6 +39,8 @@ static robot_real pressed_by(robot_pressing *k, robot_real speed, robot_real mat
     robot_peak peak;
     k->watch.matters = matters;
     k->watch.depth = robot_law_depth(k->impact.region, matters);
+    k->watch.apart = ROBOT_R(0.0);
+    k->watch.settled = false;
     k->watch.late = ROBOT_R(0.0);
     k->watch.before = ROBOT_R(0.0);
     k->watch.last = ROBOT_R(0.0);
@@ -45,42 +61,77 @@ static bool keeps(robot_pressing *k, const robot_region *region, robot_real spee
     int last;
     robot_kinds_of_motors(&k->p, &first, &last);
     bool kept = true;
+    k->watch.slower = true;
+    k->calm = region->law == NULL;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = robot_impact_prepare(region, &k->p, motors, limit, &k->impact) == ROBOT_OK
-            && pressed_by(k, speed, ROBOT_KEPT*limit) <= ROBOT_KEPT*limit;
+            && pressed_by(k, speed, CALM*limit) <= ROBOT_KEPT*limit;
+        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }
 
-static void prepare_pressing(const robot_params *p, robot_pressing *k)
+static void prepare_pressing(const robot_params *p, robot_real until, robot_pressing *k)
 {
     k->p = *p;
-    k->p.horizon = ROBOT_FMAX(ROBOT_HORIZON(p), PRESSED_UNTIL);
+    k->p.horizon = ROBOT_FMAX(ROBOT_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
     k->budget.stop_above = ROBOT_REAL_MAX;
     k->budget.watch = NULL;
+    k->watch.slower = false;
     k->bounded = false;
+    k->calm = false;
 }
 
-/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+/* A speed at which a proven bound keeps a limit; 0 if there is none. */
+static robot_real bounded_speed(robot_pressing *k, const robot_region *region, robot_real limit)
+{
+    int first;
+    int last;
+    robot_kinds_of_motors(&k->p, &first, &last);
+    robot_real most = ROBOT_R(0.0);
+    bool is_known = true;
+    for (int motors = first; motors <= last && is_known; ++motors) {
+        is_known = robot_impact_prepare(region, &k->p, motors, limit, &k->impact) == ROBOT_OK;
+        const robot_real bound = is_known ? robot_bound(&k->impact) : ROBOT_R(0.0);
+        is_known = bound > ROBOT_R(0.0);
+        most = ROBOT_FMAX(most, bound);
+    }
+    return is_known ? ROBOT_KEPT*limit/most : ROBOT_R(0.0);
+}
+
+/* The largest speed up to one at which and, as far as it is looked, below which what presses keeps a limit; or 0. */
 static robot_real slow_down(robot_pressing *k, const robot_region *region, robot_real speed, robot_real limit)
 {
-    if (keeps(k, region, speed, limit)) {
-        return speed;
-    }
+    static const robot_real shares[SHARES] = {ROBOT_R(0.03), ROBOT_R(0.06), ROBOT_R(0.1), ROBOT_R(0.17), ROBOT_R(0.25),
+        ROBOT_R(0.35), ROBOT_R(0.48), ROBOT_R(0.62), ROBOT_R(0.76), ROBOT_R(0.9)};
     robot_real low = ROBOT_R(0.0);
     robot_real high = speed;
-    for (int i = 0; i < SLOWER; ++i) {
+    bool calm = false;
+    if (keeps(k, region, speed, limit)) {
+        low = speed;
+        calm = k->calm;
+    }
+    for (int i = 0; i < SLOWER && low < speed; ++i) {
         const robot_real middle = ROBOT_R(0.5)*(low + high);
         k->budget.steps = k->p.steps;
         if (keeps(k, region, middle, limit)) {
             low = middle;
+            calm = k->calm;
         } else {
             high = middle;
         }
     }
-    return low;
+    const robot_real found = low;
+    for (int i = 0; i < SHARES && !calm && found > ROBOT_R(0.0); ++i) {
+        k->budget.steps = k->p.steps;
+        if (!keeps(k, region, shares[i]*found, limit)) {
+            low = i > 0 ? shares[i - 1]*found : ROBOT_R(0.0);
+            break;
+        }
+    }
+    return low > ROBOT_R(0.0) ? low : ROBOT_FMIN(speed, bounded_speed(k, region, limit));
 }
 
 int robot_pressing_force_at(const robot_real q[ROBOT_JOINTS], int point, const robot_real n[3],
@@ -97,7 +148,7 @@ int robot_pressing_force_at(const robot_real q[ROBOT_JOINTS], int point, const r
     if (status != ROBOT_OK) {
         return status;
     }
-    prepare_pressing(p, &k);
+    prepare_pressing(p, PRESSED_UNTIL, &k);
     robot_real found = ROBOT_R(0.0);
     int first;
     int last;
@@ -136,8 +187,9 @@ static int find_allowed(const robot_region *region, const robot_params *p, robot
         found->speed = safe.speed;
         found->force = safe.force;
         if (region->clamped != 0) {
-            prepare_pressing(p, k);
-            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+            prepare_pressing(p, PRESSED_AGAIN_UNTIL, k);
+            const robot_real share = region->law == NULL ? ROBOT_R(1.0) : KEPT_OF_TABLES;
+            found->speed = slow_down(k, region, safe.speed, share*region->quasi_static_limit);
         }
         found->pressed = found->speed < safe.speed ? 1 : 0;
     }
@@ -238,7 +290,7 @@ int robot_may_press(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_
     for (int point = 0; point < ROBOT_POINTS && region->clamped != 0 && kept; ++point) {
         const robot_real speed = robot_arrive_as_it_moves(point, rates, &k.impact.arrival);
         robot_impact_forget(&k.impact);
-        prepare_pressing(p, &k);
+        prepare_pressing(p, PRESSED_AGAIN_UNTIL, &k);
         kept = !(speed > ROBOT_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;

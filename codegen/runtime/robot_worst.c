@@ -12,6 +12,9 @@
 #define NARROW ROBOT_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
+/* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
+#define STARTS 3
+#define ALIKE ROBOT_R(0.94)
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (ROBOT_R(1.0) - ROBOT_KEPT)
 
@@ -21,7 +24,9 @@ typedef struct {
     robot_real speed;
     robot_real n[3]; /* the worst so far */
     robot_real force;
+    robot_real tried; /* force of the last direction that was tried */
     bool bounded, unknown;
+    bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
 /* Tries a direction over those in which the robot moves; says whether it is worse than all before. */
@@ -40,7 +45,9 @@ static bool try_direction(const robot_region *region, const robot_params *p, con
     if (status == ROBOT_OK) {
         status = robot_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->lost = w->lost || status == ROBOT_SINGULAR;
     w->unknown = w->unknown || (status != ROBOT_OK && status != ROBOT_BOUNDED && status != ROBOT_SINGULAR);
+    w->tried = found.force;
     const bool worse = (status == ROBOT_OK || status == ROBOT_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
@@ -62,6 +69,50 @@ static void direction_of(int k, robot_real along[3])
     along[1] = flat*ROBOT_SIN(turn);
     along[2] = up;
 }
+
+#if ROBOT_REACH > 1
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const robot_region *region, const robot_params *p, hardest *w)
+{
+    const robot_real (*const J)[ROBOT_N] = (const robot_real (*)[ROBOT_N])&w->impact.arrival.links.J[3*w->point];
+    robot_matrix square;
+    robot_matrix vectors;
+    robot_real values[ROBOT_SYSTEM];
+    for (int k = 0; k < ROBOT_REACH; ++k) {
+        for (int l = 0; l < ROBOT_REACH; ++l) {
+            const robot_real *const a = robot_directions[k];
+            const robot_real *const b = robot_directions[l];
+            square[k][l] = ROBOT_R(0.0);
+            for (int i = 0; i < ROBOT_N; ++i) {
+                const robot_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
+                const robot_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                square[k][l] += robot_has_motor[i] ? by_a*by_b : ROBOT_R(0.0);
+            }
+        }
+    }
+    if (!robot_spectrum(ROBOT_REACH, ROBOT_EPSILON*ROBOT_EPSILON, square, values, vectors)) {
+        w->unknown = true;
+        return;
+    }
+    int least = 0;
+    for (int k = 1; k < ROBOT_REACH; ++k) {
+        least = values[k] < values[least] ? k : least;
+    }
+    const robot_real *const a = vectors[(least + 1) % ROBOT_REACH];
+    const robot_real *const b = vectors[(least + 2) % ROBOT_REACH];
+    for (int k = 0; k < (ROBOT_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
+        const robot_real turn = HALF_A_TURN*(robot_real)k/(robot_real)OVER_A_CIRCLE;
+        robot_real along[3] = {ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
+        for (int l = 0; l < ROBOT_REACH; ++l) {
+            along[l] = ROBOT_REACH > 2 ? ROBOT_COS(turn)*a[l] + ROBOT_SIN(turn)*b[l] : a[l];
+        }
+        (void)try_direction(region, p, along, w);
+    }
+}
+#endif
 
 /* Looks around the worst, wider where that helps. */
 static void look_around(const robot_region *region, const robot_params *p, hardest *w)
@@ -91,6 +142,39 @@ static void look_around(const robot_region *region, const robot_params *p, harde
     }
 }
 
+/* Looks around the directions that were hardest, beside the hardest, of those over the ball. */
+static void look_elsewhere(const robot_region *region, const robot_params *p, int count, robot_real *forces, hardest *w)
+{
+    for (int start = 0; start < STARTS; ++start) {
+        const robot_real n[3] = {w->n[0], w->n[1], w->n[2]};
+        const robot_real force = w->force;
+        const bool bounded = w->bounded;
+        int best = 0;
+        for (int k = 1; k < count; ++k) {
+            best = forces[k] > forces[best] ? k : best;
+        }
+        if (!(forces[best] > ROBOT_R(0.0))) {
+            return;
+        }
+        direction_of(best, w->n);
+        w->force = forces[best];
+        for (int k = 0; k < count; ++k) {
+            robot_real along[3];
+            direction_of(k, along);
+            const robot_real cosine = along[0]*w->n[0] + along[1]*w->n[1] + along[2]*w->n[2];
+            forces[k] = ROBOT_FABS(cosine) > ALIKE ? ROBOT_R(0.0) : forces[k];
+        }
+        look_around(region, p, w);
+        if (!(w->force > force)) {
+            w->force = force;
+            w->bounded = bounded;
+            for (int k = 0; k < 3; ++k) {
+                w->n[k] = n[k];
+            }
+        }
+    }
+}
+
 /* Looks everywhere. */
 static int find_hardest(const robot_region *region, const robot_params *p, hardest *w, robot_worst_direction_t *out)
 {
@@ -98,11 +182,19 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
     w->force = ROBOT_R(0.0);
     w->bounded = false;
     w->unknown = false;
+    w->lost = false;
+    robot_real forces[OVER_A_BALL];
     for (int k = 0; k < count; ++k) {
         robot_real along[3];
         direction_of(k, along);
         (void)try_direction(region, p, along, w);
+        forces[k] = w->tried;
     }
+#if ROBOT_REACH > 1
+    if (w->lost) {
+        try_across(region, p, w);
+    }
+#endif
     if (w->unknown) {
         return ROBOT_UNRESOLVED;
     }
@@ -111,6 +203,7 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
     }
     const robot_real seen = w->force;
     look_around(region, p, w);
+    look_elsewhere(region, p, count, forces, w);
     if (w->unknown) { /* so may be the hardest */
         return ROBOT_UNRESOLVED;
     }

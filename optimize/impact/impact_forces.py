@@ -9,7 +9,8 @@ the one stiff variable, the compression of the body.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import casadi as ca
 
@@ -29,6 +30,10 @@ ROUNDING = 1e-12
 FEW_DIRECTIONS = {"max_num_dir": 2}
 """Derivative code for two directions at a time instead of all at once: compiles in a tenth of the
 time and runs as fast."""
+
+
+IN_A_ROW = 10
+"""Calls that a function of several nodes is made of: that of ten, of a hundred, and so on."""
 
 
 class ContactParameters(NamedTuple):
@@ -123,10 +128,10 @@ def contact_forces(
     ]
     parameters: MatrixExpression = ca.vertcat(*given)
     n = dynamics.springs.shape[0]
-    gains, rigid = dynamics.gains.sparsity(), dynamics.rigid
     damping = ca.Sparsity(n, n) if D is None else D.sparsity()
-    node = _leapfrog(n, substeps, gains, rigid, damping, K_V is not None)
     velocity: MatrixExpression = dynamics.velocity
+    patterns = (tuple(each.compress()) for each in (dynamics.gains.sparsity(), damping))
+    steps = n, substeps, *patterns, dynamics.rigid, K_V is not None
     start = ca.vertcat(
         ca.MX.zeros(2 * n),
         velocity,
@@ -134,9 +139,35 @@ def contact_forces(
         ca.MX.zeros(len(BodyState._fields)),
     )
     motors: MatrixExpression = laws.at_nodes(step, substeps, nodes)
-    told = ca.vertcat(ca.repmat(parameters, 1, nodes), motors)
-    states = node.mapaccum("impact", nodes, 1, FEW_DIRECTIONS)(start, told)
-    return states[4 * n + BodyState._fields.index("force"), :].T
+    _, forces = _in_a_row(nodes, *steps)(start, parameters, motors)
+    return forces.T
+
+
+@lru_cache(maxsize=64)
+def _in_a_row(count: int, *steps: Any) -> ca.Function:
+    """Return (state, parameters, laws, a column a node) -> the state after some nodes, and forces.
+
+    CasADi's own ``mapaccum`` copies the parameters for each node, and keeps all states: half of the
+    time.
+
+    Args:
+        count: of nodes.
+        steps: arguments of ``_leapfrog``.
+    """
+    if count == 1:
+        return _leapfrog(*steps)
+    size = 1
+    while size * IN_A_ROW < count:
+        size *= IN_A_ROW
+    state, parameters, _ = _leapfrog(*steps).mx_in()
+    laws, forces = ca.MX.sym("laws", LAW, count), []
+    after = state
+    for begin in range(0, count, size):
+        end = min(begin + size, count)
+        after, force = _in_a_row(end - begin, *steps)(after, parameters, laws[:, begin:end])
+        forces.append(force)
+    found = [after, ca.horzcat(*forces)]
+    return ca.Function(f"nodes_{count}", [state, parameters, laws], found, FEW_DIRECTIONS)
 
 
 def _nonzeros(matrix: Matrix) -> Matrix:
@@ -163,24 +194,27 @@ class BodyState(NamedTuple):
     time: Matrix
 
 
+@lru_cache(maxsize=16)
 def _leapfrog(
     n: int,
     steps: int,
-    gains: ca.Sparsity,
+    gains: tuple[int, ...],
+    damping: tuple[int, ...],
     rigid: tuple[int, ...],
-    damping: ca.Sparsity,
     has_potential: bool,
 ) -> ca.Function:
-    """Return (state, parameters) -> state after some steps.
+    """Return (state, parameters, what the motors do) -> state after some steps, and the force.
 
-    The state is link angles, motor angles, their velocities half a step ahead, and the body's. The
-    parameters end with what the motors do meanwhile.
+    The state is link angles, motor angles, their velocities half a step ahead, and the body's.
+    ``gains`` and ``damping`` are the patterns of K_p and D, as ``casadi.Sparsity.compressed`` takes
+    them.
     """
+    patterns = ("K_p", gains), ("D", damping)
     state = ca.SX.sym("state", 4 * n + len(BodyState._fields))
     M_inv, j, k_s = ca.SX.sym("M_inv", n, n), ca.SX.sym("j", n), ca.SX.sym("k_s", n)
     B_inv, K_d, velocity = ca.SX.sym("B_inv", n), ca.SX.sym("K_d", n), ca.SX.sym("dq0", n)
-    K_p, law = ca.SX.sym("K_p", gains), ca.SX.sym("law", LAW)
-    D, K_V = ca.SX.sym("D", damping), ca.SX.sym("K_V", *(2 * [n * has_potential]))
+    K_p, D = (ca.SX.sym(name, ca.Sparsity.compressed(list(pattern))) for name, pattern in patterns)
+    law, K_V = ca.SX.sym("law", LAW), ca.SX.sym("K_V", *(2 * [n * has_potential]))
     contact = ContactParameters(*ca.vertsplit(ca.SX.sym("contact", 4)))
     h = ca.SX.sym("h")
     R, carried = list(rigid), ca.SX.sym("carried", n if rigid else 0, len(rigid))
@@ -217,10 +251,9 @@ def _leapfrog(
         ca.vec(carried),
         _nonzeros(D),
         ca.vec(K_V),
-        law,
     )
     after = ca.vertcat(x, theta, dx, dtheta, *body)
-    return ca.Function("leapfrog", [state, parameters], [after], FEW_DIRECTIONS)
+    return ca.Function("leapfrog", [state, parameters, law], [after, body.force], FEW_DIRECTIONS)
 
 
 def _press(body: BodyState, tip: Matrix, contact: ContactParameters, h: Matrix) -> BodyState:

@@ -257,6 +257,7 @@ def hardware_of(model: ImpactModel, parts: Parts, logarithms: Sequence[Matrix]) 
     return replace(own, **values)
 
 
+@lru_cache(maxsize=8)
 def _posture(model: ImpactModel, point: str, parts: Parts) -> ca.Function:
     """Return (x, p) -> what an impact needs of a posture, in one column."""
     n = model.robot.n

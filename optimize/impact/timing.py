@@ -108,8 +108,9 @@ class Fastest:
 def _whole(study: Study, postures: Sequence[Array]) -> tuple[Fastest, Timing]:
     """Return the fastest motions, and the steps of an impact up to the horizon."""
     n = study.direction
-    model = lightest(study)
-    least = min(float(model.reflected_mass(ca.DM(q), ca.DM(n))) for q in postures)
+    q = ca.SX.sym("q", study.robot.n)
+    mass = ca.Function("m_c", [q], [lightest(study).reflected_mass(q, ca.DM(n))])
+    least = min(float(mass(posture)) for posture in postures)
     contact = np.sqrt(study.contact.region.stiffness / least)
     fastest = Fastest(_of_study(study, postures, n), float(contact))
     return fastest, _timing(study, study.horizon, fastest)
@@ -160,7 +161,7 @@ def stiffest_in_time(model: ImpactModel, q: Array, direction: Array, horizon: fl
         direction: of the impact.
         horizon: of the impacts [s].
     """
-    frequency = _largest_frequency(model, np.ones(len(sprung(model))), q, direction)
+    frequency = _largest_frequency(model, np.ones(len(sprung(model))), [q], direction)
     return (MOST_STEPS * LARGEST_PHASE / horizon / frequency) ** 2
 
 
@@ -181,8 +182,7 @@ def _timing(study: Study, duration: float, fastest: Fastest) -> Timing:
 
 
 def _of_study(study: Study, postures: Sequence[Array], direction: Array) -> float:
-    model = lightest(study)
-    return max(_largest_frequency(model, study.upper, q, direction) for q in postures)
+    return _largest_frequency(lightest(study), study.upper, postures, direction)
 
 
 def lightest(study: Study) -> ImpactModel:
@@ -197,12 +197,19 @@ def lightest(study: Study) -> ImpactModel:
     return built(study.model, equipped(study, ca.DM(study.upper), np.concatenate(fastest)))
 
 
-def _largest_frequency(model: ImpactModel, springs: Array, q: Array, direction: Array) -> float:
-    """Return the largest angular frequency of a robot with some springs [rad/s]."""
+def _largest_frequency(
+    model: ImpactModel, springs: Array, postures: Sequence[Array], direction: Array
+) -> float:
+    """Return the largest angular frequency of a robot on its springs in any posture [rad/s]."""
     known = replace(model, drives=replace(model.drives, rotors=known_rotors(model)))
-    linear = with_springs(known, springs).linear(q, direction)
-    mass, stiffness = np.array(linear.mass.matrix), np.array(linear.stiffness)
-    return float(np.sqrt(np.abs(np.linalg.eigvals(np.linalg.solve(mass, stiffness))).max()))
+    q = ca.SX.sym("q", model.robot.n)
+    linear = with_springs(known, springs).linear(q, ca.DM(direction))
+    both = [ca.densify(each) for each in (linear.mass.matrix, linear.stiffness)]
+    robot = ca.Function("robot", [q], both, {"cse": True})
+    squares = [
+        np.linalg.eigvals(np.linalg.solve(*map(np.array, robot(posture)))) for posture in postures
+    ]
+    return float(np.sqrt(np.abs(squares).max()))
 
 
 def _latest_peak(study: Study, forces: ca.Function, q: Array, timing: Timing) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..posture.tip_pose import tip_pose
+from ..posture.tip_pose import tip_poses
 from ..running.workers import as_completed
 from ..search.failure import SolverFailure
 from ..search.ipopt import Found, Instance
@@ -27,6 +27,10 @@ ROUNDS = 40
 
 ADDED_IN_AN_EXCHANGE = 4
 """Scenarios added in an exchange: the worst, each of another pose, point or direction."""
+
+HELD_AT_FIRST = 24
+"""Poses whose bounds the first NLP holds where postures are held, the most bent: they cost next to
+nothing there."""
 
 SAMPLED, AT_ONCE = 6, 2
 """Searches that begin with what looks best, at most, and how many of them at once, so that the
@@ -116,7 +120,8 @@ def exchange(
     )
     active = list(range(len(setting.scenarios))) if everything else list(first)
     bends = setting.shares_of_bounds(Hardening(limits.vector(study.nominal), given))
-    poses = _poses(setting, [int(np.argmax(bends))], active)
+    most_bent = np.argsort(-bends)[: HELD_AT_FIRST if thorough else 1].tolist()
+    poses = _poses(setting, most_bent, active)
     instance = _instance(setting, active, poses, unit)
     if thorough:
         known = [limits.vector(*each) for each in starts]
@@ -128,37 +133,64 @@ def exchange(
         begun = [_Start(*each, postures) for each in starts]
         found = _apart(_searched(setting, instance, poses, begun, free))
     hops, left = HOPS if thorough else 0, np.inf
+    effort = ROUGH if thorough else WHOLE
     for rounds in range(1, ROUNDS + 1):
-        while (best := min(found, key=lambda each: each.found.cost)).instance is not instance:
-            again = _searched(setting, instance, poses, [_again(best)], free)
-            found = [*again, *(each for each in found if each is not best)]
+        settled = _settled(setting, found, active, instance, poses, unit, free, effort)
+        best, found, instance, poses = settled
         factors = _factors(setting, best.found)
         at = Hardening(limits.vector(best.found.springs, best.found.others), best.postures, factors)
         worst, screened = setting.worst(at)
         setting.say("exchange", rounds, ROUNDS)
         state = ExchangeState(best.found, instance, at, worst, tuple(active), rounds, unit)
-        shares = setting.shares_of_bounds(at)
-        too_far = int(np.argmax(shares))
         allowed = max(state.bound, 1.0) if factors is not None else state.bound
         worse = [s for s in screened if s.share > allowed * (1 + FEASIBLE)]
         fresh = [] if everything else worst_few(setting, worse, set(active))
-        if shares[too_far] > 1 + FEASIBLE and too_far not in poses:
-            poses = [*poses, too_far]
-        elif not fresh:
-            if best.rough:
-                more = _searched(setting, instance, poses, [_again(best)], free)
-                found = [*more, *(each for each in found if each is not best)]
-                continue
-            if hops and best.found.cost < left * (1 - ALIKE):
-                left, hops = best.found.cost, hops - 1
-                found = [*found, *_hops(setting, instance, poses, best)]
-            if min(each.found.cost for each in found) >= best.found.cost * (1 - FEASIBLE):
-                break
+        if fresh:
+            active = [*active, *fresh]
+            poses = _poses(setting, poses, active)
+            instance = _instance(setting, active, poses, unit)
             continue
-        active = [*active, *fresh]
-        poses = _poses(setting, poses, active)
-        instance = _instance(setting, active, poses, unit)
+        if hops and best.found.cost < left * (1 - ALIKE):
+            left, hops = best.found.cost, hops - 1
+            found = [*found, *_hops(setting, instance, poses, best)]
+        least = min(found, key=lambda each: each.found.cost)
+        if least.rough and least.found.cost > left * (1 - ALIKE):
+            more = _searched(setting, instance, poses, [_again(least)], free)
+            found = [*more, *(each for each in found if each is not least)]
+        elif least.found.cost >= best.found.cost * (1 - FEASIBLE):
+            break
     return state
+
+
+def _settled(
+    setting: Setting,
+    found: Sequence[_Optimum],
+    active: list[int],
+    instance: Instance,
+    poses: list[int],
+    unit: float,
+    free: bool,
+    effort: Effort,
+) -> tuple[_Optimum, list[_Optimum], Instance, list[int]]:
+    """Return the best, and all, over the scenarios that are active, bounds kept in every pose.
+
+    Bounds are soon evaluated: poses that break them are added before anything is screened.
+    """
+    while True:
+        best = min(found, key=lambda each: each.found.cost)
+        if best.instance is instance:
+            at = Hardening(
+                setting.limits.vector(best.found.springs, best.found.others), best.postures
+            )
+            shares = setting.shares_of_bounds(at)
+            far = [int(k) for k in np.argsort(-shares) if shares[k] > 1 + FEASIBLE]
+            fresh = [k for k in far if k not in poses][:ADDED_IN_AN_EXCHANGE]
+            if not fresh:
+                return best, list(found), instance, poses
+            poses = [*poses, *fresh]
+            instance = _instance(setting, active, poses, unit)
+        again = _searched(setting, instance, poses, [_again(best)], free, effort)
+        found = [*again, *(each for each in found if each is not best)]
 
 
 def _again(best: _Optimum) -> _Start:
@@ -196,7 +228,8 @@ def _hops(setting: Setting, instance: Instance, poses: list[int], best: _Optimum
     )
     for begin in range(0, V, AT_ONCE):
         v = setting.limits.vector(best.found.springs, best.found.others)
-        hardware = elsewhere(*shared, v, range(begin, min(begin + AT_ONCE, V)))
+        values = range(begin, min(begin + AT_ONCE, V))
+        hardware = elsewhere(*shared, v, best.found.shares, values)
         starts = [_Start(*each, setting.given) for each in hardware]
         effort = replace(ROUGH, reach=best.found.cost * (1 - FEASIBLE))
         found = _feasible(setting, instance, poses, starts, False, effort)[0]
@@ -241,7 +274,8 @@ def worst_few(setting: Setting, screened: Sequence[Screened], known: set[int]) -
 def _instance(setting: Setting, active: list[int], poses: list[int], unit: float) -> Instance:
     study, scenarios = setting.study, setting.scenarios
     places = [scenarios[i] for i in active]
-    tasks = [task_numbers(study, *tip_pose(study.model, scenarios.poses[k].q)) for k in poses]
+    at = tip_poses(study.model, np.array([scenarios.poses[k].q for k in poses]))
+    tasks = [task_numbers(study, *each) for each in zip(*at, strict=True)]
     shape = NlpShape.of(
         len(poses),
         [(poses.index(each.pose), each.point) for each in places],

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from softimpact.symbolic.robot.rigid import Array
+from softimpact.symbolic.robot.rigid import Array, Indices
 
 from ..search.ipopt import Instance, VariableBounds, felt
 from ..search.minimax_point import values_of_bounds
@@ -21,12 +22,19 @@ of them a search from it ends in far better than how stiff or soft it is."""
 SCALED = 2
 """How often samples are scaled to what the bounds allow."""
 
+MOST_BENT = 10
+"""Postures, the first of those that are held, in which bounds tell how good a sample is."""
+
 PLACES, FAR = 5, 0.25
 """Places in the range of each value that are tried when the others are known, and the share of the
 range that is far enough from where it is: a search that begins nearer comes back."""
 
 HARDLY = 0.01
 """Share of the cost by which a change of what is hardly felt raises it at most."""
+
+HOPELESS = 0.1
+"""Share of the cost by which the worst force is larger where it is not worth a search: of ten
+problems' better optima each was found from where it is not, whatever the bounds there."""
 
 SEED = 13
 """Of the random numbers: the same study has the same answer."""
@@ -61,8 +69,8 @@ def promising(
         v[:, : bounds.springs] += 0.5 * np.log10(1 + missed)[:, None]
         v = np.clip(v, bounds.lower, bounds.upper)
     v = np.vstack([*known, v])
-    best = _best(program, instance, postures, v, count)
-    return [bounds.parted(each) for _, each in best]
+    best = _best(program, instance, postures, v, count, range(len(instance.impacts)))
+    return [bounds.parted(each.v) for each in best]
 
 
 def elsewhere(
@@ -71,15 +79,17 @@ def elsewhere(
     bounds: VariableBounds,
     postures: Array,
     v: Array,
+    shares: Array,
     values: Sequence[int],
 ) -> list[SampledHardware]:
     """Return for each of some values the best of what differs from v, V, in it alone, and far.
 
     Other optima are seldom reached by small changes. What impacts hardly feel has optima of its
-    own, often one at each end: of it the best above is returned, and the best below.
+    own, often one at each end: of it the best above is returned, and the best below. Where forces
+    are much larger than with v, whose largest share of each impact is known, nothing is returned.
     """
     found = []
-    (cost, _), *_ = _best(program, instance, postures, v[None], 1)
+    order, cost = np.argsort(-shares), float(shares.max())
     for i, own in zip(values, v[list(values)], strict=True):
         places = np.linspace(bounds.lower[i], bounds.upper[i], PLACES)
         far = places[abs(places - own) > FAR * (bounds.upper[i] - bounds.lower[i])]
@@ -87,44 +97,71 @@ def elsewhere(
         for side in (far[far < own], far[far > own]):
             moved = np.tile(v, (side.size, 1))
             moved[:, i] = side
-            sides += _best(program, instance, postures, moved, 1)
-        sides.sort(key=lambda each: each[0])
-        found += [each for k, (c, each) in enumerate(sides) if not k or c <= cost * (1 + HARDLY)]
+            sides += _best(program, instance, postures, moved, 1, order)
+        sides.sort(key=lambda each: each.cost)
+        hardly = [k for k in sides[1:] if k.cost <= cost * (1 + HARDLY)]
+        found += [k.v for k in [*sides[:1], *hardly] if k.worst <= cost * (1 + HOPELESS)]
     return [bounds.parted(each) for each in found]
 
 
-def _best(
-    program: Program, instance: Instance, postures: Array, v: Array, count: int
-) -> list[tuple[float, Array]]:
-    """Return the best of m×V with what they cost, best first.
+@dataclass(frozen=True, eq=False)
+class _Sample:
+    """A sample: v, V, its worst share, and that with what bounds are missed by."""
 
-    The first impact, one of the worst, tells how good a sample is at most: those that cannot be
-    among the best any more are left out.
+    v: Array
+    worst: float
+    cost: float
+
+
+def _best(
+    program: Program,
+    instance: Instance,
+    postures: Array,
+    v: Array,
+    count: int,
+    order: Sequence[int] | Indices,
+) -> list[_Sample]:
+    """Return the best of m×V, best first.
+
+    One of the worst impacts tells how good a sample is at most: those that cannot be among the best
+    any more are left out.
+
+    Args:
+        program: the functions.
+        instance: the NLP.
+        postures: that are held, K×n [rad].
+        v: log10 of all values, m×V.
+        count: of what is returned, at most.
+        order: of the impacts, the worst first.
     """
     if not v.size:
         return []
     missed = np.maximum(_missed(program, instance, postures, v), 0.0)
-    least = _worst(program, instance, postures, v, range(1)) + missed
-    order, costs = np.argsort(least, kind="stable"), np.full(len(v), np.inf)
-    others = range(1, len(instance.impacts))
+    worst = _worst(program, instance, postures, v, order[:1])
+    least, costs = worst + missed, np.full(len(v), np.inf)
+    ranked = np.argsort(least, kind="stable")
     for begin in range(0, len(v), 2 * count):
-        some = order[begin : begin + 2 * count]
+        some = ranked[begin : begin + 2 * count]
         if np.sort(costs)[min(count, len(v)) - 1] <= least[some[0]]:
             break
-        rest = _worst(program, instance, postures, v[some], others) + missed[some]
-        costs[some] = np.maximum(least[some], rest)
+        rest = _worst(program, instance, postures, v[some], order[1:])
+        worst[some] = np.maximum(worst[some], rest)
+        costs[some] = worst[some] + missed[some]
     best = np.argsort(costs, kind="stable")[:count]
-    return [(float(costs[i]), v[i]) for i in best]
+    return [_Sample(v[i], float(worst[i]), float(costs[i])) for i in best]
 
 
 def _missed(program: Program, instance: Instance, postures: Array, v: Array) -> Array:
     """Return the largest row of any bound for each sample, below zero where all are kept."""
-    q, b = np.tile(postures, (len(v), 1)), np.tile(instance.tasks, (len(v), 1))
-    rows = values_of_bounds(program, q, np.repeat(v, len(postures), axis=0), b)
+    some, tasks = postures[:MOST_BENT], instance.tasks[:MOST_BENT]
+    q, b = np.tile(some, (len(v), 1)), np.tile(tasks, (len(v), 1))
+    rows = values_of_bounds(program, q, np.repeat(v, len(some), axis=0), b)
     return np.asarray(rows.reshape(len(v), -1).max(axis=1))
 
 
-def _worst(program: Program, instance: Instance, postures: Array, v: Array, which: range) -> Array:
+def _worst(
+    program: Program, instance: Instance, postures: Array, v: Array, which: Sequence[int] | Indices
+) -> Array:
     """Return the largest share of each sample in some impacts; zero without any."""
     y = np.array([felt(program, each) for each in v])
     shares = np.zeros((len(v), len(which)))

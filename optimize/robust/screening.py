@@ -9,12 +9,14 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array, Indices
 
-from ..impact.impact_program import NUMBERS
 from ..search.nlp import Program
 from ..study.scenarios import Scenario, Scenarios
 
 IMPACTS_IN_A_CALL = 128
 """Most impacts simulated in one call."""
+
+TOGETHER = 8
+"""Impacts come in multiples, so that few maps are made."""
 
 SCENARIOS_IN_A_JOB = 1000
 """Scenarios in one job."""
@@ -91,14 +93,9 @@ def forces_at(every: Screening, begin: int, end: int) -> Array:
 
 def impact_numbers(scenarios: Scenarios, places: Indices, step: float) -> Array:
     """Return the impacts' numbers, a row each; those that differ in nothing but the pose once."""
-    found: dict[tuple[int, ...], Array] = {}
-    rows = np.empty((len(places), NUMBERS))
-    for i, place in enumerate(places):
-        key = tuple(place[2:])
-        if key not in found:
-            found[key] = scenarios.numbers(Scenario(*(int(i) for i in place)), step)
-        rows[i] = found[key]
-    return rows
+    kinds, which = np.unique(places[:, 2:], axis=0, return_inverse=True)
+    rows = [scenarios.numbers(Scenario(0, 0, *(int(i) for i in kind)), step) for kind in kinds]
+    return np.array(rows)[which.ravel()]
 
 
 def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Array:
@@ -112,8 +109,8 @@ def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Ar
     """
     found, begin = [], 0
     while begin < len(x):
-        left = len(x) - begin  # few sizes, so that maps are made once
-        chunk = min(IMPACTS_IN_A_CALL, 1 << (left - 1).bit_length())
+        left = len(x) - begin
+        chunk = min(IMPACTS_IN_A_CALL, -(-left // TOGETHER) * TOGETHER)
         some = np.arange(begin, begin + chunk).clip(max=len(x) - 1)
         peaks = program.impacts[point]["peaks"].map(chunk)
         forces = np.array(peaks(x[some].T, numbers[some].T, np.zeros((1, chunk))))

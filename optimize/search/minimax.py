@@ -5,6 +5,9 @@ Where few numbers are sought and the worst of some impacts is made small, most p
 the worst: each step asks for the derivatives of those alone that are near it, and for as many peaks
 of an impact as are. Steps are held within a region of trust. Madsen (1975) and Fletcher (1987,
 section 14.3) have the method.
+
+A step is the share by which each spring's compliance grows, since deflections are linear in these,
+and forces nearly; of other values, it is the change of the logarithm.
 """
 
 from __future__ import annotations
@@ -57,7 +60,7 @@ STATIONARY = 2e-4
 FRESH = 2
 """How often the curvature is forgotten where it promises nothing but the slope is not zero."""
 
-LOOKED, PROMISES = 3, 5
+LOOKED, PROMISES = 3, 10
 """Steps after which a search is given up that would not come to what it must reach if each step
 promised as much as the last, so often."""
 
@@ -85,7 +88,7 @@ class Effort:
     reach: float = np.inf
 
 
-WHOLE, ROUGH = Effort(), Effort(gain=1e-4)
+WHOLE, ROUGH = Effort(), Effort(gain=2e-5)
 """To the end; and as far as it takes to tell one optimum from another."""
 
 
@@ -94,7 +97,7 @@ class _Model:
     """What a step is taken from: rows·[step, F, t] ≤ room, by which peak or bound.
 
     Attributes:
-        rows: derivatives by v, less one for F (peaks) or t (bounds).
+        rows: derivatives by the step, less one for F (peaks) or t (bounds).
         room: to the linear model's limit.
         of: of each row, (impact, node) of a peak, or (posture, row) of a bound.
         peaks: number of rows that are peaks; they come first.
@@ -111,7 +114,7 @@ class _Step:
     """The solution of a quadratic program.
 
     Attributes:
-        step: of v.
+        step: shares of compliances, and changes of other logarithms.
         level: of the worst peak, relative to where it is.
         missed: by how much the bounds are missed in the model.
         prices: multipliers of the rows.
@@ -133,7 +136,7 @@ class _Search:
         held: the NLP.
         bounds: limits of v.
         at: the best iterate.
-        curvature: of the Lagrangian, V×V.
+        curvature: of the Lagrangian by steps from there, V×V.
         trust: radius within which the model is trusted, in decades.
         penalty: on the share by which bounds are missed.
         asked: peaks whose derivatives are wanted although they are not near the worst.
@@ -160,11 +163,26 @@ class _Search:
 
     def after(self, step: _Step) -> Point:
         """Evaluate the end of a step."""
-        return self.held.at(np.clip(self.at.v + step.step, self.bounds.lower, self.bounds.upper))
+        change, springs = step.step.copy(), self.held.springs
+        change[:springs] = -np.log10(1 + change[:springs])
+        return self.held.at(np.clip(self.at.v + change, self.bounds.lower, self.bounds.upper))
+
+    def step_of(self, change: Array) -> Array:
+        """Return the step that changes v by this much."""
+        step, springs = change.copy(), self.held.springs
+        step[:springs] = 10 ** -change[:springs] - 1
+        return step
 
     def forgotten(self) -> _Search:
         """Return the same with nothing known of the curvature."""
-        return replace(self, curvature=np.eye(self.at.v.size) * CURVATURE, trust=TRUST)
+        curvature = np.diag(CURVATURE * self.held.decades**2)
+        return replace(self, curvature=curvature, trust=TRUST)
+
+    def moved(self, tried: Point) -> _Search:
+        """Return the search at another iterate, from which steps are counted then."""
+        scale = self.held.scale_after(self.step_of(tried.v - self.at.v))
+        curvature = self.curvature * np.outer(scale, scale)
+        return replace(self, at=tried, curvature=curvature, asked=frozenset())
 
 
 def serves(objective: Objective, *, free: bool) -> bool:
@@ -182,7 +200,8 @@ def least_worst(
     effort: Effort = WHOLE,
 ) -> Found:
     """Make the largest of all shares small over the hardware; arguments as ``ipopt.minimise``."""
-    held = Held(program, instance, np.clip(postures, bounds.q_lower, bounds.q_upper))
+    postures = np.clip(postures, bounds.q_lower, bounds.q_upper)
+    held = Held(program, instance, postures, bounds.springs)
     at = held.at(bounds.vector(springs, others))
     search = _Search(held, bounds, at, np.empty(0), TRUST).forgotten()
     status, fresh, steps = "Maximum_Iterations_Exceeded", 0, 0
@@ -195,7 +214,7 @@ def least_worst(
             break
         kept = search.at.violation <= FEASIBLE
         if promised <= (effort.gain if kept else GAIN) * max(1.0, merit):
-            slope = abs(search.curvature @ step.step).max(initial=0.0)
+            slope = abs(search.curvature @ step.step / held.decades).max(initial=0.0)
             if slope <= STATIONARY or fresh == FRESH or effort.gain > GAIN:
                 status = "Solve_Succeeded"
                 break
@@ -230,7 +249,7 @@ def _advanced(search: _Search, model: _Model, step: _Step) -> _Search:
         if search.merit(other) < search.merit(tried):
             tried, kept = other, (merit - search.merit(other)) / promised
     search = replace(search, curvature=_curved(search, model, step, tried))
-    length, trust = float(abs(step.step).max()), search.trust
+    length, trust = float(abs(tried.v - search.at.v).max()), search.trust
     if kept <= LEAST:
         asked = search.asked | _unasked(search, model, tried)
         return replace(search, asked=asked, trust=0.4 * length)
@@ -238,7 +257,7 @@ def _advanced(search: _Search, model: _Model, step: _Step) -> _Search:
         trust = min(2 * trust, LONGEST)
     elif kept < POOR:
         trust = 0.5 * length
-    return replace(search, at=tried, asked=frozenset(), trust=trust)
+    return replace(search.moved(tried), trust=trust)
 
 
 def _model(search: _Search) -> _Model:
@@ -271,8 +290,9 @@ def _solved(search: _Search, model: _Model, room: Array) -> _Step:
     h = np.diag(np.full(V + 2, PLAIN))
     h[:V, :V] = search.curvature
     least, most, gradient = np.full(V + 2, -np.inf), np.full(V + 2, np.inf), np.zeros(V + 2)
-    least[:V], least[-1] = np.maximum(bounds.lower - v, -trust), 0.0
-    most[:V] = np.minimum(bounds.upper - v, trust)
+    down, up = np.maximum(bounds.lower - v, -trust), np.minimum(bounds.upper - v, trust)
+    ends = search.step_of(down), search.step_of(up)
+    least[:V], most[:V], least[-1] = np.minimum(*ends), np.maximum(*ends), 0.0
     gradient[V:] = 1.0, search.penalty
     solution = _quadratic(V + 2, rows)(h=h, g=gradient, a=a, uba=upper, lbx=least, ubx=most)
     x, multipliers = np.array(solution["x"]).ravel(), np.array(solution["lam_a"]).ravel()
@@ -306,15 +326,15 @@ def _room_at(search: _Search, model: _Model, step: _Step, tried: Point) -> Array
 
 def _curved(search: _Search, model: _Model, step: _Step, tried: Point) -> Array:
     """Return the curvature of the Lagrangian after a step, by BFGS with Powell's damping."""
-    curvature, s = search.curvature, tried.v - search.at.v
-    V = s.size
+    curvature, s = search.curvature, search.step_of(tried.v - search.at.v)
+    V, scale = s.size, search.held.scale_after(s)
     priced = np.flatnonzero(step.prices > 1e-6)
     found = [tried.same_top(*model.of[i]) for i in priced if i < model.peaks]
     moved = [(model.of[i][0], top[0]) for i, top in zip(priced, found, strict=False) if top]
     if len(moved) < len(found):  # a peak is gone
         return curvature
     kept = [tried.slopes[model.of[i]] for i in priced if i >= model.peaks]
-    after = np.concatenate([tried.slopes_of(moved), np.reshape(kept, (-1, V))])
+    after = np.concatenate([tried.slopes_of(moved), np.reshape(kept, (-1, V))]) / scale
     change = step.prices[priced] @ (after - model.rows[priced, :V])
     Bs = curvature @ s
     sBs, sy = float(s @ Bs), float(s @ change)
@@ -354,7 +374,7 @@ def _found(search: _Search, model: _Model, step: _Step, steps: int, status: str)
         shares=at.shares,
         violation=at.violation,
         multipliers=multipliers,
-        range_multipliers=np.where(at_end, step.range_prices, 0.0),
+        range_multipliers=np.where(at_end, step.range_prices / held.decades, 0.0),
         own=np.array([at.worst]),
         speeds=np.ones(len(shape.impacts)),
         cost=at.worst,

@@ -21,23 +21,51 @@ from .nlp import Program
 TOGETHER = 4
 """Derivatives come in multiples, so that few maps are made."""
 
+LEAST_SQUARE = 1e-12
+"""Square of the share of a limit below which a figure counts as this, for the slope of its root."""
+
 SAME_TOP = 6
 """Nodes by which a peak may move from one iterate to the next and still be the same."""
 
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A design NLP whose postures are held: what is sought is v, the log10 of the hardware."""
+    """A design NLP whose postures are held: what is sought is v, the log10 of the hardware.
+
+    Attributes:
+        program: the functions.
+        instance: the numbers.
+        postures: K×n [rad].
+        springs: how many of v, the first, are springs.
+    """
 
     program: Program
     instance: Instance
     postures: Array
+    springs: int
+
+    @property
+    def decades(self) -> Array:
+        """Derivative of v by a step: by the share by which a compliance grows, for springs."""
+        found = np.ones(self.program.variables)
+        found[: self.springs] = -1 / np.log(10)
+        return found
+
+    def scale_after(self, step: Array) -> Array:
+        """Return by what a step from its end counts as more than the same before it."""
+        found = np.ones(step.size)
+        found[: self.springs] += step[: self.springs]
+        return found
 
     def at(self, v: Array) -> Point:
         """Evaluate forces and bounds."""
         program, instance, K = self.program, self.instance, len(self.postures)
         y, by_v = (np.array(a) for a in _loaded(program.hardware)(v))
         rows, slopes = bound_rows(program, self.postures, np.tile(v, (K, 1)), instance.tasks)
+        squares = np.array(program.squares)
+        share = np.sqrt(np.maximum(1 + rows[:, squares], LEAST_SQUARE))
+        rows[:, squares] = 2 * (share - 1)
+        slopes[:, squares] /= share[..., None]
         felt = np.column_stack(
             [
                 self.postures[[k for k, _ in instance.shape.impacts]],
@@ -49,9 +77,9 @@ class Held:
             held=self,
             v=v,
             rows=rows,
-            slopes=slopes,
+            slopes=slopes * self.decades,
             felt=felt,
-            by_v=by_v,
+            by_step=by_v * self.decades,
             forces=forces,
             tops=tops(forces),
         )
@@ -74,10 +102,11 @@ class Point:
     Attributes:
         held: the NLP.
         v: log10 of the hardware's values.
-        rows: of the bounds in each posture, at most zero where they are kept, K×R.
-        slopes: their derivatives by v, K×R×V.
+        rows: of the bounds in each posture, at most zero where they are kept, K×R; those of
+            squares of shares by the shares, as steep where these are one.
+        slopes: their derivatives by a step, K×R×V.
         felt: what each impact feels, a row each.
-        by_v: derivative of what is felt of the hardware by v.
+        by_step: derivative of what is felt of the hardware by a step.
         forces: shares over time, a row for each impact.
         tops: nodes and shares of each impact's peaks.
     """
@@ -87,7 +116,7 @@ class Point:
     rows: Array
     slopes: Array
     felt: Array
-    by_v: Array
+    by_step: Array
     forces: Array
     tops: list[tuple[NDArray[np.int64], Array]]
     _known: dict[tuple[int, int], Array] = field(default_factory=dict)
@@ -113,7 +142,7 @@ class Point:
         return np.concatenate(found)
 
     def slopes_of(self, tops: Sequence[tuple[int, int]]) -> Array:
-        """Return the derivatives by v of the shares of some peaks, given by impact and node."""
+        """Return the derivatives by a step of some peaks' shares, given by impact and node."""
         impacts, program = self.held.instance.shape.impacts, self.held.program
         asked = [top for top in tops if top not in self._known]
         for point in {impacts[impact][1] for impact, _ in asked}:
@@ -136,8 +165,8 @@ class Point:
             )
         ).reshape(padded.size, -1)[: len(tops)]
         n = self.held.program.n
-        by_felt = by_x[:, n : n + len(self.by_v)]
-        return np.asarray(by_felt @ self.by_v / self.held.instance.units[which][:, None])
+        by_felt = by_x[:, n : n + len(self.by_step)]
+        return np.asarray(by_felt @ self.by_step / self.held.instance.units[which][:, None])
 
     def same_top(self, impact: int, node: int) -> tuple[int, float] | None:
         """Return node and share of the peak that was at some node in another iterate."""

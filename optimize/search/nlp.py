@@ -44,6 +44,7 @@ class Program:
         n: number of joints.
         variables: number of entries of v.
         bound_rows: number of rows of each bound.
+        squares: of each row of a bound, whether it is a square less one, of a share of a limit.
         rows: of the task.
         held: of these that are zero where a posture is sought: the tip's pose, and loops.
         side: serialised q -> a number whose sign changes where loops pass a dead point; empty
@@ -57,6 +58,7 @@ class Program:
     n: int
     variables: int
     bound_rows: tuple[int, ...]
+    squares: tuple[bool, ...]
     rows: int
     size: int
     held: int

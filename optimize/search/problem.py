@@ -120,7 +120,14 @@ def study_program(study: Study, impacts: tuple[ImpactProgram, ...]) -> Program:
     held = posture_equations(study.model)
     side = side_function(study.model)
     of_loops = "" if side is None else side.serialize()
-    return Program(impacts, *serialised, study.robot.n, variables, each, rows, size, held, of_loops)
+    squares = tuple(
+        bound.sense == "most"
+        for bound, count in zip(study.bounds, each, strict=True)
+        for _ in range(count)
+    )
+    return Program(
+        impacts, *serialised, study.robot.n, variables, each, squares, rows, size, held, of_loops
+    )
 
 
 def study_impacts(study: Study, step: float) -> Array:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -71,9 +73,10 @@ def design(
     modes = _modes(mode, problem)
     with failures_as_json(json), running(how, folder) as pool:
         found = _search(problem, modes, pool)
-        report = design_report(found)
-        record = design_record(report)
-        with replaced_folder(folder, GENERATOR) as fresh:
+        made = problem.with_springs(found.winner.springs)
+        with replaced_folder(folder, GENERATOR) as fresh, _package_beside(made, fresh):
+            report = design_report(found)
+            record = design_record(report)
             _write(report, record, fresh)
     if page is not None:
         from ..report.design_pages import write_design_report
@@ -105,12 +108,12 @@ def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json:
     free = isinstance(asked, ScenariosSection) and asked.posture == "free"
     with failures_as_json(json), running(how, folder) as pool, optimiser_stages() as advance:
         found = robust_design(study, scenarios, pool, advance, free=free)
-        checks = checked_scenarios(found)
-        record = robust_record(found, checks)
-        with replaced_folder(folder, GENERATOR) as fresh:
+        made = designed_model(found)
+        with replaced_folder(folder, GENERATOR) as fresh, _package_beside(made, fresh):
+            checks = checked_scenarios(found)
+            record = robust_record(found, checks)
             write_json(fresh / RESULTS, record)
             save(figure_of_robust_design(found), fresh / "design.png")
-            _write_package(designed_model(found), fresh)
     if page is not None:
         from ..report.design_pages import write_robust_report
 
@@ -161,24 +164,34 @@ def _write(report: DesignReport, record: dict[str, Any], folder: Path) -> None:
 
     write_json(folder / RESULTS, record)
     draw_figures(report, folder)
-    _write_package(report.study.with_springs(report.design.winner.springs), folder)
+
+
+@contextmanager
+def _package_beside(model: ImpactModel, folder: Path) -> Iterator[None]:
+    """Write the C of what was designed in a process of its own, while the caller does the rest."""
+    from softimpact.optimize.running.workers import as_completed, workers
+
+    with workers(1) as process:
+        package = process.submit(_write_package, model, folder)
+        yield
+        for job in as_completed([package]):
+            job.result()
 
 
 def _write_package(model: ImpactModel, folder: Path) -> None:
-    """Write the C of what was designed; that of a floating robot has its base held, and heavier.
+    """Write the C of a model, where it has all of it; ``design_warnings`` says where not.
 
-    It has no springs beside motors that have others behind them: ``design_warnings`` says so.
+    That of a floating robot has its base held, and heavier.
     """
     from softimpact.codegen import generate_package
-    from softimpact.optimize.machine.coordinates import beside_motors
-    from softimpact.symbolic.impact.floating import base_held, is_floating
+    from softimpact.symbolic.impact.floating import is_floating
 
-    if beside_motors(model).any():
-        return
-    floating = is_floating(model.robot)
-    if floating:
-        model = base_held(model)
-    generate_package(model.robot, folder / "c", drives=model.drives, floating=floating)
+    from ..output.cautions import in_c
+
+    held = in_c(model)
+    if held is not None:
+        floating = is_floating(model.robot)
+        generate_package(held.robot, folder / "c", drives=held.drives, floating=floating)
 
 
 def _written(figures: str, folder: Path) -> str:

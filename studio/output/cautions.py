@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from softimpact.optimize import Study
-from softimpact.optimize.machine.coordinates import beside_motors
 from softimpact.optimize.study.study_scenarios import contacts_of
 from softimpact.simulate.assessment import unused_of_the_file
-from softimpact.symbolic import BodyRegion
+from softimpact.symbolic import BodyRegion, ImpactModel
+from softimpact.symbolic.impact.floating import base_held, is_floating
 
 
 def not_permitted(regions: Iterable[BodyRegion]) -> Iterator[str]:
@@ -32,6 +32,17 @@ def study_warnings(study: Study) -> list[str]:
 
 def design_warnings(study: Study) -> list[str]:
     """Return these of a design, of which a C package may be written."""
-    beside = beside_motors(study.model).any() or any("beside" in v.moves for v in study.variables)
-    line = "no C package of the design: it cannot have springs beside motors and behind them"
-    return [*study_warnings(study), *([line] if beside else [])]
+    beside = any("beside" in variable.moves for variable in study.variables)
+    line = (
+        "no C package of the design: beside springs of its own, loops, coupled or passive joints "
+        "it cannot have springs behind motors"
+    )
+    return [*study_warnings(study), *([line] if beside or in_c(study.model) is None else [])]
+
+
+def in_c(model: ImpactModel) -> ImpactModel | None:
+    """Return the model of which a design's C is, with its base held; None if springs were lost."""
+    from softimpact.codegen.inputs import lacks_springs
+
+    held = base_held(model) if is_floating(model.robot) else model
+    return None if lacks_springs(held.robot, held.drives) else held

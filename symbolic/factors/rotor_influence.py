@@ -34,11 +34,12 @@ def single_joint_giaf(
         jacobian: translational J over the same joints as M.
         tangent: G = ∂q/∂q_ind of a closed chain, n×m; None is G = I.
     """
+    factors = Factorisation(mass_matrix)
     turned = ca.DM.eye(mass_matrix.shape[0]) if tangent is None else tangent.T
-    answer = Factorisation(mass_matrix).solve(turned)
-    W = ca.mtimes(jacobian, answer)
+    columns = [factors.halfway(turned[:, i]) for i in range(turned.shape[1])]
+    own = ca.vertcat(*[factors.inner(y, y) for y in columns])
+    W = ca.mtimes(factors.solve(jacobian.T).T, turned)
     felt = _along_columns(W, contact_mobility(mass_matrix, jacobian).inertia)
-    own = ca.diag(answer if tangent is None else ca.mtimes(tangent, answer))
     return 1 - rotors * felt / (1 + rotors * own)
 
 

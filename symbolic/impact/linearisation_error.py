@@ -36,8 +36,9 @@ def _error(
     robot = model.robot
     bend = ca.dot(direction, bias_acceleration(robot, model.tip, q, velocity))
     coriolis = bias_torques(robot, q, velocity, WEIGHTLESS)
-    row = ca.mtimes(direction.T, model.jacobian(q))
-    slowed = ca.mtimes(row, Factorisation(model.mass_matrix(q)).solve(coriolis))
-    path = (ca.fabs(bend) + ca.fabs(bend - slowed)) * duration / (2 * ca.mtimes(row, velocity))
+    row = model.direction_row(q, direction)
+    slowed = ca.dot(Factorisation(model.mass_matrix(q)).solve(row.T), coriolis)
+    speed: Matrix = ca.mtimes(row, velocity)
+    path = (ca.fabs(bend) + ca.fabs(bend - slowed)) * duration / (2 * speed)
     before, after = (model.reflected_mass(at, direction) for at in (q, q + velocity * duration))
     return path + ca.fabs(ca.sqrt(after / before) - 1)

@@ -38,6 +38,7 @@ IMPACT = np.dtype(
             "release", "horizon", "counts", "late", "stiffness", "damping", "mass", "skin")),
         *((name, np.int64) for name in ("depths", "law", "points")),
         *((name, float) for name in ("scale", "tolerance", "longest", "shortest")),
+        ("flies", np.int64),
     ]
 )  # fmt: skip
 """An impact as ``oracle.h`` has it."""
@@ -56,6 +57,7 @@ class Linear:
         row: what the contact point moves with each coordinate.
         pull: of potentials on each as the motion before goes on, over v t.
         reached: 1 where motors move the contact point along n at 1 m/s.
+        pulled: whether potentials pull, as gravity does.
     """
 
     led: Array
@@ -66,6 +68,7 @@ class Linear:
     row: Array
     pull: Array
     reached: Array
+    pulled: NDArray[np.bool_]
 
 
 def linear(robot: Robot, cases: Cases) -> Linear:
@@ -117,6 +120,7 @@ def linear(robot: Robot, cases: Cases) -> Linear:
         row=row,
         pull=pull,
         reached=reached,
+        pulled=np.asarray(P.any(axis=(1, 2))),
     )
 
 
@@ -151,7 +155,7 @@ def both_forces(
     impacts["led"] = np.stack([led, led_damping, row, pull], axis=1)
     impacts["loose"] = np.stack([loose, loose_damping, row, pull], axis=1)
     impacts["led_size"] = np.stack([of.led_size, np.full(count, size)], axis=1)
-    impacts["loose_size"] = size
+    impacts["loose_size"], impacts["flies"] = size, ~of.pulled
     runs = np.array([LOOSE_ALONE | LED_FIRST, LOOSE_ALONE, LED_FIRST, LED_FIRST])[cases.motors]
     at_once = (cases.reaction == 0) & (cases.motors != FREE)
     impacts["runs"] = np.where(at_once, LOOSE_ALONE, runs)

@@ -14,7 +14,8 @@ from adversarial.draw import Draw
 from adversarial.impacts import Robot
 from adversarial.instructions import Counter
 from compiled_impacts import BOUNDED, DRIVEN
-from compiled_packages import COMMITTED, Generated, missing, tool
+from compiled_packages import COMMITTED, Generated, missing, run, tool
+from cross_compiled import GCC, flags, machine
 from measured_costs import FEW_STEPS, compiler_version, measure, stacks_of
 
 from softimpact.codegen import costs as costs_module
@@ -75,6 +76,35 @@ def test_closed_forms_cost_what_the_design_allows(package: Callable[[str], Gener
     found = panda_costs(package)
     assert 600 < found["reflected_mass"].m4.mean <= 1400  # not fewer than it has operations
     assert found["reduced_model"].m4.mean <= 2100
+
+
+def test_code_is_as_small_as_the_design_asks(package: Callable[[str], Generated]) -> None:
+    costs = package("panda").manifest.costs
+    assert costs is not None, AGAIN
+    sizes = {f.function: f.text + f.rodata for f in costs.functions}
+    assert sum(sizes.values()) + sum(s.text + s.rodata for s in costs.shared) <= 80_000
+
+
+@pytest.mark.embedded
+def test_a_safe_speed_alone_is_small(package: Callable[[str], Generated], tmp_path: Path) -> None:
+    """With all that it calls, of the C library too, beyond what an empty program has."""
+    tool(GCC)
+    generated = package("panda")
+    told = [*flags(generated, "float"), *machine("m4"), "-ffunction-sections", "-fdata-sections"]
+    sources = sorted(generated.folder.glob("src/*.c"))
+    program, image, sizes = tmp_path / "main.c", tmp_path / "image.elf", []
+    head = '#include "panda_impact.h"\n\nint main(void)\n'
+    alone: list[str | Path] = [
+        "-I",
+        generated.folder / "src",
+        "--specs=rdimon.specs",
+        "-Wl,--gc-sections",
+    ]
+    for body in ("0", "(int)(size_t)&panda_safe_speed"):
+        program.write_text(f"{head}{{\n    return {body};\n}}\n")
+        run(GCC, *told, program, *sources, *alone, "-o", image, "-lm")
+        sizes.append(int(run("arm-none-eabi-size", image).splitlines()[1].split()[0]))
+    assert 20_000 < sizes[1] - sizes[0] <= 30_000
 
 
 def test_a_safe_speed_is_bounded_as_the_design_asks(

@@ -17,6 +17,7 @@ import pytest
 from compiled_packages import COMMITTED, Generated, mostly_slow, run, tool
 
 from softimpact.codegen import generate_package
+from softimpact.codegen.cost_digests import needed_sources
 from softimpact.codegen.inputs import parameters_of
 from softimpact.codegen.samples import draw_samples
 from softimpact.symbolic import (
@@ -210,8 +211,9 @@ def test_header_serves_cplusplus(package: Callable[[str], Generated], tmp_path: 
         "}\n"
     )
     include = f"-I{generated.folder / 'include'}"
-    objects = []
-    for file in ("panda_reflected_mass", "panda_common", "panda_sines"):
+    objects: list[Path] = []
+    sources = {f"src/{path.name}": path.read_text() for path in generated.folder.glob("src/*.c")}
+    for file in sorted(needed_sources("panda", sources, "panda_reflected_mass") | {"panda_common"}):
         objects.append(tmp_path / f"{file}.o")
         run(tool("gcc"), *generated.flags("double"), "-c",
             generated.folder / f"src/{file}.c", "-o", objects[-1])  # fmt: skip

@@ -32,7 +32,8 @@ def make(tmp_path_factory: pytest.TempPathFactory) -> Make:
         key = (name, payload, *freeze)
         if key not in known:
             robot = load_robot(name)
-            values = drives(robot, joint_stiffness=3000.0, rotor_inertia=0.3, position_gain=64.0)
+            springs = {} if robot.has_springs else {"joint_stiffness": 3000.0}
+            values = drives(robot, rotor_inertia=0.3, position_gain=64.0, **springs)
             folder, tip = root / str(len(known)), str(robot.tip)
             manifest = generate_package(
                 robot,
@@ -170,6 +171,9 @@ def test_closed_chains_carry_no_payload(tmp_path: Path) -> None:
 
 
 def test_what_is_not_known_cannot_be_frozen(tmp_path: Path, panda: Robot) -> None:
+    elastic = drives(load_robot("rr"), joint_stiffness=3e3, rotor_inertia=0.1)
+    with pytest.raises(InvalidValue, match=r"joint_stiffness: the C of 'rr'.*springs of its own"):
+        generate_package(load_robot("rr"), tmp_path / "p", drives=elastic)
     with pytest.raises(InvalidValue, match=r"joint_stiffness.*needs numbers"):
         generate_package(panda, tmp_path / "p", freeze=["joint_stiffness"])
     with pytest.raises(InvalidValue, match="joint_stiffness"):

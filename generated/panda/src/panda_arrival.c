@@ -6,6 +6,8 @@
 #define OUTSIDE PANDA_R(1e-6)
 /* Most that the speed along n may err by where motors can hardly move the contact point that way. */
 #define ASTRAY PANDA_R(1e-3)
+/* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
+#define ROUNDING (PANDA_R(8.0)*PANDA_EPSILON)
 #define MOST_STEPS 1000000
 
 int panda_check_impact(const panda_region *region, const panda_params *p)
@@ -80,7 +82,7 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
         return PANDA_SINGULAR;
     }
     for (int k = 0; k < PANDA_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > PANDA_EPSILON*whole)) {
+        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
             return PANDA_SINGULAR;
         }
     }

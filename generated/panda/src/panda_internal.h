@@ -40,6 +40,28 @@
 /* Sines s and cosines c of finite angles x. */
 void panda_sines_cosines(const panda_real *x, int count, panda_real *s, panda_real *c);
 
+/* j inv(M + diag b) j'. */
+void panda_inverse_mass(const panda_real M[28], const panda_real b[7], const panda_real j[7],
+    panda_real out[1]);
+
+/* J(q), column by column. */
+void panda_jacobian_entries(const panda_real s[6], const panda_real c[6], panda_real out[21]);
+
+/* M(q), row by row up to the diagonal. */
+void panda_mass_entries(const panda_real s[6], const panda_real c[6], panda_real out[28]);
+
+/* J inv(M + diag b) J', row by row up to the diagonal. */
+void panda_mobility_entries(const panda_real M[28], const panda_real b[7], const panda_real j[21],
+    panda_real out[6]);
+
+/* inv(M + diag b) j', then j inv(M + diag b) j'. */
+void panda_pushed_entries(const panda_real M[28], const panda_real b[7], const panda_real j[7],
+    panda_real out[8]);
+
+/* n'J(q). */
+void panda_row_entries(const panda_real n[3], const panda_real s[7], const panda_real c[7],
+    panda_real out[7]);
+
 /*
  * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.
  * A comparison with a NaN is false.

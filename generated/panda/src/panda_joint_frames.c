@@ -14,7 +14,7 @@ int panda_joint_frames(const panda_real q[7], panda_real poses[7][12])
 
     panda_real sines[7];
     panda_real cosines[7];
-    panda_sines_cosines(&q[0], 7, sines, cosines);
+    panda_sines_cosines(q, 7, sines, cosines);
     const panda_real s1 = sines[0];
     const panda_real c1 = cosines[0];
     const panda_real s2 = sines[1];

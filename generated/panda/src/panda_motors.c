@@ -198,6 +198,75 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
 }
 #endif
 
+#if !PANDA_POTENTIAL
+/* Sweeps that make what modes bend orthogonal, which it nearly is. */
+#define SWEEPS_OF_SERVO 2
+
+static panda_real dot(const panda_real a[PANDA_SYSTEM], const panda_real b[PANDA_SYSTEM])
+{
+    panda_real sum = PANDA_R(0.0);
+    for (int k = 0; k < PANDA_SYSTEM; ++k) {
+        sum += a[k]*b[k];
+    }
+    return sum;
+}
+
+/* Turns two rows by an angle of tangent t. */
+static void turn(panda_real t, panda_real a[PANDA_SYSTEM], panda_real b[PANDA_SYSTEM])
+{
+    const panda_real c = PANDA_R(1.0)/PANDA_SQRT(PANDA_R(1.0) + t*t);
+    for (int k = 0; k < PANDA_SYSTEM; ++k) {
+        const panda_real x = a[k];
+        a[k] = c*(x - t*b[k]);
+        b[k] = c*(b[k] + t*x);
+    }
+}
+
+/*
+ * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
+ * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
+ * orthogonal (Jacobi's rotations from one side).
+ */
+static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes)
+{
+    (void)p;
+    for (int i = 0; i < PANDA_SYSTEM; ++i) {
+        panda_real off = PANDA_R(0.0);
+        for (int j = 0; j < PANDA_N; ++j) {
+            const int motor = PANDA_SYSTEM - PANDA_N + j;
+            const panda_real turned = modes->shape[i][motor];
+            const panda_real gain = PANDA_SQRT(PANDA_GAIN(p, j));
+            bent[i][motor] = gain*turned;
+            off += gain*PANDA_FABS(turned);
+#if PANDA_ELASTIC
+            const panda_real root = PANDA_SQRT(PANDA_SPRING(p, j));
+            bent[i][j] = root*(modes->shape[i][j] - turned);
+            off += root*(PANDA_FABS(modes->shape[i][j]) + PANDA_FABS(turned));
+#endif
+        }
+        modes->squared[i] = dot(bent[i], bent[i]);
+        off *= PANDA_EPSILON;
+        modes->noise[i] = off*(off + PANDA_R(2.0)*PANDA_SQRT(modes->squared[i]));
+    }
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+        for (int i = 0; i < PANDA_SYSTEM; ++i) {
+            for (int j = 0; j < i; ++j) {
+                const panda_real off = dot(bent[i], bent[j]);
+                if (off*off > PANDA_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    const panda_real half = PANDA_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
+                    const panda_real length = PANDA_FABS(half) + PANDA_SQRT(half*half + PANDA_R(1.0));
+                    const panda_real t = (half < PANDA_R(0.0) ? PANDA_R(-1.0) : PANDA_R(1.0))/length;
+                    turn(t, bent[i], bent[j]);
+                    turn(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = dot(bent[i], bent[i]);
+                    modes->squared[j] = dot(bent[j], bent[j]);
+                }
+            }
+        }
+    }
+}
+#endif
+
 int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift)
 {
@@ -222,18 +291,24 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
         return PANDA_SINGULAR;
     }
     for (int i = 0; i < PANDA_SYSTEM; ++i) {
-        panda_real row = PANDA_R(0.0);
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
             panda_real shape = PANDA_R(0.0);
             for (int k = j; k < PANDA_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
-            row += j < PANDA_N ? arrival->row[j]*shape : PANDA_R(0.0);
         }
-        modes->noise[i] = PANDA_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
-        modes->row[i] = row;
+        modes->noise[i] = PANDA_EPSILON*all;
+    }
+#if !PANDA_POTENTIAL
+    sharpen(p, mass, modes);
+#endif
+    for (int i = 0; i < PANDA_SYSTEM; ++i) {
+        modes->row[i] = PANDA_R(0.0);
         modes->start[i] = PANDA_R(0.0);
+        for (int j = 0; j < PANDA_N; ++j) {
+            modes->row[i] += arrival->row[j]*modes->shape[i][j];
+        }
     }
     modes->count = PANDA_SYSTEM;
     modes->rigid = 0;

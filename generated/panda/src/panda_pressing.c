@@ -2,10 +2,23 @@
 /* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
 #include "panda_state.h"
 
-/* Until when it is looked, s. */
+/* Until when it is looked, s; at contacts that began late beyond that, as these may come a little earlier. */
 #define PRESSED_UNTIL PANDA_R(0.6)
+#define PRESSED_AGAIN_UNTIL PANDA_R(0.62)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
+/*
+ * Share of a limit that counts where the law of contact is a table: forces that swing about what presses fell by up to
+ * 7 % as the speed rose, between the shares that are tried.
+ */
+#define KEPT_OF_TABLES PANDA_R(0.9)
+/*
+ * Share of a limit that no later force may reach if slower speeds need not be looked at: motions by Hertz's law grow
+ * nearly with the speed, so what parts for good at one does at slower ones.
+ */
+#define CALM PANDA_R(0.5)
+/* Else shares of the speed that are tried: arms may bounce past 0.5 s at slower speeds and not at that one. */
+#define SHARES 10
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -14,6 +27,7 @@ typedef struct {
     panda_budget budget;
     panda_watch watch;
     bool bounded; /* some force is a bound */
+    bool calm; /* what was asked last cannot press harder at slower speeds */
 } panda_pressing;
 
 /*
@@ -25,6 +39,8 @@ static panda_real pressed_by(panda_pressing *k, panda_real speed, panda_real mat
     panda_peak peak;
     k->watch.matters = matters;
     k->watch.depth = panda_law_depth(k->impact.region, matters);
+    k->watch.apart = PANDA_R(0.0);
+    k->watch.settled = false;
     k->watch.late = PANDA_R(0.0);
     k->watch.before = PANDA_R(0.0);
     k->watch.last = PANDA_R(0.0);
@@ -45,42 +61,77 @@ static bool keeps(panda_pressing *k, const panda_region *region, panda_real spee
     int last;
     panda_kinds_of_motors(&k->p, &first, &last);
     bool kept = true;
+    k->watch.slower = true;
+    k->calm = region->law == NULL;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = panda_impact_prepare(region, &k->p, motors, limit, &k->impact) == PANDA_OK
-            && pressed_by(k, speed, PANDA_KEPT*limit) <= PANDA_KEPT*limit;
+            && pressed_by(k, speed, CALM*limit) <= PANDA_KEPT*limit;
+        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }
 
-static void prepare_pressing(const panda_params *p, panda_pressing *k)
+static void prepare_pressing(const panda_params *p, panda_real until, panda_pressing *k)
 {
     k->p = *p;
-    k->p.horizon = PANDA_FMAX(PANDA_HORIZON(p), PRESSED_UNTIL);
+    k->p.horizon = PANDA_FMAX(PANDA_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
     k->budget.stop_above = PANDA_REAL_MAX;
     k->budget.watch = NULL;
+    k->watch.slower = false;
     k->bounded = false;
+    k->calm = false;
 }
 
-/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+/* A speed at which a proven bound keeps a limit; 0 if there is none. */
+static panda_real bounded_speed(panda_pressing *k, const panda_region *region, panda_real limit)
+{
+    int first;
+    int last;
+    panda_kinds_of_motors(&k->p, &first, &last);
+    panda_real most = PANDA_R(0.0);
+    bool is_known = true;
+    for (int motors = first; motors <= last && is_known; ++motors) {
+        is_known = panda_impact_prepare(region, &k->p, motors, limit, &k->impact) == PANDA_OK;
+        const panda_real bound = is_known ? panda_bound(&k->impact) : PANDA_R(0.0);
+        is_known = bound > PANDA_R(0.0);
+        most = PANDA_FMAX(most, bound);
+    }
+    return is_known ? PANDA_KEPT*limit/most : PANDA_R(0.0);
+}
+
+/* The largest speed up to one at which and, as far as it is looked, below which what presses keeps a limit; or 0. */
 static panda_real slow_down(panda_pressing *k, const panda_region *region, panda_real speed, panda_real limit)
 {
-    if (keeps(k, region, speed, limit)) {
-        return speed;
-    }
+    static const panda_real shares[SHARES] = {PANDA_R(0.03), PANDA_R(0.06), PANDA_R(0.1), PANDA_R(0.17), PANDA_R(0.25),
+        PANDA_R(0.35), PANDA_R(0.48), PANDA_R(0.62), PANDA_R(0.76), PANDA_R(0.9)};
     panda_real low = PANDA_R(0.0);
     panda_real high = speed;
-    for (int i = 0; i < SLOWER; ++i) {
+    bool calm = false;
+    if (keeps(k, region, speed, limit)) {
+        low = speed;
+        calm = k->calm;
+    }
+    for (int i = 0; i < SLOWER && low < speed; ++i) {
         const panda_real middle = PANDA_R(0.5)*(low + high);
         k->budget.steps = k->p.steps;
         if (keeps(k, region, middle, limit)) {
             low = middle;
+            calm = k->calm;
         } else {
             high = middle;
         }
     }
-    return low;
+    const panda_real found = low;
+    for (int i = 0; i < SHARES && !calm && found > PANDA_R(0.0); ++i) {
+        k->budget.steps = k->p.steps;
+        if (!keeps(k, region, shares[i]*found, limit)) {
+            low = i > 0 ? shares[i - 1]*found : PANDA_R(0.0);
+            break;
+        }
+    }
+    return low > PANDA_R(0.0) ? low : PANDA_FMIN(speed, bounded_speed(k, region, limit));
 }
 
 int panda_pressing_force_at(const panda_real q[PANDA_JOINTS], int point, const panda_real n[3],
@@ -97,7 +148,7 @@ int panda_pressing_force_at(const panda_real q[PANDA_JOINTS], int point, const p
     if (status != PANDA_OK) {
         return status;
     }
-    prepare_pressing(p, &k);
+    prepare_pressing(p, PRESSED_UNTIL, &k);
     panda_real found = PANDA_R(0.0);
     int first;
     int last;
@@ -136,8 +187,9 @@ static int find_allowed(const panda_region *region, const panda_params *p, panda
         found->speed = safe.speed;
         found->force = safe.force;
         if (region->clamped != 0) {
-            prepare_pressing(p, k);
-            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+            prepare_pressing(p, PRESSED_AGAIN_UNTIL, k);
+            const panda_real share = region->law == NULL ? PANDA_R(1.0) : KEPT_OF_TABLES;
+            found->speed = slow_down(k, region, safe.speed, share*region->quasi_static_limit);
         }
         found->pressed = found->speed < safe.speed ? 1 : 0;
     }
@@ -238,7 +290,7 @@ int panda_may_press(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_
     for (int point = 0; point < PANDA_POINTS && region->clamped != 0 && kept; ++point) {
         const panda_real speed = panda_arrive_as_it_moves(point, rates, &k.impact.arrival);
         panda_impact_forget(&k.impact);
-        prepare_pressing(p, &k);
+        prepare_pressing(p, PRESSED_AGAIN_UNTIL, &k);
         kept = !(speed > PANDA_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;

@@ -66,7 +66,8 @@ static void let_stand(const panda_impact *impact, panda_real contact, bool relea
     int active = 0;
     phase->compliance = PANDA_R(0.0);
     phase->reach = PANDA_R(0.0);
-    phase->settles = !phase->damped;
+    const bool pushes_on = phase->drift > PANDA_R(0.0) && !impact->gives_way;
+    phase->settles = !phase->damped && !pushes_on;
     for (int i = 0; i < modes->count; ++i) {
         const bool body = impact->gives_way && i == modes->count - 1;
         const panda_real weight = modes->row[i]*modes->row[i];

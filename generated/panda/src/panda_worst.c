@@ -12,6 +12,9 @@
 #define NARROW PANDA_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
+/* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
+#define STARTS 3
+#define ALIKE PANDA_R(0.94)
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (PANDA_R(1.0) - PANDA_KEPT)
 
@@ -21,7 +24,9 @@ typedef struct {
     panda_real speed;
     panda_real n[3]; /* the worst so far */
     panda_real force;
+    panda_real tried; /* force of the last direction that was tried */
     bool bounded, unknown;
+    bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
 /* Tries a direction over those in which the robot moves; says whether it is worse than all before. */
@@ -40,7 +45,9 @@ static bool try_direction(const panda_region *region, const panda_params *p, con
     if (status == PANDA_OK) {
         status = panda_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->lost = w->lost || status == PANDA_SINGULAR;
     w->unknown = w->unknown || (status != PANDA_OK && status != PANDA_BOUNDED && status != PANDA_SINGULAR);
+    w->tried = found.force;
     const bool worse = (status == PANDA_OK || status == PANDA_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
@@ -62,6 +69,50 @@ static void direction_of(int k, panda_real along[3])
     along[1] = flat*PANDA_SIN(turn);
     along[2] = up;
 }
+
+#if PANDA_REACH > 1
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const panda_region *region, const panda_params *p, hardest *w)
+{
+    const panda_real (*const J)[PANDA_N] = (const panda_real (*)[PANDA_N])&w->impact.arrival.links.J[3*w->point];
+    panda_matrix square;
+    panda_matrix vectors;
+    panda_real values[PANDA_SYSTEM];
+    for (int k = 0; k < PANDA_REACH; ++k) {
+        for (int l = 0; l < PANDA_REACH; ++l) {
+            const panda_real *const a = panda_directions[k];
+            const panda_real *const b = panda_directions[l];
+            square[k][l] = PANDA_R(0.0);
+            for (int i = 0; i < PANDA_N; ++i) {
+                const panda_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
+                const panda_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                square[k][l] += panda_has_motor[i] ? by_a*by_b : PANDA_R(0.0);
+            }
+        }
+    }
+    if (!panda_spectrum(PANDA_REACH, PANDA_EPSILON*PANDA_EPSILON, square, values, vectors)) {
+        w->unknown = true;
+        return;
+    }
+    int least = 0;
+    for (int k = 1; k < PANDA_REACH; ++k) {
+        least = values[k] < values[least] ? k : least;
+    }
+    const panda_real *const a = vectors[(least + 1) % PANDA_REACH];
+    const panda_real *const b = vectors[(least + 2) % PANDA_REACH];
+    for (int k = 0; k < (PANDA_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
+        const panda_real turn = HALF_A_TURN*(panda_real)k/(panda_real)OVER_A_CIRCLE;
+        panda_real along[3] = {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)};
+        for (int l = 0; l < PANDA_REACH; ++l) {
+            along[l] = PANDA_REACH > 2 ? PANDA_COS(turn)*a[l] + PANDA_SIN(turn)*b[l] : a[l];
+        }
+        (void)try_direction(region, p, along, w);
+    }
+}
+#endif
 
 /* Looks around the worst, wider where that helps. */
 static void look_around(const panda_region *region, const panda_params *p, hardest *w)
@@ -91,6 +142,39 @@ static void look_around(const panda_region *region, const panda_params *p, harde
     }
 }
 
+/* Looks around the directions that were hardest, beside the hardest, of those over the ball. */
+static void look_elsewhere(const panda_region *region, const panda_params *p, int count, panda_real *forces, hardest *w)
+{
+    for (int start = 0; start < STARTS; ++start) {
+        const panda_real n[3] = {w->n[0], w->n[1], w->n[2]};
+        const panda_real force = w->force;
+        const bool bounded = w->bounded;
+        int best = 0;
+        for (int k = 1; k < count; ++k) {
+            best = forces[k] > forces[best] ? k : best;
+        }
+        if (!(forces[best] > PANDA_R(0.0))) {
+            return;
+        }
+        direction_of(best, w->n);
+        w->force = forces[best];
+        for (int k = 0; k < count; ++k) {
+            panda_real along[3];
+            direction_of(k, along);
+            const panda_real cosine = along[0]*w->n[0] + along[1]*w->n[1] + along[2]*w->n[2];
+            forces[k] = PANDA_FABS(cosine) > ALIKE ? PANDA_R(0.0) : forces[k];
+        }
+        look_around(region, p, w);
+        if (!(w->force > force)) {
+            w->force = force;
+            w->bounded = bounded;
+            for (int k = 0; k < 3; ++k) {
+                w->n[k] = n[k];
+            }
+        }
+    }
+}
+
 /* Looks everywhere. */
 static int find_hardest(const panda_region *region, const panda_params *p, hardest *w, panda_worst_direction_t *out)
 {
@@ -98,11 +182,19 @@ static int find_hardest(const panda_region *region, const panda_params *p, harde
     w->force = PANDA_R(0.0);
     w->bounded = false;
     w->unknown = false;
+    w->lost = false;
+    panda_real forces[OVER_A_BALL];
     for (int k = 0; k < count; ++k) {
         panda_real along[3];
         direction_of(k, along);
         (void)try_direction(region, p, along, w);
+        forces[k] = w->tried;
     }
+#if PANDA_REACH > 1
+    if (w->lost) {
+        try_across(region, p, w);
+    }
+#endif
     if (w->unknown) {
         return PANDA_UNRESOLVED;
     }
@@ -111,6 +203,7 @@ static int find_hardest(const panda_region *region, const panda_params *p, harde
     }
     const panda_real seen = w->force;
     look_around(region, p, w);
+    look_elsewhere(region, p, count, forces, w);
     if (w->unknown) { /* so may be the hardest */
         return PANDA_UNRESOLVED;
     }

@@ -345,8 +345,9 @@ typedef struct {
 
 /*
  * As rmin_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. RMIN_UNRESOLVED if no speed is known to keep both. What
- * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at a slower one.
+ * region->quasi_static_limit from 0.5 to 0.6 s, and from 0.25 to 0.62 s once they parted and met again: at slower
+ * speeds they meet later. If something may press then, ten slower speeds are tried, too. RMIN_UNRESOLVED if no
+ * speed is known to keep both.
  */
 int rmin_allowed_speed_at(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
     const rmin_region *region, const rmin_params *p, rmin_allowed_speed_t *out);
@@ -365,7 +366,7 @@ int rmin_allowed_factor(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_
 
 /*
  * Whether a contact point that moves as joints do might press on a clamped body harder than a limit from
- * 0.5 to 0.6 s: 0 where it is proven or integrated that none does.
+ * 0.5 to 0.6 s, or in contacts after the first from 0.25 to 0.62 s: 0 where it is proven or integrated that none does.
  */
 int rmin_may_press(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],
     rmin_real limit, const rmin_region *region, const rmin_params *p, int *may);

@@ -307,10 +307,11 @@ inline result<rmin_worst_direction_t> worst_direction_at(
 
 /* As rmin_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and,
  * clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. RMIN_UNRESOLVED if no speed is known to keep both.
- * What
- * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at
- * a slower one. */
+ * region->quasi_static_limit from 0.5 to 0.6 s, and from 0.25 to 0.62 s once they parted and met
+ * again: at slower
+ * speeds they meet later. If something may press then, ten slower speeds are tried, too.
+ * RMIN_UNRESOLVED if no
+ * speed is known to keep both. */
 inline result<rmin_allowed_speed_t> allowed_speed_at(
     const vector<6> &q,
     int point,
@@ -337,7 +338,8 @@ inline result<rmin_allowed_factor_t> allowed_factor(
 
 /* Whether a contact point that moves as joints do might press on a clamped body harder than a
  * limit from
- * 0.5 to 0.6 s: 0 where it is proven or integrated that none does. */
+ * 0.5 to 0.6 s, or in contacts after the first from 0.25 to 0.62 s: 0 where it is proven or
+ * integrated that none does. */
 inline result<int> may_press(
     const vector<6> &q,
     const vector<6> &dq,

@@ -6,6 +6,8 @@
 #define OUTSIDE RMIN_R(1e-6)
 /* Most that the speed along n may err by where motors can hardly move the contact point that way. */
 #define ASTRAY RMIN_R(1e-3)
+/* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
+#define ROUNDING (RMIN_R(8.0)*RMIN_EPSILON)
 #define MOST_STEPS 1000000
 
 int rmin_check_impact(const rmin_region *region, const rmin_params *p)
@@ -80,7 +82,7 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
         return RMIN_SINGULAR;
     }
     for (int k = 0; k < RMIN_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > RMIN_EPSILON*whole)) {
+        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
             return RMIN_SINGULAR;
         }
     }

@@ -14,7 +14,7 @@ int rmin_mass_matrix(const rmin_real q[6], rmin_real M[4][4])
 
     rmin_real sines[6];
     rmin_real cosines[6];
-    rmin_sines_cosines(&q[0], 6, sines, cosines);
+    rmin_sines_cosines(q, 6, sines, cosines);
     const rmin_real s1 = sines[0];
     const rmin_real c1 = cosines[0];
     const rmin_real s2 = sines[1];

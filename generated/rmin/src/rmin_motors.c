@@ -198,6 +198,75 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
 }
 #endif
 
+#if !RMIN_POTENTIAL
+/* Sweeps that make what modes bend orthogonal, which it nearly is. */
+#define SWEEPS_OF_SERVO 2
+
+static rmin_real dot(const rmin_real a[RMIN_SYSTEM], const rmin_real b[RMIN_SYSTEM])
+{
+    rmin_real sum = RMIN_R(0.0);
+    for (int k = 0; k < RMIN_SYSTEM; ++k) {
+        sum += a[k]*b[k];
+    }
+    return sum;
+}
+
+/* Turns two rows by an angle of tangent t. */
+static void turn(rmin_real t, rmin_real a[RMIN_SYSTEM], rmin_real b[RMIN_SYSTEM])
+{
+    const rmin_real c = RMIN_R(1.0)/RMIN_SQRT(RMIN_R(1.0) + t*t);
+    for (int k = 0; k < RMIN_SYSTEM; ++k) {
+        const rmin_real x = a[k];
+        a[k] = c*(x - t*b[k]);
+        b[k] = c*(b[k] + t*x);
+    }
+}
+
+/*
+ * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
+ * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
+ * orthogonal (Jacobi's rotations from one side).
+ */
+static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
+{
+    (void)p;
+    for (int i = 0; i < RMIN_SYSTEM; ++i) {
+        rmin_real off = RMIN_R(0.0);
+        for (int j = 0; j < RMIN_N; ++j) {
+            const int motor = RMIN_SYSTEM - RMIN_N + j;
+            const rmin_real turned = modes->shape[i][motor];
+            const rmin_real gain = RMIN_SQRT(RMIN_GAIN(p, j));
+            bent[i][motor] = gain*turned;
+            off += gain*RMIN_FABS(turned);
+#if RMIN_ELASTIC
+            const rmin_real root = RMIN_SQRT(RMIN_SPRING(p, j));
+            bent[i][j] = root*(modes->shape[i][j] - turned);
+            off += root*(RMIN_FABS(modes->shape[i][j]) + RMIN_FABS(turned));
+#endif
+        }
+        modes->squared[i] = dot(bent[i], bent[i]);
+        off *= RMIN_EPSILON;
+        modes->noise[i] = off*(off + RMIN_R(2.0)*RMIN_SQRT(modes->squared[i]));
+    }
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+        for (int i = 0; i < RMIN_SYSTEM; ++i) {
+            for (int j = 0; j < i; ++j) {
+                const rmin_real off = dot(bent[i], bent[j]);
+                if (off*off > RMIN_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    const rmin_real half = RMIN_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
+                    const rmin_real length = RMIN_FABS(half) + RMIN_SQRT(half*half + RMIN_R(1.0));
+                    const rmin_real t = (half < RMIN_R(0.0) ? RMIN_R(-1.0) : RMIN_R(1.0))/length;
+                    turn(t, bent[i], bent[j]);
+                    turn(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = dot(bent[i], bent[i]);
+                    modes->squared[j] = dot(bent[j], bent[j]);
+                }
+            }
+        }
+    }
+}
+#endif
+
 int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift)
 {
@@ -222,18 +291,24 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
         return RMIN_SINGULAR;
     }
     for (int i = 0; i < RMIN_SYSTEM; ++i) {
-        rmin_real row = RMIN_R(0.0);
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
             rmin_real shape = RMIN_R(0.0);
             for (int k = j; k < RMIN_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
-            row += j < RMIN_N ? arrival->row[j]*shape : RMIN_R(0.0);
         }
-        modes->noise[i] = RMIN_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
-        modes->row[i] = row;
+        modes->noise[i] = RMIN_EPSILON*all;
+    }
+#if !RMIN_POTENTIAL
+    sharpen(p, mass, modes);
+#endif
+    for (int i = 0; i < RMIN_SYSTEM; ++i) {
+        modes->row[i] = RMIN_R(0.0);
         modes->start[i] = RMIN_R(0.0);
+        for (int j = 0; j < RMIN_N; ++j) {
+            modes->row[i] += arrival->row[j]*modes->shape[i][j];
+        }
     }
     modes->count = RMIN_SYSTEM;
     modes->rigid = 0;

@@ -2,10 +2,23 @@
 /* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
 #include "rmin_state.h"
 
-/* Until when it is looked, s. */
+/* Until when it is looked, s; at contacts that began late beyond that, as these may come a little earlier. */
 #define PRESSED_UNTIL RMIN_R(0.6)
+#define PRESSED_AGAIN_UNTIL RMIN_R(0.62)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
+/*
+ * Share of a limit that counts where the law of contact is a table: forces that swing about what presses fell by up to
+ * 7 % as the speed rose, between the shares that are tried.
+ */
+#define KEPT_OF_TABLES RMIN_R(0.9)
+/*
+ * Share of a limit that no later force may reach if slower speeds need not be looked at: motions by Hertz's law grow
+ * nearly with the speed, so what parts for good at one does at slower ones.
+ */
+#define CALM RMIN_R(0.5)
+/* Else shares of the speed that are tried: arms may bounce past 0.5 s at slower speeds and not at that one. */
+#define SHARES 10
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -14,6 +27,7 @@ typedef struct {
     rmin_budget budget;
     rmin_watch watch;
     bool bounded; /* some force is a bound */
+    bool calm; /* what was asked last cannot press harder at slower speeds */
 } rmin_pressing;
 
 /*
@@ -25,6 +39,8 @@ static rmin_real pressed_by(rmin_pressing *k, rmin_real speed, rmin_real matters
     rmin_peak peak;
     k->watch.matters = matters;
     k->watch.depth = rmin_law_depth(k->impact.region, matters);
+    k->watch.apart = RMIN_R(0.0);
+    k->watch.settled = false;
     k->watch.late = RMIN_R(0.0);
     k->watch.before = RMIN_R(0.0);
     k->watch.last = RMIN_R(0.0);
@@ -45,42 +61,77 @@ static bool keeps(rmin_pressing *k, const rmin_region *region, rmin_real speed, 
     int last;
     rmin_kinds_of_motors(&k->p, &first, &last);
     bool kept = true;
+    k->watch.slower = true;
+    k->calm = region->law == NULL;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = rmin_impact_prepare(region, &k->p, motors, limit, &k->impact) == RMIN_OK
-            && pressed_by(k, speed, RMIN_KEPT*limit) <= RMIN_KEPT*limit;
+            && pressed_by(k, speed, CALM*limit) <= RMIN_KEPT*limit;
+        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }
 
-static void prepare_pressing(const rmin_params *p, rmin_pressing *k)
+static void prepare_pressing(const rmin_params *p, rmin_real until, rmin_pressing *k)
 {
     k->p = *p;
-    k->p.horizon = RMIN_FMAX(RMIN_HORIZON(p), PRESSED_UNTIL);
+    k->p.horizon = RMIN_FMAX(RMIN_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
     k->budget.stop_above = RMIN_REAL_MAX;
     k->budget.watch = NULL;
+    k->watch.slower = false;
     k->bounded = false;
+    k->calm = false;
 }
 
-/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+/* A speed at which a proven bound keeps a limit; 0 if there is none. */
+static rmin_real bounded_speed(rmin_pressing *k, const rmin_region *region, rmin_real limit)
+{
+    int first;
+    int last;
+    rmin_kinds_of_motors(&k->p, &first, &last);
+    rmin_real most = RMIN_R(0.0);
+    bool is_known = true;
+    for (int motors = first; motors <= last && is_known; ++motors) {
+        is_known = rmin_impact_prepare(region, &k->p, motors, limit, &k->impact) == RMIN_OK;
+        const rmin_real bound = is_known ? rmin_bound(&k->impact) : RMIN_R(0.0);
+        is_known = bound > RMIN_R(0.0);
+        most = RMIN_FMAX(most, bound);
+    }
+    return is_known ? RMIN_KEPT*limit/most : RMIN_R(0.0);
+}
+
+/* The largest speed up to one at which and, as far as it is looked, below which what presses keeps a limit; or 0. */
 static rmin_real slow_down(rmin_pressing *k, const rmin_region *region, rmin_real speed, rmin_real limit)
 {
-    if (keeps(k, region, speed, limit)) {
-        return speed;
-    }
+    static const rmin_real shares[SHARES] = {RMIN_R(0.03), RMIN_R(0.06), RMIN_R(0.1), RMIN_R(0.17), RMIN_R(0.25),
+        RMIN_R(0.35), RMIN_R(0.48), RMIN_R(0.62), RMIN_R(0.76), RMIN_R(0.9)};
     rmin_real low = RMIN_R(0.0);
     rmin_real high = speed;
-    for (int i = 0; i < SLOWER; ++i) {
+    bool calm = false;
+    if (keeps(k, region, speed, limit)) {
+        low = speed;
+        calm = k->calm;
+    }
+    for (int i = 0; i < SLOWER && low < speed; ++i) {
         const rmin_real middle = RMIN_R(0.5)*(low + high);
         k->budget.steps = k->p.steps;
         if (keeps(k, region, middle, limit)) {
             low = middle;
+            calm = k->calm;
         } else {
             high = middle;
         }
     }
-    return low;
+    const rmin_real found = low;
+    for (int i = 0; i < SHARES && !calm && found > RMIN_R(0.0); ++i) {
+        k->budget.steps = k->p.steps;
+        if (!keeps(k, region, shares[i]*found, limit)) {
+            low = i > 0 ? shares[i - 1]*found : RMIN_R(0.0);
+            break;
+        }
+    }
+    return low > RMIN_R(0.0) ? low : RMIN_FMIN(speed, bounded_speed(k, region, limit));
 }
 
 int rmin_pressing_force_at(const rmin_real q[RMIN_JOINTS], int point, const rmin_real n[3],
@@ -97,7 +148,7 @@ int rmin_pressing_force_at(const rmin_real q[RMIN_JOINTS], int point, const rmin
     if (status != RMIN_OK) {
         return status;
     }
-    prepare_pressing(p, &k);
+    prepare_pressing(p, PRESSED_UNTIL, &k);
     rmin_real found = RMIN_R(0.0);
     int first;
     int last;
@@ -136,8 +187,9 @@ static int find_allowed(const rmin_region *region, const rmin_params *p, rmin_re
         found->speed = safe.speed;
         found->force = safe.force;
         if (region->clamped != 0) {
-            prepare_pressing(p, k);
-            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+            prepare_pressing(p, PRESSED_AGAIN_UNTIL, k);
+            const rmin_real share = region->law == NULL ? RMIN_R(1.0) : KEPT_OF_TABLES;
+            found->speed = slow_down(k, region, safe.speed, share*region->quasi_static_limit);
         }
         found->pressed = found->speed < safe.speed ? 1 : 0;
     }
@@ -238,7 +290,7 @@ int rmin_may_press(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINT
     for (int point = 0; point < RMIN_POINTS && region->clamped != 0 && kept; ++point) {
         const rmin_real speed = rmin_arrive_as_it_moves(point, rates, &k.impact.arrival);
         rmin_impact_forget(&k.impact);
-        prepare_pressing(p, &k);
+        prepare_pressing(p, PRESSED_AGAIN_UNTIL, &k);
         kept = !(speed > RMIN_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;

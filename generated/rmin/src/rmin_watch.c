@@ -4,17 +4,28 @@
 
 /* When it does, s. */
 #define LATE RMIN_R(0.5)
+/*
+ * From when on contacts after the first count where slower speeds matter, too: those of slower speeds come later, by
+ * 1.8 times at a twentieth of the speed (Hertz's contact lasts as v^-1/5), and oscillate with other phases.
+ */
+#define AGAIN RMIN_R(0.25)
+/* Until when forces of a contact count that began before it was late. */
+#define COUNTS_UNTIL RMIN_R(0.6)
 /* Steps after which it is looked whether the rest matters. */
 #define LOOKS_LATE 2
 
 bool rmin_pass(const rmin_state *s, rmin_watch *watch)
 {
-    if (s->time >= LATE) {
-        const rmin_real share = RMIN_FMIN((s->time - LATE)/s->h, RMIN_R(1.0));
+    watch->apart = s->touching ? watch->apart : s->time;
+    const rmin_real from = watch->slower && watch->apart > RMIN_R(0.0) ? AGAIN : LATE;
+    const rmin_real until = watch->apart > LATE ? s->time : RMIN_FMIN(COUNTS_UNTIL, s->time);
+    if (s->time >= from && until > s->time - s->h) {
+        const rmin_real share = RMIN_FMIN((s->time - from)/s->h, RMIN_R(1.0));
         const rmin_real then = share*watch->last + (RMIN_R(1.0) - share)*s->f;
+        const rmin_real now = s->f - (s->time - until)/s->h*(s->f - watch->last);
         const rmin_real up = watch->last - watch->before;
         const rmin_real down = watch->last - s->f;
-        watch->late = RMIN_FMAX(watch->late, RMIN_FMAX(then, s->f) + s->swings);
+        watch->late = RMIN_FMAX(watch->late, RMIN_FMAX(then, now) + s->swings);
         if (s->past > 1 && up >= RMIN_R(0.0) && down > RMIN_R(0.0)) { /* a top between nodes */
             const rmin_real bend = (up/s->h_before + down/s->h)/(s->h + s->h_before);
             const rmin_real slope = up/s->h_before - bend*s->h_before;
@@ -25,6 +36,7 @@ bool rmin_pass(const rmin_state *s, rmin_watch *watch)
     watch->before = watch->last;
     watch->last = s->f;
     const rmin_real matters = watch->matters - s->swings;
-    return s->f < matters && s->past % LOOKS_LATE == 0
+    watch->settled = s->f < matters && s->past % LOOKS_LATE == 0
         && rmin_is_settled(s, matters, watch->depth, RMIN_R(1.0));
+    return watch->settled;
 }

@@ -12,6 +12,9 @@
 #define NARROW RMIN_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
+/* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
+#define STARTS 3
+#define ALIKE RMIN_R(0.94)
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (RMIN_R(1.0) - RMIN_KEPT)
 
@@ -21,7 +24,9 @@ typedef struct {
     rmin_real speed;
     rmin_real n[3]; /* the worst so far */
     rmin_real force;
+    rmin_real tried; /* force of the last direction that was tried */
     bool bounded, unknown;
+    bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
 /* Tries a direction over those in which the robot moves; says whether it is worse than all before. */
@@ -40,7 +45,9 @@ static bool try_direction(const rmin_region *region, const rmin_params *p, const
     if (status == RMIN_OK) {
         status = rmin_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->lost = w->lost || status == RMIN_SINGULAR;
     w->unknown = w->unknown || (status != RMIN_OK && status != RMIN_BOUNDED && status != RMIN_SINGULAR);
+    w->tried = found.force;
     const bool worse = (status == RMIN_OK || status == RMIN_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
@@ -62,6 +69,50 @@ static void direction_of(int k, rmin_real along[3])
     along[1] = flat*RMIN_SIN(turn);
     along[2] = up;
 }
+
+#if RMIN_REACH > 1
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const rmin_region *region, const rmin_params *p, hardest *w)
+{
+    const rmin_real (*const J)[RMIN_N] = (const rmin_real (*)[RMIN_N])&w->impact.arrival.links.J[3*w->point];
+    rmin_matrix square;
+    rmin_matrix vectors;
+    rmin_real values[RMIN_SYSTEM];
+    for (int k = 0; k < RMIN_REACH; ++k) {
+        for (int l = 0; l < RMIN_REACH; ++l) {
+            const rmin_real *const a = rmin_directions[k];
+            const rmin_real *const b = rmin_directions[l];
+            square[k][l] = RMIN_R(0.0);
+            for (int i = 0; i < RMIN_N; ++i) {
+                const rmin_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
+                const rmin_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                square[k][l] += rmin_has_motor[i] ? by_a*by_b : RMIN_R(0.0);
+            }
+        }
+    }
+    if (!rmin_spectrum(RMIN_REACH, RMIN_EPSILON*RMIN_EPSILON, square, values, vectors)) {
+        w->unknown = true;
+        return;
+    }
+    int least = 0;
+    for (int k = 1; k < RMIN_REACH; ++k) {
+        least = values[k] < values[least] ? k : least;
+    }
+    const rmin_real *const a = vectors[(least + 1) % RMIN_REACH];
+    const rmin_real *const b = vectors[(least + 2) % RMIN_REACH];
+    for (int k = 0; k < (RMIN_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
+        const rmin_real turn = HALF_A_TURN*(rmin_real)k/(rmin_real)OVER_A_CIRCLE;
+        rmin_real along[3] = {RMIN_R(0.0), RMIN_R(0.0), RMIN_R(0.0)};
+        for (int l = 0; l < RMIN_REACH; ++l) {
+            along[l] = RMIN_REACH > 2 ? RMIN_COS(turn)*a[l] + RMIN_SIN(turn)*b[l] : a[l];
+        }
+        (void)try_direction(region, p, along, w);
+    }
+}
+#endif
 
 /* Looks around the worst, wider where that helps. */
 static void look_around(const rmin_region *region, const rmin_params *p, hardest *w)
@@ -91,6 +142,39 @@ static void look_around(const rmin_region *region, const rmin_params *p, hardest
     }
 }
 
+/* Looks around the directions that were hardest, beside the hardest, of those over the ball. */
+static void look_elsewhere(const rmin_region *region, const rmin_params *p, int count, rmin_real *forces, hardest *w)
+{
+    for (int start = 0; start < STARTS; ++start) {
+        const rmin_real n[3] = {w->n[0], w->n[1], w->n[2]};
+        const rmin_real force = w->force;
+        const bool bounded = w->bounded;
+        int best = 0;
+        for (int k = 1; k < count; ++k) {
+            best = forces[k] > forces[best] ? k : best;
+        }
+        if (!(forces[best] > RMIN_R(0.0))) {
+            return;
+        }
+        direction_of(best, w->n);
+        w->force = forces[best];
+        for (int k = 0; k < count; ++k) {
+            rmin_real along[3];
+            direction_of(k, along);
+            const rmin_real cosine = along[0]*w->n[0] + along[1]*w->n[1] + along[2]*w->n[2];
+            forces[k] = RMIN_FABS(cosine) > ALIKE ? RMIN_R(0.0) : forces[k];
+        }
+        look_around(region, p, w);
+        if (!(w->force > force)) {
+            w->force = force;
+            w->bounded = bounded;
+            for (int k = 0; k < 3; ++k) {
+                w->n[k] = n[k];
+            }
+        }
+    }
+}
+
 /* Looks everywhere. */
 static int find_hardest(const rmin_region *region, const rmin_params *p, hardest *w, rmin_worst_direction_t *out)
 {
@@ -98,11 +182,19 @@ static int find_hardest(const rmin_region *region, const rmin_params *p, hardest
     w->force = RMIN_R(0.0);
     w->bounded = false;
     w->unknown = false;
+    w->lost = false;
+    rmin_real forces[OVER_A_BALL];
     for (int k = 0; k < count; ++k) {
         rmin_real along[3];
         direction_of(k, along);
         (void)try_direction(region, p, along, w);
+        forces[k] = w->tried;
     }
+#if RMIN_REACH > 1
+    if (w->lost) {
+        try_across(region, p, w);
+    }
+#endif
     if (w->unknown) {
         return RMIN_UNRESOLVED;
     }
@@ -111,6 +203,7 @@ static int find_hardest(const rmin_region *region, const rmin_params *p, hardest
     }
     const rmin_real seen = w->force;
     look_around(region, p, w);
+    look_elsewhere(region, p, count, forces, w);
     if (w->unknown) { /* so may be the hardest */
         return RMIN_UNRESOLVED;
     }

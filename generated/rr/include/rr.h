@@ -374,8 +374,9 @@ typedef struct {
 
 /*
  * As rr_safe_speed_at, for all limits of a region: region->force_limit up to the horizon and, clamped,
- * region->quasi_static_limit from 0.5 to 0.6 s. RR_UNRESOLVED if no speed is known to keep both. What
- * presses later is looked at at this speed only: bodies that hardly damp may bounce past 0.5 s at a slower one.
+ * region->quasi_static_limit from 0.5 to 0.6 s, and from 0.25 to 0.62 s once they parted and met again: at slower
+ * speeds they meet later. If something may press then, ten slower speeds are tried, too. RR_UNRESOLVED if no
+ * speed is known to keep both.
  */
 int rr_allowed_speed_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
     const rr_region *region, const rr_params *p, rr_allowed_speed_t *out);
@@ -394,7 +395,7 @@ int rr_allowed_factor(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
 
 /*
  * Whether a contact point that moves as joints do might press on a clamped body harder than a limit from
- * 0.5 to 0.6 s: 0 where it is proven or integrated that none does.
+ * 0.5 to 0.6 s, or in contacts after the first from 0.25 to 0.62 s: 0 where it is proven or integrated that none does.
  */
 int rr_may_press(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     rr_real limit, const rr_region *region, const rr_params *p, int *may);

@@ -6,6 +6,8 @@
 #define OUTSIDE RR_R(1e-6)
 /* Most that the speed along n may err by where motors can hardly move the contact point that way. */
 #define ASTRAY RR_R(1e-3)
+/* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
+#define ROUNDING (RR_R(8.0)*RR_EPSILON)
 #define MOST_STEPS 1000000
 
 int rr_check_impact(const rr_region *region, const rr_params *p)
@@ -80,7 +82,7 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
         return RR_SINGULAR;
     }
     for (int k = 0; k < RR_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > RR_EPSILON*whole)) {
+        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
             return RR_SINGULAR;
         }
     }

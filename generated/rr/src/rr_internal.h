@@ -40,6 +40,9 @@
 /* Sines s and cosines c of finite angles x. */
 void rr_sines_cosines(const rr_real *x, int count, rr_real *s, rr_real *c);
 
+/* inv(M + diag b) j', then j inv(M + diag b) j'. */
+void rr_pushed_entries(const rr_real M[10], const rr_real b[4], const rr_real j[4], rr_real out[5]);
+
 /*
  * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.
  * A comparison with a NaN is false.

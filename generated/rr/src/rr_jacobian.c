@@ -14,7 +14,7 @@ int rr_jacobian(const rr_real q[4], rr_real J[3][4])
 
     rr_real sines[4];
     rr_real cosines[4];
-    rr_sines_cosines(&q[0], 4, sines, cosines);
+    rr_sines_cosines(q, 4, sines, cosines);
     const rr_real s1 = sines[0];
     const rr_real c1 = cosines[0];
     const rr_real s2 = sines[1];

@@ -198,6 +198,75 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
 }
 #endif
 
+#if !RR_POTENTIAL
+/* Sweeps that make what modes bend orthogonal, which it nearly is. */
+#define SWEEPS_OF_SERVO 2
+
+static rr_real dot(const rr_real a[RR_SYSTEM], const rr_real b[RR_SYSTEM])
+{
+    rr_real sum = RR_R(0.0);
+    for (int k = 0; k < RR_SYSTEM; ++k) {
+        sum += a[k]*b[k];
+    }
+    return sum;
+}
+
+/* Turns two rows by an angle of tangent t. */
+static void turn(rr_real t, rr_real a[RR_SYSTEM], rr_real b[RR_SYSTEM])
+{
+    const rr_real c = RR_R(1.0)/RR_SQRT(RR_R(1.0) + t*t);
+    for (int k = 0; k < RR_SYSTEM; ++k) {
+        const rr_real x = a[k];
+        a[k] = c*(x - t*b[k]);
+        b[k] = c*(b[k] + t*x);
+    }
+}
+
+/*
+ * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
+ * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
+ * orthogonal (Jacobi's rotations from one side).
+ */
+static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
+{
+    (void)p;
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        rr_real off = RR_R(0.0);
+        for (int j = 0; j < RR_N; ++j) {
+            const int motor = RR_SYSTEM - RR_N + j;
+            const rr_real turned = modes->shape[i][motor];
+            const rr_real gain = RR_SQRT(RR_GAIN(p, j));
+            bent[i][motor] = gain*turned;
+            off += gain*RR_FABS(turned);
+#if RR_ELASTIC
+            const rr_real root = RR_SQRT(RR_SPRING(p, j));
+            bent[i][j] = root*(modes->shape[i][j] - turned);
+            off += root*(RR_FABS(modes->shape[i][j]) + RR_FABS(turned));
+#endif
+        }
+        modes->squared[i] = dot(bent[i], bent[i]);
+        off *= RR_EPSILON;
+        modes->noise[i] = off*(off + RR_R(2.0)*RR_SQRT(modes->squared[i]));
+    }
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+        for (int i = 0; i < RR_SYSTEM; ++i) {
+            for (int j = 0; j < i; ++j) {
+                const rr_real off = dot(bent[i], bent[j]);
+                if (off*off > RR_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    const rr_real half = RR_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
+                    const rr_real length = RR_FABS(half) + RR_SQRT(half*half + RR_R(1.0));
+                    const rr_real t = (half < RR_R(0.0) ? RR_R(-1.0) : RR_R(1.0))/length;
+                    turn(t, bent[i], bent[j]);
+                    turn(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = dot(bent[i], bent[i]);
+                    modes->squared[j] = dot(bent[j], bent[j]);
+                }
+            }
+        }
+    }
+}
+#endif
+
 int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real *drift)
 {
@@ -222,18 +291,24 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
         return RR_SINGULAR;
     }
     for (int i = 0; i < RR_SYSTEM; ++i) {
-        rr_real row = RR_R(0.0);
         for (int j = 0; j < RR_SYSTEM; ++j) {
             rr_real shape = RR_R(0.0);
             for (int k = j; k < RR_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
-            row += j < RR_N ? arrival->row[j]*shape : RR_R(0.0);
         }
-        modes->noise[i] = RR_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
-        modes->row[i] = row;
+        modes->noise[i] = RR_EPSILON*all;
+    }
+#if !RR_POTENTIAL
+    sharpen(p, mass, modes);
+#endif
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        modes->row[i] = RR_R(0.0);
         modes->start[i] = RR_R(0.0);
+        for (int j = 0; j < RR_N; ++j) {
+            modes->row[i] += arrival->row[j]*modes->shape[i][j];
+        }
     }
     modes->count = RR_SYSTEM;
     modes->rigid = 0;

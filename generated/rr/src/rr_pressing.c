@@ -2,10 +2,23 @@
 /* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
 #include "rr_state.h"
 
-/* Until when it is looked, s. */
+/* Until when it is looked, s; at contacts that began late beyond that, as these may come a little earlier. */
 #define PRESSED_UNTIL RR_R(0.6)
+#define PRESSED_AGAIN_UNTIL RR_R(0.62)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
+/*
+ * Share of a limit that counts where the law of contact is a table: forces that swing about what presses fell by up to
+ * 7 % as the speed rose, between the shares that are tried.
+ */
+#define KEPT_OF_TABLES RR_R(0.9)
+/*
+ * Share of a limit that no later force may reach if slower speeds need not be looked at: motions by Hertz's law grow
+ * nearly with the speed, so what parts for good at one does at slower ones.
+ */
+#define CALM RR_R(0.5)
+/* Else shares of the speed that are tried: arms may bounce past 0.5 s at slower speeds and not at that one. */
+#define SHARES 10
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -14,6 +27,7 @@ typedef struct {
     rr_budget budget;
     rr_watch watch;
     bool bounded; /* some force is a bound */
+    bool calm; /* what was asked last cannot press harder at slower speeds */
 } rr_pressing;
 
 /*
@@ -25,6 +39,8 @@ static rr_real pressed_by(rr_pressing *k, rr_real speed, rr_real matters)
     rr_peak peak;
     k->watch.matters = matters;
     k->watch.depth = rr_law_depth(k->impact.region, matters);
+    k->watch.apart = RR_R(0.0);
+    k->watch.settled = false;
     k->watch.late = RR_R(0.0);
     k->watch.before = RR_R(0.0);
     k->watch.last = RR_R(0.0);
@@ -45,42 +61,77 @@ static bool keeps(rr_pressing *k, const rr_region *region, rr_real speed, rr_rea
     int last;
     rr_kinds_of_motors(&k->p, &first, &last);
     bool kept = true;
+    k->watch.slower = true;
+    k->calm = region->law == NULL;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = rr_impact_prepare(region, &k->p, motors, limit, &k->impact) == RR_OK
-            && pressed_by(k, speed, RR_KEPT*limit) <= RR_KEPT*limit;
+            && pressed_by(k, speed, CALM*limit) <= RR_KEPT*limit;
+        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }
 
-static void prepare_pressing(const rr_params *p, rr_pressing *k)
+static void prepare_pressing(const rr_params *p, rr_real until, rr_pressing *k)
 {
     k->p = *p;
-    k->p.horizon = RR_FMAX(RR_HORIZON(p), PRESSED_UNTIL);
+    k->p.horizon = RR_FMAX(RR_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
     k->budget.stop_above = RR_REAL_MAX;
     k->budget.watch = NULL;
+    k->watch.slower = false;
     k->bounded = false;
+    k->calm = false;
 }
 
-/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+/* A speed at which a proven bound keeps a limit; 0 if there is none. */
+static rr_real bounded_speed(rr_pressing *k, const rr_region *region, rr_real limit)
+{
+    int first;
+    int last;
+    rr_kinds_of_motors(&k->p, &first, &last);
+    rr_real most = RR_R(0.0);
+    bool is_known = true;
+    for (int motors = first; motors <= last && is_known; ++motors) {
+        is_known = rr_impact_prepare(region, &k->p, motors, limit, &k->impact) == RR_OK;
+        const rr_real bound = is_known ? rr_bound(&k->impact) : RR_R(0.0);
+        is_known = bound > RR_R(0.0);
+        most = RR_FMAX(most, bound);
+    }
+    return is_known ? RR_KEPT*limit/most : RR_R(0.0);
+}
+
+/* The largest speed up to one at which and, as far as it is looked, below which what presses keeps a limit; or 0. */
 static rr_real slow_down(rr_pressing *k, const rr_region *region, rr_real speed, rr_real limit)
 {
-    if (keeps(k, region, speed, limit)) {
-        return speed;
-    }
+    static const rr_real shares[SHARES] = {RR_R(0.03), RR_R(0.06), RR_R(0.1), RR_R(0.17), RR_R(0.25),
+        RR_R(0.35), RR_R(0.48), RR_R(0.62), RR_R(0.76), RR_R(0.9)};
     rr_real low = RR_R(0.0);
     rr_real high = speed;
-    for (int i = 0; i < SLOWER; ++i) {
+    bool calm = false;
+    if (keeps(k, region, speed, limit)) {
+        low = speed;
+        calm = k->calm;
+    }
+    for (int i = 0; i < SLOWER && low < speed; ++i) {
         const rr_real middle = RR_R(0.5)*(low + high);
         k->budget.steps = k->p.steps;
         if (keeps(k, region, middle, limit)) {
             low = middle;
+            calm = k->calm;
         } else {
             high = middle;
         }
     }
-    return low;
+    const rr_real found = low;
+    for (int i = 0; i < SHARES && !calm && found > RR_R(0.0); ++i) {
+        k->budget.steps = k->p.steps;
+        if (!keeps(k, region, shares[i]*found, limit)) {
+            low = i > 0 ? shares[i - 1]*found : RR_R(0.0);
+            break;
+        }
+    }
+    return low > RR_R(0.0) ? low : RR_FMIN(speed, bounded_speed(k, region, limit));
 }
 
 int rr_pressing_force_at(const rr_real q[RR_JOINTS], int point, const rr_real n[3],
@@ -97,7 +148,7 @@ int rr_pressing_force_at(const rr_real q[RR_JOINTS], int point, const rr_real n[
     if (status != RR_OK) {
         return status;
     }
-    prepare_pressing(p, &k);
+    prepare_pressing(p, PRESSED_UNTIL, &k);
     rr_real found = RR_R(0.0);
     int first;
     int last;
@@ -136,8 +187,9 @@ static int find_allowed(const rr_region *region, const rr_params *p, rr_real cap
         found->speed = safe.speed;
         found->force = safe.force;
         if (region->clamped != 0) {
-            prepare_pressing(p, k);
-            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+            prepare_pressing(p, PRESSED_AGAIN_UNTIL, k);
+            const rr_real share = region->law == NULL ? RR_R(1.0) : KEPT_OF_TABLES;
+            found->speed = slow_down(k, region, safe.speed, share*region->quasi_static_limit);
         }
         found->pressed = found->speed < safe.speed ? 1 : 0;
     }
@@ -238,7 +290,7 @@ int rr_may_press(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     for (int point = 0; point < RR_POINTS && region->clamped != 0 && kept; ++point) {
         const rr_real speed = rr_arrive_as_it_moves(point, rates, &k.impact.arrival);
         rr_impact_forget(&k.impact);
-        prepare_pressing(p, &k);
+        prepare_pressing(p, PRESSED_AGAIN_UNTIL, &k);
         kept = !(speed > RR_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;

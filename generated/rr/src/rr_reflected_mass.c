@@ -26,7 +26,7 @@ int rr_reflected_mass(const rr_real q[4], const rr_real n[3], const rr_params *p
 
     rr_real sines[4];
     rr_real cosines[4];
-    rr_sines_cosines(&q[0], 4, sines, cosines);
+    rr_sines_cosines(q, 4, sines, cosines);
     const rr_real s1 = sines[0];
     const rr_real c1 = cosines[0];
     const rr_real s2 = sines[1];
@@ -43,26 +43,15 @@ int rr_reflected_mass(const rr_real q[4], const rr_real n[3], const rr_params *p
     const rr_real t6 = t5 + RR_R(0.5)*t3;
     const rr_real t7 = c3*(RR_R(0.86372)*c4) - s3*(RR_R(0.86372)*s4);
     const rr_real t8 = RR_R(2.5044576) + (RR_R(1.03951196) + t7);
-    const rr_real t9 = RR_R(1.0)/(RR_R(4.71) + t8 + p->rotor_inertia[0]);
-    const rr_real t10 = t8*t9;
-    const rr_real t11 = t6 - t10*t6;
-    const rr_real t12 = RR_R(1.0)/(t8 + p->rotor_inertia[1] - t10*t8);
-    const rr_real t13 = RR_R(0.5)*t7;
-    const rr_real t14 = RR_R(1.03951196) + t13;
-    const rr_real t15 = t14*t9;
-    const rr_real t16 = t14 - t15*t8;
-    const rr_real t17 = t16*t12;
-    const rr_real t18 = t5 - (t15*t6 + t17*t11);
-    const rr_real t19 = RR_R(1.0)/(RR_R(1.03951196) + p->rotor_inertia[2] - (t15*t14 + t17*t16));
-    const rr_real t20 = RR_R(0.20951196) + t13;
-    const rr_real t21 = t20*t9;
-    const rr_real t22 = t20 - t21*t8;
-    const rr_real t23 = t22*t12;
-    const rr_real t24 = RR_R(0.20951196) - (t21*t14 + t23*t16);
-    const rr_real t25 = t24*t19;
-    const rr_real t26 = t5 - (t21*t6 + t23*t11 + t25*t18);
-    const rr_real t27 = RR_R(0.20951196) + p->rotor_inertia[3] - (t21*t20 + t23*t22 + t25*t24);
-    const rr_real result = RR_R(1.0)/(t6*(t6*t9) + t11*(t11*t12) + t18*(t18*t19) + t26*(t26/t27));
+    const rr_real t9 = RR_R(0.5)*t7;
+    const rr_real t10 = RR_R(1.03951196) + t9;
+    const rr_real t11 = RR_R(0.20951196) + t9;
+    const rr_real pushed_entries_M[10] = {RR_R(4.71) + t8, t8, t8, t10, t10, RR_R(1.03951196), t11,
+        t11, RR_R(0.20951196), RR_R(0.20951196)};
+    const rr_real pushed_entries_j[4] = {t6, t6, t5, t5};
+    rr_real pushed_entries[5];
+    rr_pushed_entries(pushed_entries_M, p->rotor_inertia, pushed_entries_j, pushed_entries);
+    const rr_real result = RR_R(1.0)/pushed_entries[4];
     if (!(result > RR_R(0.0) && result < RR_R(26000.0))) {
         return RR_SINGULAR;
     }

@@ -43,6 +43,9 @@ typedef struct {
 struct rr_watch {
     rr_real matters; /* force that may still come, N */
     rr_real depth; /* of the skin under it, m */
+    bool slower; /* whether slower speeds matter, so that later contacts count earlier */
+    rr_real apart; /* when robot and body last were so, s; 0 for never */
+    bool settled; /* no force that matters can come */
     rr_real late; /* the largest force from 0.5 s on, N */
     rr_real before, last; /* forces of the last steps, N */
 };

@@ -66,7 +66,8 @@ static void let_stand(const rr_impact *impact, rr_real contact, bool released, r
     int active = 0;
     phase->compliance = RR_R(0.0);
     phase->reach = RR_R(0.0);
-    phase->settles = !phase->damped;
+    const bool pushes_on = phase->drift > RR_R(0.0) && !impact->gives_way;
+    phase->settles = !phase->damped && !pushes_on;
     for (int i = 0; i < modes->count; ++i) {
         const bool body = impact->gives_way && i == modes->count - 1;
         const rr_real weight = modes->row[i]*modes->row[i];

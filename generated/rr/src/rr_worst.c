@@ -12,6 +12,9 @@
 #define NARROW RR_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
+/* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
+#define STARTS 3
+#define ALIKE RR_R(0.94)
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (RR_R(1.0) - RR_KEPT)
 
@@ -21,7 +24,9 @@ typedef struct {
     rr_real speed;
     rr_real n[3]; /* the worst so far */
     rr_real force;
+    rr_real tried; /* force of the last direction that was tried */
     bool bounded, unknown;
+    bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
 /* Tries a direction over those in which the robot moves; says whether it is worse than all before. */
@@ -40,7 +45,9 @@ static bool try_direction(const rr_region *region, const rr_params *p, const rr_
     if (status == RR_OK) {
         status = rr_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->lost = w->lost || status == RR_SINGULAR;
     w->unknown = w->unknown || (status != RR_OK && status != RR_BOUNDED && status != RR_SINGULAR);
+    w->tried = found.force;
     const bool worse = (status == RR_OK || status == RR_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
@@ -62,6 +69,50 @@ static void direction_of(int k, rr_real along[3])
     along[1] = flat*RR_SIN(turn);
     along[2] = up;
 }
+
+#if RR_REACH > 1
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const rr_region *region, const rr_params *p, hardest *w)
+{
+    const rr_real (*const J)[RR_N] = (const rr_real (*)[RR_N])&w->impact.arrival.links.J[3*w->point];
+    rr_matrix square;
+    rr_matrix vectors;
+    rr_real values[RR_SYSTEM];
+    for (int k = 0; k < RR_REACH; ++k) {
+        for (int l = 0; l < RR_REACH; ++l) {
+            const rr_real *const a = rr_directions[k];
+            const rr_real *const b = rr_directions[l];
+            square[k][l] = RR_R(0.0);
+            for (int i = 0; i < RR_N; ++i) {
+                const rr_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
+                const rr_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                square[k][l] += rr_has_motor[i] ? by_a*by_b : RR_R(0.0);
+            }
+        }
+    }
+    if (!rr_spectrum(RR_REACH, RR_EPSILON*RR_EPSILON, square, values, vectors)) {
+        w->unknown = true;
+        return;
+    }
+    int least = 0;
+    for (int k = 1; k < RR_REACH; ++k) {
+        least = values[k] < values[least] ? k : least;
+    }
+    const rr_real *const a = vectors[(least + 1) % RR_REACH];
+    const rr_real *const b = vectors[(least + 2) % RR_REACH];
+    for (int k = 0; k < (RR_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
+        const rr_real turn = HALF_A_TURN*(rr_real)k/(rr_real)OVER_A_CIRCLE;
+        rr_real along[3] = {RR_R(0.0), RR_R(0.0), RR_R(0.0)};
+        for (int l = 0; l < RR_REACH; ++l) {
+            along[l] = RR_REACH > 2 ? RR_COS(turn)*a[l] + RR_SIN(turn)*b[l] : a[l];
+        }
+        (void)try_direction(region, p, along, w);
+    }
+}
+#endif
 
 /* Looks around the worst, wider where that helps. */
 static void look_around(const rr_region *region, const rr_params *p, hardest *w)
@@ -91,6 +142,39 @@ static void look_around(const rr_region *region, const rr_params *p, hardest *w)
     }
 }
 
+/* Looks around the directions that were hardest, beside the hardest, of those over the ball. */
+static void look_elsewhere(const rr_region *region, const rr_params *p, int count, rr_real *forces, hardest *w)
+{
+    for (int start = 0; start < STARTS; ++start) {
+        const rr_real n[3] = {w->n[0], w->n[1], w->n[2]};
+        const rr_real force = w->force;
+        const bool bounded = w->bounded;
+        int best = 0;
+        for (int k = 1; k < count; ++k) {
+            best = forces[k] > forces[best] ? k : best;
+        }
+        if (!(forces[best] > RR_R(0.0))) {
+            return;
+        }
+        direction_of(best, w->n);
+        w->force = forces[best];
+        for (int k = 0; k < count; ++k) {
+            rr_real along[3];
+            direction_of(k, along);
+            const rr_real cosine = along[0]*w->n[0] + along[1]*w->n[1] + along[2]*w->n[2];
+            forces[k] = RR_FABS(cosine) > ALIKE ? RR_R(0.0) : forces[k];
+        }
+        look_around(region, p, w);
+        if (!(w->force > force)) {
+            w->force = force;
+            w->bounded = bounded;
+            for (int k = 0; k < 3; ++k) {
+                w->n[k] = n[k];
+            }
+        }
+    }
+}
+
 /* Looks everywhere. */
 static int find_hardest(const rr_region *region, const rr_params *p, hardest *w, rr_worst_direction_t *out)
 {
@@ -98,11 +182,19 @@ static int find_hardest(const rr_region *region, const rr_params *p, hardest *w,
     w->force = RR_R(0.0);
     w->bounded = false;
     w->unknown = false;
+    w->lost = false;
+    rr_real forces[OVER_A_BALL];
     for (int k = 0; k < count; ++k) {
         rr_real along[3];
         direction_of(k, along);
         (void)try_direction(region, p, along, w);
+        forces[k] = w->tried;
     }
+#if RR_REACH > 1
+    if (w->lost) {
+        try_across(region, p, w);
+    }
+#endif
     if (w->unknown) {
         return RR_UNRESOLVED;
     }
@@ -111,6 +203,7 @@ static int find_hardest(const rr_region *region, const rr_params *p, hardest *w,
     }
     const rr_real seen = w->force;
     look_around(region, p, w);
+    look_elsewhere(region, p, count, forces, w);
     if (w->unknown) { /* so may be the hardest */
         return RR_UNRESOLVED;
     }

@@ -6,6 +6,8 @@
 #define OUTSIDE UR5E_R(1e-6)
 /* Most that the speed along n may err by where motors can hardly move the contact point that way. */
 #define ASTRAY UR5E_R(1e-3)
+/* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
+#define ROUNDING (UR5E_R(8.0)*UR5E_EPSILON)
 #define MOST_STEPS 1000000
 
 int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p)
@@ -80,7 +82,7 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
         return UR5E_SINGULAR;
     }
     for (int k = 0; k < UR5E_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > UR5E_EPSILON*whole)) {
+        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
             return UR5E_SINGULAR;
         }
     }

@@ -71,7 +71,7 @@ typedef struct {
     bool has_body;
     bool ready; /* steps are */
     bool blurred; /* too few digits to integrate it */
-    bool settles; /* no energy enters but by the motors' drift: see ur5e_settled.c */
+    bool settles; /* motors do not push on and on, nothing else brings energy: see ur5e_settled.c */
     ur5e_modes modes; /* the first `active` ones move, the others stand, bent by the force */
     int active;
     ur5e_real compliance; /* of those that stand, m/N */

@@ -40,6 +40,28 @@
 /* Sines s and cosines c of finite angles x. */
 void ur5e_sines_cosines(const ur5e_real *x, int count, ur5e_real *s, ur5e_real *c);
 
+/* j inv(M + diag b) j'. */
+void ur5e_inverse_mass(const ur5e_real M[21], const ur5e_real b[6], const ur5e_real j[6], ur5e_real
+    out[1]);
+
+/* J(q), column by column. */
+void ur5e_jacobian_entries(const ur5e_real s[5], const ur5e_real c[5], ur5e_real out[18]);
+
+/* M(q), row by row up to the diagonal. */
+void ur5e_mass_entries(const ur5e_real s[5], const ur5e_real c[5], ur5e_real out[21]);
+
+/* J inv(M + diag b) J', row by row up to the diagonal. */
+void ur5e_mobility_entries(const ur5e_real M[21], const ur5e_real b[6], const ur5e_real j[18],
+    ur5e_real out[6]);
+
+/* inv(M + diag b) j', then j inv(M + diag b) j'. */
+void ur5e_pushed_entries(const ur5e_real M[21], const ur5e_real b[6], const ur5e_real j[6],
+    ur5e_real out[7]);
+
+/* n'J(q). */
+void ur5e_row_entries(const ur5e_real n[3], const ur5e_real s[6], const ur5e_real c[6], ur5e_real
+    out[6]);
+
 /*
  * Whether all of up to a thousand numbers are finite: only then is the sum of a thousandth of each.
  * A comparison with a NaN is false.

@@ -14,7 +14,7 @@ int ur5e_joint_frames(const ur5e_real q[6], ur5e_real poses[6][12])
 
     ur5e_real sines[6];
     ur5e_real cosines[6];
-    ur5e_sines_cosines(&q[0], 6, sines, cosines);
+    ur5e_sines_cosines(q, 6, sines, cosines);
     const ur5e_real s1 = sines[0];
     const ur5e_real c1 = cosines[0];
     const ur5e_real s2 = sines[1];

@@ -198,6 +198,75 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
 }
 #endif
 
+#if !UR5E_POTENTIAL
+/* Sweeps that make what modes bend orthogonal, which it nearly is. */
+#define SWEEPS_OF_SERVO 2
+
+static ur5e_real dot(const ur5e_real a[UR5E_SYSTEM], const ur5e_real b[UR5E_SYSTEM])
+{
+    ur5e_real sum = UR5E_R(0.0);
+    for (int k = 0; k < UR5E_SYSTEM; ++k) {
+        sum += a[k]*b[k];
+    }
+    return sum;
+}
+
+/* Turns two rows by an angle of tangent t. */
+static void turn(ur5e_real t, ur5e_real a[UR5E_SYSTEM], ur5e_real b[UR5E_SYSTEM])
+{
+    const ur5e_real c = UR5E_R(1.0)/UR5E_SQRT(UR5E_R(1.0) + t*t);
+    for (int k = 0; k < UR5E_SYSTEM; ++k) {
+        const ur5e_real x = a[k];
+        a[k] = c*(x - t*b[k]);
+        b[k] = c*(b[k] + t*x);
+    }
+}
+
+/*
+ * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
+ * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
+ * orthogonal (Jacobi's rotations from one side).
+ */
+static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
+{
+    (void)p;
+    for (int i = 0; i < UR5E_SYSTEM; ++i) {
+        ur5e_real off = UR5E_R(0.0);
+        for (int j = 0; j < UR5E_N; ++j) {
+            const int motor = UR5E_SYSTEM - UR5E_N + j;
+            const ur5e_real turned = modes->shape[i][motor];
+            const ur5e_real gain = UR5E_SQRT(UR5E_GAIN(p, j));
+            bent[i][motor] = gain*turned;
+            off += gain*UR5E_FABS(turned);
+#if UR5E_ELASTIC
+            const ur5e_real root = UR5E_SQRT(UR5E_SPRING(p, j));
+            bent[i][j] = root*(modes->shape[i][j] - turned);
+            off += root*(UR5E_FABS(modes->shape[i][j]) + UR5E_FABS(turned));
+#endif
+        }
+        modes->squared[i] = dot(bent[i], bent[i]);
+        off *= UR5E_EPSILON;
+        modes->noise[i] = off*(off + UR5E_R(2.0)*UR5E_SQRT(modes->squared[i]));
+    }
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+        for (int i = 0; i < UR5E_SYSTEM; ++i) {
+            for (int j = 0; j < i; ++j) {
+                const ur5e_real off = dot(bent[i], bent[j]);
+                if (off*off > UR5E_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    const ur5e_real half = UR5E_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
+                    const ur5e_real length = UR5E_FABS(half) + UR5E_SQRT(half*half + UR5E_R(1.0));
+                    const ur5e_real t = (half < UR5E_R(0.0) ? UR5E_R(-1.0) : UR5E_R(1.0))/length;
+                    turn(t, bent[i], bent[j]);
+                    turn(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = dot(bent[i], bent[i]);
+                    modes->squared[j] = dot(bent[j], bent[j]);
+                }
+            }
+        }
+    }
+}
+#endif
+
 int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real *drift)
 {
@@ -222,18 +291,24 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
         return UR5E_SINGULAR;
     }
     for (int i = 0; i < UR5E_SYSTEM; ++i) {
-        ur5e_real row = UR5E_R(0.0);
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
             ur5e_real shape = UR5E_R(0.0);
             for (int k = j; k < UR5E_SYSTEM; ++k) { /* X has nothing below its diagonal */
                 shape += X[j][k]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
-            row += j < UR5E_N ? arrival->row[j]*shape : UR5E_R(0.0);
         }
-        modes->noise[i] = UR5E_EPSILON*all; /* QR errs by rounding of the largest, whatever the mode */
-        modes->row[i] = row;
+        modes->noise[i] = UR5E_EPSILON*all;
+    }
+#if !UR5E_POTENTIAL
+    sharpen(p, mass, modes);
+#endif
+    for (int i = 0; i < UR5E_SYSTEM; ++i) {
+        modes->row[i] = UR5E_R(0.0);
         modes->start[i] = UR5E_R(0.0);
+        for (int j = 0; j < UR5E_N; ++j) {
+            modes->row[i] += arrival->row[j]*modes->shape[i][j];
+        }
     }
     modes->count = UR5E_SYSTEM;
     modes->rigid = 0;

@@ -2,10 +2,23 @@
 /* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
 #include "ur5e_state.h"
 
-/* Until when it is looked, s. */
+/* Until when it is looked, s; at contacts that began late beyond that, as these may come a little earlier. */
 #define PRESSED_UNTIL UR5E_R(0.6)
+#define PRESSED_AGAIN_UNTIL UR5E_R(0.62)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
+/*
+ * Share of a limit that counts where the law of contact is a table: forces that swing about what presses fell by up to
+ * 7 % as the speed rose, between the shares that are tried.
+ */
+#define KEPT_OF_TABLES UR5E_R(0.9)
+/*
+ * Share of a limit that no later force may reach if slower speeds need not be looked at: motions by Hertz's law grow
+ * nearly with the speed, so what parts for good at one does at slower ones.
+ */
+#define CALM UR5E_R(0.5)
+/* Else shares of the speed that are tried: arms may bounce past 0.5 s at slower speeds and not at that one. */
+#define SHARES 10
 
 /* An impact that is followed until 0.6 s. */
 typedef struct {
@@ -14,6 +27,7 @@ typedef struct {
     ur5e_budget budget;
     ur5e_watch watch;
     bool bounded; /* some force is a bound */
+    bool calm; /* what was asked last cannot press harder at slower speeds */
 } ur5e_pressing;
 
 /*
@@ -25,6 +39,8 @@ static ur5e_real pressed_by(ur5e_pressing *k, ur5e_real speed, ur5e_real matters
     ur5e_peak peak;
     k->watch.matters = matters;
     k->watch.depth = ur5e_law_depth(k->impact.region, matters);
+    k->watch.apart = UR5E_R(0.0);
+    k->watch.settled = false;
     k->watch.late = UR5E_R(0.0);
     k->watch.before = UR5E_R(0.0);
     k->watch.last = UR5E_R(0.0);
@@ -45,42 +61,77 @@ static bool keeps(ur5e_pressing *k, const ur5e_region *region, ur5e_real speed, 
     int last;
     ur5e_kinds_of_motors(&k->p, &first, &last);
     bool kept = true;
+    k->watch.slower = true;
+    k->calm = region->law == NULL;
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = ur5e_impact_prepare(region, &k->p, motors, limit, &k->impact) == UR5E_OK
-            && pressed_by(k, speed, UR5E_KEPT*limit) <= UR5E_KEPT*limit;
+            && pressed_by(k, speed, CALM*limit) <= UR5E_KEPT*limit;
+        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }
 
-static void prepare_pressing(const ur5e_params *p, ur5e_pressing *k)
+static void prepare_pressing(const ur5e_params *p, ur5e_real until, ur5e_pressing *k)
 {
     k->p = *p;
-    k->p.horizon = UR5E_FMAX(UR5E_HORIZON(p), PRESSED_UNTIL);
+    k->p.horizon = UR5E_FMAX(UR5E_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
     k->budget.stop_above = UR5E_REAL_MAX;
     k->budget.watch = NULL;
+    k->watch.slower = false;
     k->bounded = false;
+    k->calm = false;
 }
 
-/* The largest speed up to one at which what presses keeps a limit; 0 if none was found. */
+/* A speed at which a proven bound keeps a limit; 0 if there is none. */
+static ur5e_real bounded_speed(ur5e_pressing *k, const ur5e_region *region, ur5e_real limit)
+{
+    int first;
+    int last;
+    ur5e_kinds_of_motors(&k->p, &first, &last);
+    ur5e_real most = UR5E_R(0.0);
+    bool is_known = true;
+    for (int motors = first; motors <= last && is_known; ++motors) {
+        is_known = ur5e_impact_prepare(region, &k->p, motors, limit, &k->impact) == UR5E_OK;
+        const ur5e_real bound = is_known ? ur5e_bound(&k->impact) : UR5E_R(0.0);
+        is_known = bound > UR5E_R(0.0);
+        most = UR5E_FMAX(most, bound);
+    }
+    return is_known ? UR5E_KEPT*limit/most : UR5E_R(0.0);
+}
+
+/* The largest speed up to one at which and, as far as it is looked, below which what presses keeps a limit; or 0. */
 static ur5e_real slow_down(ur5e_pressing *k, const ur5e_region *region, ur5e_real speed, ur5e_real limit)
 {
-    if (keeps(k, region, speed, limit)) {
-        return speed;
-    }
+    static const ur5e_real shares[SHARES] = {UR5E_R(0.03), UR5E_R(0.06), UR5E_R(0.1), UR5E_R(0.17), UR5E_R(0.25),
+        UR5E_R(0.35), UR5E_R(0.48), UR5E_R(0.62), UR5E_R(0.76), UR5E_R(0.9)};
     ur5e_real low = UR5E_R(0.0);
     ur5e_real high = speed;
-    for (int i = 0; i < SLOWER; ++i) {
+    bool calm = false;
+    if (keeps(k, region, speed, limit)) {
+        low = speed;
+        calm = k->calm;
+    }
+    for (int i = 0; i < SLOWER && low < speed; ++i) {
         const ur5e_real middle = UR5E_R(0.5)*(low + high);
         k->budget.steps = k->p.steps;
         if (keeps(k, region, middle, limit)) {
             low = middle;
+            calm = k->calm;
         } else {
             high = middle;
         }
     }
-    return low;
+    const ur5e_real found = low;
+    for (int i = 0; i < SHARES && !calm && found > UR5E_R(0.0); ++i) {
+        k->budget.steps = k->p.steps;
+        if (!keeps(k, region, shares[i]*found, limit)) {
+            low = i > 0 ? shares[i - 1]*found : UR5E_R(0.0);
+            break;
+        }
+    }
+    return low > UR5E_R(0.0) ? low : UR5E_FMIN(speed, bounded_speed(k, region, limit));
 }
 
 int ur5e_pressing_force_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e_real n[3],
@@ -97,7 +148,7 @@ int ur5e_pressing_force_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e
     if (status != UR5E_OK) {
         return status;
     }
-    prepare_pressing(p, &k);
+    prepare_pressing(p, PRESSED_UNTIL, &k);
     ur5e_real found = UR5E_R(0.0);
     int first;
     int last;
@@ -136,8 +187,9 @@ static int find_allowed(const ur5e_region *region, const ur5e_params *p, ur5e_re
         found->speed = safe.speed;
         found->force = safe.force;
         if (region->clamped != 0) {
-            prepare_pressing(p, k);
-            found->speed = slow_down(k, region, safe.speed, region->quasi_static_limit);
+            prepare_pressing(p, PRESSED_AGAIN_UNTIL, k);
+            const ur5e_real share = region->law == NULL ? UR5E_R(1.0) : KEPT_OF_TABLES;
+            found->speed = slow_down(k, region, safe.speed, share*region->quasi_static_limit);
         }
         found->pressed = found->speed < safe.speed ? 1 : 0;
     }
@@ -238,7 +290,7 @@ int ur5e_may_press(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINT
     for (int point = 0; point < UR5E_POINTS && region->clamped != 0 && kept; ++point) {
         const ur5e_real speed = ur5e_arrive_as_it_moves(point, rates, &k.impact.arrival);
         ur5e_impact_forget(&k.impact);
-        prepare_pressing(p, &k);
+        prepare_pressing(p, PRESSED_AGAIN_UNTIL, &k);
         kept = !(speed > UR5E_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;

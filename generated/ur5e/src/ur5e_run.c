@@ -244,7 +244,7 @@ static bool run_phase(ur5e_state *s, ur5e_budget *budget, ur5e_peak *peak)
     const ur5e_real share = rough ? ROUGHLY : UR5E_R(1.0);
     const int shortest = rough ? SHORTEST_ROUGH : SHORTEST;
     ur5e_trial t;
-    int falls = 0; /* steps of a falling force since it was looked whether the rest matters */
+    int falls = 0; /* steps of a falling force, or of none, since it was looked whether the rest matters */
     while (s->ticks > 0) {
         if (budget->steps <= 0 || peak->contacts > MOST_CONTACTS) {
             return false;
@@ -266,7 +266,7 @@ static bool run_phase(ur5e_state *s, ur5e_budget *budget, ur5e_peak *peak)
         }
         tick(s, was == TAKEN_AND_STRAIGHT);
         const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
-        falls += fell ? 1 : 0;
+        falls += fell && s->phase->settles && !(s->rise > UR5E_R(0.0)) ? 1 : 0;
         peak->ended = fell && (peak->force > budget->stop_above || (rough && !s->touching));
         if (budget->watch != NULL) {
             peak->ended = ur5e_pass(s, budget->watch);

@@ -43,6 +43,9 @@ typedef struct {
 struct ur5e_watch {
     ur5e_real matters; /* force that may still come, N */
     ur5e_real depth; /* of the skin under it, m */
+    bool slower; /* whether slower speeds matter, so that later contacts count earlier */
+    ur5e_real apart; /* when robot and body last were so, s; 0 for never */
+    bool settled; /* no force that matters can come */
     ur5e_real late; /* the largest force from 0.5 s on, N */
     ur5e_real before, last; /* forces of the last steps, N */
 };

@@ -66,7 +66,8 @@ static void let_stand(const ur5e_impact *impact, ur5e_real contact, bool release
     int active = 0;
     phase->compliance = UR5E_R(0.0);
     phase->reach = UR5E_R(0.0);
-    phase->settles = !phase->damped;
+    const bool pushes_on = phase->drift > UR5E_R(0.0) && !impact->gives_way;
+    phase->settles = !phase->damped && !pushes_on;
     for (int i = 0; i < modes->count; ++i) {
         const bool body = impact->gives_way && i == modes->count - 1;
         const ur5e_real weight = modes->row[i]*modes->row[i];

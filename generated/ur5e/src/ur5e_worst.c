@@ -12,6 +12,9 @@
 #define NARROW UR5E_R(0.01)
 #define AROUND 6
 #define MOST_ROUNDS 16
+/* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
+#define STARTS 3
+#define ALIKE UR5E_R(0.94)
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (UR5E_R(1.0) - UR5E_KEPT)
 
@@ -21,7 +24,9 @@ typedef struct {
     ur5e_real speed;
     ur5e_real n[3]; /* the worst so far */
     ur5e_real force;
+    ur5e_real tried; /* force of the last direction that was tried */
     bool bounded, unknown;
+    bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
 /* Tries a direction over those in which the robot moves; says whether it is worse than all before. */
@@ -40,7 +45,9 @@ static bool try_direction(const ur5e_region *region, const ur5e_params *p, const
     if (status == UR5E_OK) {
         status = ur5e_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->lost = w->lost || status == UR5E_SINGULAR;
     w->unknown = w->unknown || (status != UR5E_OK && status != UR5E_BOUNDED && status != UR5E_SINGULAR);
+    w->tried = found.force;
     const bool worse = (status == UR5E_OK || status == UR5E_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
@@ -62,6 +69,50 @@ static void direction_of(int k, ur5e_real along[3])
     along[1] = flat*UR5E_SIN(turn);
     along[2] = up;
 }
+
+#if UR5E_REACH > 1
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const ur5e_region *region, const ur5e_params *p, hardest *w)
+{
+    const ur5e_real (*const J)[UR5E_N] = (const ur5e_real (*)[UR5E_N])&w->impact.arrival.links.J[3*w->point];
+    ur5e_matrix square;
+    ur5e_matrix vectors;
+    ur5e_real values[UR5E_SYSTEM];
+    for (int k = 0; k < UR5E_REACH; ++k) {
+        for (int l = 0; l < UR5E_REACH; ++l) {
+            const ur5e_real *const a = ur5e_directions[k];
+            const ur5e_real *const b = ur5e_directions[l];
+            square[k][l] = UR5E_R(0.0);
+            for (int i = 0; i < UR5E_N; ++i) {
+                const ur5e_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
+                const ur5e_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                square[k][l] += ur5e_has_motor[i] ? by_a*by_b : UR5E_R(0.0);
+            }
+        }
+    }
+    if (!ur5e_spectrum(UR5E_REACH, UR5E_EPSILON*UR5E_EPSILON, square, values, vectors)) {
+        w->unknown = true;
+        return;
+    }
+    int least = 0;
+    for (int k = 1; k < UR5E_REACH; ++k) {
+        least = values[k] < values[least] ? k : least;
+    }
+    const ur5e_real *const a = vectors[(least + 1) % UR5E_REACH];
+    const ur5e_real *const b = vectors[(least + 2) % UR5E_REACH];
+    for (int k = 0; k < (UR5E_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
+        const ur5e_real turn = HALF_A_TURN*(ur5e_real)k/(ur5e_real)OVER_A_CIRCLE;
+        ur5e_real along[3] = {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
+        for (int l = 0; l < UR5E_REACH; ++l) {
+            along[l] = UR5E_REACH > 2 ? UR5E_COS(turn)*a[l] + UR5E_SIN(turn)*b[l] : a[l];
+        }
+        (void)try_direction(region, p, along, w);
+    }
+}
+#endif
 
 /* Looks around the worst, wider where that helps. */
 static void look_around(const ur5e_region *region, const ur5e_params *p, hardest *w)
@@ -91,6 +142,39 @@ static void look_around(const ur5e_region *region, const ur5e_params *p, hardest
     }
 }
 
+/* Looks around the directions that were hardest, beside the hardest, of those over the ball. */
+static void look_elsewhere(const ur5e_region *region, const ur5e_params *p, int count, ur5e_real *forces, hardest *w)
+{
+    for (int start = 0; start < STARTS; ++start) {
+        const ur5e_real n[3] = {w->n[0], w->n[1], w->n[2]};
+        const ur5e_real force = w->force;
+        const bool bounded = w->bounded;
+        int best = 0;
+        for (int k = 1; k < count; ++k) {
+            best = forces[k] > forces[best] ? k : best;
+        }
+        if (!(forces[best] > UR5E_R(0.0))) {
+            return;
+        }
+        direction_of(best, w->n);
+        w->force = forces[best];
+        for (int k = 0; k < count; ++k) {
+            ur5e_real along[3];
+            direction_of(k, along);
+            const ur5e_real cosine = along[0]*w->n[0] + along[1]*w->n[1] + along[2]*w->n[2];
+            forces[k] = UR5E_FABS(cosine) > ALIKE ? UR5E_R(0.0) : forces[k];
+        }
+        look_around(region, p, w);
+        if (!(w->force > force)) {
+            w->force = force;
+            w->bounded = bounded;
+            for (int k = 0; k < 3; ++k) {
+                w->n[k] = n[k];
+            }
+        }
+    }
+}
+
 /* Looks everywhere. */
 static int find_hardest(const ur5e_region *region, const ur5e_params *p, hardest *w, ur5e_worst_direction_t *out)
 {
@@ -98,11 +182,19 @@ static int find_hardest(const ur5e_region *region, const ur5e_params *p, hardest
     w->force = UR5E_R(0.0);
     w->bounded = false;
     w->unknown = false;
+    w->lost = false;
+    ur5e_real forces[OVER_A_BALL];
     for (int k = 0; k < count; ++k) {
         ur5e_real along[3];
         direction_of(k, along);
         (void)try_direction(region, p, along, w);
+        forces[k] = w->tried;
     }
+#if UR5E_REACH > 1
+    if (w->lost) {
+        try_across(region, p, w);
+    }
+#endif
     if (w->unknown) {
         return UR5E_UNRESOLVED;
     }
@@ -111,6 +203,7 @@ static int find_hardest(const ur5e_region *region, const ur5e_params *p, hardest
     }
     const ur5e_real seen = w->force;
     look_around(region, p, w);
+    look_elsewhere(region, p, count, forces, w);
     if (w->unknown) { /* so may be the hardest */
         return UR5E_UNRESOLVED;
     }

@@ -50,6 +50,33 @@ static void rate_of_depth(const impact *p, const state *s, double h, double *lag
     }
 }
 
+/*
+ * How long robot and body stay apart, whatever vibrates: nothing adds to its energy, so that row z' is at most
+ * |row| times the root of twice that, and rounding.
+ */
+static double apart(const prepared *linear, const robot *of, double speed, const state *s)
+{
+    const long m = linear->size;
+    double gap = speed*s->time - s->body;
+    double twice = 0.0;
+    double row = 0.0;
+    for (long i = 0; i < m; ++i) {
+        const double rate = linear->rate*s->z[m + i];
+        double held = 0.0;
+        double size = 0.0;
+        for (long j = 0; j < m; ++j) {
+            const double pull = of->stiffness[i*of->stride + j]*s->z[j];
+            held += pull;
+            size += fabs(pull);
+        }
+        gap += linear->row[i]*s->z[i];
+        twice += rate*rate + s->z[i]*held + 1e-14*fabs(s->z[i])*size;
+        row += linear->row[i]*linear->row[i];
+    }
+    const double closing = speed - s->speed + sqrt(row*fmax(twice, 0.0));
+    return -gap/fmax(closing, 1e-300);
+}
+
 /* A step, or none if it must be shorter. */
 static void step(const impact *p, const prepared *linear, double speed, state *s)
 {
@@ -127,13 +154,42 @@ static void step(const impact *p, const prepared *linear, double speed, state *s
     }
 }
 
-static void run(const impact *p, const prepared *linear, double speed, double until, state *s)
+/* A step on which they stay apart. */
+static void fly(const prepared *linear, long at, state *s)
+{
+    const level *const l = &linear->level[at];
+    double z[STATES] = {0};
+    apply(linear->states, l->turn, s->z, z);
+    memcpy(s->z, z, sizeof(double)*(size_t)linear->states);
+    s->body += l->h*s->speed;
+    s->bent *= l->fade;
+    s->h = l->h;
+    s->time += l->h;
+    s->past = 0;
+    s->before = 0.0;
+    s->shallow = 0.0;
+    s->depth = 0.0;
+    ++s->steps;
+}
+
+static void run(const impact *p, const robot *of, const prepared *linear, double speed, double until, state *s)
 {
     s->at = 0;
     for (;;) {
         const double left = until - s->time;
-        if (s->at >= linear->levels) {
-            s->at = linear->levels - 1;
+        if (s->at >= linear->pressed) {
+            s->at = linear->pressed - 1;
+        }
+        if (p->flies && s->time > 0.0 && !(s->now > 0.0)) {
+            const double most = fmin(apart(linear, of, speed, s), left);
+            long at = linear->levels - 1;
+            while (at >= linear->pressed && linear->level[at].h > most) {
+                --at;
+            }
+            if (at >= linear->pressed) {
+                fly(linear, at, s);
+                continue;
+            }
         }
         while (s->at > 0 && linear->level[s->at].h > left) {
             --s->at;
@@ -163,13 +219,13 @@ static long follow(const impact *p, double speed, int led, double *peak, double 
     state s;
     memset(&s, 0, sizeof s);
     if (led) {
-        run(p, &led_steps, speed, fmin(p->release, p->horizon), &s);
+        run(p, &p->led, &led_steps, speed, fmin(p->release, p->horizon), &s);
         if (p->release < p->horizon) {
             release(p, &s);
         }
     }
     if (!led || p->release < p->horizon) {
-        run(p, &loose_steps, speed, p->horizon, &s);
+        run(p, &p->loose, &loose_steps, speed, p->horizon, &s);
     }
     *peak = fmax(*peak, s.peak);
     *late = fmax(*late, s.late);

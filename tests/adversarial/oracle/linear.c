@@ -139,6 +139,8 @@ void prepare(const impact *p, const robot *of, prepared *out)
     for (double h = p->shortest; h < 0.75*p->longest && out->levels < LEVELS; h *= 2.0) {
         ++out->levels;
     }
+    out->pressed = out->levels;
+    out->levels = p->flies && out->levels + FLIGHT <= LEVELS ? out->levels + FLIGHT : out->levels;
     double h = p->shortest;
     int halvings = 0;
     for (; norm*h > 0.25; h *= 0.5) {

@@ -22,6 +22,7 @@
 #define MOST 32            /* coordinates */
 #define STATES (2*MOST)    /* z, then z' over `rate` */
 #define LEVELS 24
+#define FLIGHT 6          /* levels out of contact beyond those in it */
 
 enum { LOOSE_ALONE = 1, LED_FIRST = 2 }; /* what to integrate: the larger force counts */
 
@@ -40,7 +41,8 @@ typedef struct {
     long points; /* 0 for that */
     double scale;     /* force by which bends are measured from the start, N */
     double tolerance; /* most bend of the force over a step, over the largest force */
-    double longest, shortest; /* steps, s */
+    double longest, shortest; /* steps, s; of longest while something may touch */
+    long flies; /* whether nothing but joints' springs pulls, so that steps may be longer out of contact */
 } impact;
 
 /* A response to f = 1, f = s and f = s^2, s being the time since the step began. */
@@ -60,6 +62,7 @@ typedef struct {
 
 typedef struct {
     long size, states, levels;
+    long pressed; /* levels in contact */
     double rate;
     double row[MOST];
     int pulled;
