@@ -147,6 +147,7 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
+    s->root = t->root;
     s->x = t->x;
     ++s->past;
     return straight ? TAKEN_AND_STRAIGHT : TAKEN;
@@ -163,6 +164,7 @@ static void touch(robot_state *s)
     s->rise = ROBOT_R(0.0);
     s->bump = ROBOT_R(0.0);
     s->now = ROBOT_R(0.0);
+    s->root = ROBOT_R(0.0);
 }
 
 /* A step out of contact. */

@@ -33,7 +33,7 @@ typedef struct {
     robot_real bump; /* what the bend adds to the force on average of the last step */
     robot_real f, rise; /* force, and by how much it grew in the last step */
     robot_real u, u_before; /* deformation of the skin and of what stands */
-    robot_real now; /* depth of the skin */
+    robot_real now, root; /* depth of the skin, and its root under Hertz's law */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
     robot_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -58,7 +58,7 @@ typedef struct {
     robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
     robot_real x, v; /* of the contact point without the force at the end */
     robot_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    robot_real u, depth;
+    robot_real u, depth, root;
 } robot_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */

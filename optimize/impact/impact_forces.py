@@ -129,9 +129,9 @@ def contact_forces(
     parameters: MatrixExpression = ca.vertcat(*given)
     n = dynamics.springs.shape[0]
     damping = ca.Sparsity(n, n) if D is None else D.sparsity()
-    velocity: MatrixExpression = dynamics.velocity
     patterns = (tuple(each.compress()) for each in (dynamics.gains.sparsity(), damping))
     steps = n, substeps, *patterns, dynamics.rigid, K_V is not None
+    velocity: MatrixExpression = dynamics.velocity
     start = ca.vertcat(
         ca.MX.zeros(2 * n),
         velocity,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import json
 import re
 import shlex
 import shutil
@@ -42,6 +43,14 @@ def test_c_and_python_print_the_speed_that_the_page_states(tmp_path: Path) -> No
     with contextlib.redirect_stdout(said):
         exec(PYTHON, {})
     assert f"; {speed:.2f} m/s keep every limit" in said.getvalue()
+
+
+def test_readme_says_what_safe_speeds_cost() -> None:
+    costs = json.loads((ROOT / "generated/panda/manifest.json").read_text())["costs"]["functions"]
+    mean = {f["name"].removeprefix("panda_safe_speed"): f["m7"]["mean"] / 1e6 for f in costs}
+    said = re.search(r"([\d.]+) million instructions.*?([\d.]+) million for driven", README, re.S)
+    assert said is not None
+    assert [float(x) for x in said.groups()] == [round(mean[x], 2) for x in ("", " (driven)")]
 
 
 def test_readme_shows_commands() -> None:

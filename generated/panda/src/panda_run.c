@@ -147,6 +147,7 @@ static outcome step_pressed(panda_state *s, panda_trial *t, panda_real bends, in
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
+    s->root = t->root;
     s->x = t->x;
     ++s->past;
     return straight ? TAKEN_AND_STRAIGHT : TAKEN;
@@ -163,6 +164,7 @@ static void touch(panda_state *s)
     s->rise = PANDA_R(0.0);
     s->bump = PANDA_R(0.0);
     s->now = PANDA_R(0.0);
+    s->root = PANDA_R(0.0);
 }
 
 /* A step out of contact. */

@@ -33,7 +33,7 @@ typedef struct {
     panda_real bump; /* what the bend adds to the force on average of the last step */
     panda_real f, rise; /* force, and by how much it grew in the last step */
     panda_real u, u_before; /* deformation of the skin and of what stands */
-    panda_real now; /* depth of the skin */
+    panda_real now, root; /* depth of the skin, and its root under Hertz's law */
     panda_real rest; /* deflection of the body out of contact */
     panda_real depth; /* of the skin at the largest force so far */
     panda_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -58,7 +58,7 @@ typedef struct {
     panda_real amplitude[PANDA_MODES], rate[PANDA_MODES];
     panda_real x, v; /* of the contact point without the force at the end */
     panda_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    panda_real u, depth;
+    panda_real u, depth, root;
 } panda_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */

@@ -147,6 +147,7 @@ static outcome step_pressed(rmin_state *s, rmin_trial *t, rmin_real bends, int s
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
+    s->root = t->root;
     s->x = t->x;
     ++s->past;
     return straight ? TAKEN_AND_STRAIGHT : TAKEN;
@@ -163,6 +164,7 @@ static void touch(rmin_state *s)
     s->rise = RMIN_R(0.0);
     s->bump = RMIN_R(0.0);
     s->now = RMIN_R(0.0);
+    s->root = RMIN_R(0.0);
 }
 
 /* A step out of contact. */

@@ -33,7 +33,7 @@ typedef struct {
     rmin_real bump; /* what the bend adds to the force on average of the last step */
     rmin_real f, rise; /* force, and by how much it grew in the last step */
     rmin_real u, u_before; /* deformation of the skin and of what stands */
-    rmin_real now; /* depth of the skin */
+    rmin_real now, root; /* depth of the skin, and its root under Hertz's law */
     rmin_real rest; /* deflection of the body out of contact */
     rmin_real depth; /* of the skin at the largest force so far */
     rmin_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -58,7 +58,7 @@ typedef struct {
     rmin_real amplitude[RMIN_MODES], rate[RMIN_MODES];
     rmin_real x, v; /* of the contact point without the force at the end */
     rmin_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    rmin_real u, depth;
+    rmin_real u, depth, root;
 } rmin_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */

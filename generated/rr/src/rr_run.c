@@ -147,6 +147,7 @@ static outcome step_pressed(rr_state *s, rr_trial *t, rr_real bends, int shortes
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
+    s->root = t->root;
     s->x = t->x;
     ++s->past;
     return straight ? TAKEN_AND_STRAIGHT : TAKEN;
@@ -163,6 +164,7 @@ static void touch(rr_state *s)
     s->rise = RR_R(0.0);
     s->bump = RR_R(0.0);
     s->now = RR_R(0.0);
+    s->root = RR_R(0.0);
 }
 
 /* A step out of contact. */

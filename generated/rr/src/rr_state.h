@@ -33,7 +33,7 @@ typedef struct {
     rr_real bump; /* what the bend adds to the force on average of the last step */
     rr_real f, rise; /* force, and by how much it grew in the last step */
     rr_real u, u_before; /* deformation of the skin and of what stands */
-    rr_real now; /* depth of the skin */
+    rr_real now, root; /* depth of the skin, and its root under Hertz's law */
     rr_real rest; /* deflection of the body out of contact */
     rr_real depth; /* of the skin at the largest force so far */
     rr_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -58,7 +58,7 @@ typedef struct {
     rr_real amplitude[RR_MODES], rate[RR_MODES];
     rr_real x, v; /* of the contact point without the force at the end */
     rr_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    rr_real u, depth;
+    rr_real u, depth, root;
 } rr_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */

@@ -147,6 +147,7 @@ static outcome step_pressed(ur5e_state *s, ur5e_trial *t, ur5e_real bends, int s
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
+    s->root = t->root;
     s->x = t->x;
     ++s->past;
     return straight ? TAKEN_AND_STRAIGHT : TAKEN;
@@ -163,6 +164,7 @@ static void touch(ur5e_state *s)
     s->rise = UR5E_R(0.0);
     s->bump = UR5E_R(0.0);
     s->now = UR5E_R(0.0);
+    s->root = UR5E_R(0.0);
 }
 
 /* A step out of contact. */

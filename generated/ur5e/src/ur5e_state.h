@@ -33,7 +33,7 @@ typedef struct {
     ur5e_real bump; /* what the bend adds to the force on average of the last step */
     ur5e_real f, rise; /* force, and by how much it grew in the last step */
     ur5e_real u, u_before; /* deformation of the skin and of what stands */
-    ur5e_real now; /* depth of the skin */
+    ur5e_real now, root; /* depth of the skin, and its root under Hertz's law */
     ur5e_real rest; /* deflection of the body out of contact */
     ur5e_real depth; /* of the skin at the largest force so far */
     ur5e_real swings; /* most that modes that stand add to the force as they swing, N */
@@ -58,7 +58,7 @@ typedef struct {
     ur5e_real amplitude[UR5E_MODES], rate[UR5E_MODES];
     ur5e_real x, v; /* of the contact point without the force at the end */
     ur5e_real f, bump, base, share; /* force at the end; what its bend adds on the way */
-    ur5e_real u, depth;
+    ur5e_real u, depth, root;
 } ur5e_trial;
 
 /* Goes over to the steps of a phase, the first of a level. */
