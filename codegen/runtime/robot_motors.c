@@ -248,11 +248,14 @@ static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes
         off *= ROBOT_EPSILON;
         modes->noise[i] = off*(off + ROBOT_R(2.0)*ROBOT_SQRT(modes->squared[i]));
     }
-    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+    bool turned = true;
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
+        turned = false;
         for (int i = 0; i < ROBOT_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
                 const robot_real off = dot(bent[i], bent[j]);
                 if (off*off > ROBOT_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    turned = true;
                     const robot_real half = ROBOT_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const robot_real length = ROBOT_FABS(half) + ROBOT_SQRT(half*half + ROBOT_R(1.0));
                     const robot_real t = (half < ROBOT_R(0.0) ? ROBOT_R(-1.0) : ROBOT_R(1.0))/length;

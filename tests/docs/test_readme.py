@@ -35,7 +35,8 @@ def test_c_and_python_print_the_speed_that_the_page_states(tmp_path: Path) -> No
     printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout
     speed, force = map(float, re.findall(r"^([\d.]+) m/s: (\d+) N at most$", printed)[0])
     assert f"Both say {speed:.2f} m/s." in README
-    assert force < body_region("chest").transient_limit
+    limit = body_region("chest").transient_limit
+    assert limit is not None and force < limit
     said = io.StringIO()
     with contextlib.redirect_stdout(said):
         exec(PYTHON, {})

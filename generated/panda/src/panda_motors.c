@@ -248,11 +248,14 @@ static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes
         off *= PANDA_EPSILON;
         modes->noise[i] = off*(off + PANDA_R(2.0)*PANDA_SQRT(modes->squared[i]));
     }
-    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+    bool turned = true;
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
+        turned = false;
         for (int i = 0; i < PANDA_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
                 const panda_real off = dot(bent[i], bent[j]);
                 if (off*off > PANDA_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    turned = true;
                     const panda_real half = PANDA_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const panda_real length = PANDA_FABS(half) + PANDA_SQRT(half*half + PANDA_R(1.0));
                     const panda_real t = (half < PANDA_R(0.0) ? PANDA_R(-1.0) : PANDA_R(1.0))/length;

@@ -248,11 +248,14 @@ static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
         off *= RMIN_EPSILON;
         modes->noise[i] = off*(off + RMIN_R(2.0)*RMIN_SQRT(modes->squared[i]));
     }
-    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+    bool turned = true;
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
+        turned = false;
         for (int i = 0; i < RMIN_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
                 const rmin_real off = dot(bent[i], bent[j]);
                 if (off*off > RMIN_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    turned = true;
                     const rmin_real half = RMIN_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const rmin_real length = RMIN_FABS(half) + RMIN_SQRT(half*half + RMIN_R(1.0));
                     const rmin_real t = (half < RMIN_R(0.0) ? RMIN_R(-1.0) : RMIN_R(1.0))/length;

@@ -248,11 +248,14 @@ static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
         off *= RR_EPSILON;
         modes->noise[i] = off*(off + RR_R(2.0)*RR_SQRT(modes->squared[i]));
     }
-    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+    bool turned = true;
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
+        turned = false;
         for (int i = 0; i < RR_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
                 const rr_real off = dot(bent[i], bent[j]);
                 if (off*off > RR_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    turned = true;
                     const rr_real half = RR_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const rr_real length = RR_FABS(half) + RR_SQRT(half*half + RR_R(1.0));
                     const rr_real t = (half < RR_R(0.0) ? RR_R(-1.0) : RR_R(1.0))/length;

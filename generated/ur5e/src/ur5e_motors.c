@@ -248,11 +248,14 @@ static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
         off *= UR5E_EPSILON;
         modes->noise[i] = off*(off + UR5E_R(2.0)*UR5E_SQRT(modes->squared[i]));
     }
-    for (int sweep = 0; sweep < SWEEPS_OF_SERVO; ++sweep) {
+    bool turned = true;
+    for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
+        turned = false;
         for (int i = 0; i < UR5E_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
                 const ur5e_real off = dot(bent[i], bent[j]);
                 if (off*off > UR5E_EPSILON*modes->squared[i]*modes->squared[j]) {
+                    turned = true;
                     const ur5e_real half = UR5E_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const ur5e_real length = UR5E_FABS(half) + UR5E_SQRT(half*half + UR5E_R(1.0));
                     const ur5e_real t = (half < UR5E_R(0.0) ? UR5E_R(-1.0) : UR5E_R(1.0))/length;
