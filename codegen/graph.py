@@ -145,7 +145,7 @@ class _GraphBuilder:
         self.registers: dict[int, _Signed] = {}
         self.results = [[-1] * size for size in sizes]
 
-    def add(self, function: Matrix, k: int) -> None:
+    def add(self, function: ca.Function, k: int) -> None:
         """Add the k-th instruction of a function."""
         number = function.instruction_id(k)
         reads, writes = function.instruction_input(k), function.instruction_output(k)

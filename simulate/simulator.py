@@ -46,8 +46,8 @@ class Simulator:
         differential: number of states that follow a differential equation; the others come last.
     """
 
-    integrate: Matrix
-    observe: Matrix
+    integrate: ca.Function
+    observe: ca.Function
     body_states: int
     differential: int
 

@@ -14,14 +14,18 @@ from numpy.typing import NDArray
 LEAST_SQUARE = float(np.finfo(np.float32).tiny)
 """Keeps the share of a row of zeros finite; it is lost in the square of any other."""
 
-Matrix = Any
+Matrix = ca.SX | Any
 """A CasADi matrix: SX, MX or DM, in formulas that mix them with each other and with numbers.
 
-CasADi's types have no common base that can be calculated with, and its stubs refuse SX with MX: a
-union of the three fails a thousand times, and a protocol of their operators, which CasADi's
-functions do not take, some 700 times. Public functions of a robot say by overloads that they return
-the kind they are given (``Kind``), and DM for ``Numbers``.
+A checker takes anything for one, and holds what is done with it against SX: names that no matrix
+has, and matrices where something else is wanted, are noticed. CasADi's types have no common base
+that can be calculated with, and its stubs refuse SX with MX: a union of the three fails 1,200
+times. Public functions of a robot say by overloads that they return the kind they are given
+(``Kind``), and DM for ``Numbers``.
 """
+
+MatrixExpression = ca.MX | Any
+"""The same where it is MX in truth, as in programs for Ipopt: held against MX."""
 
 Kind = TypeVar("Kind", ca.SX, ca.MX, ca.DM)
 """The kind of matrix that is given, and returned."""
@@ -33,7 +37,7 @@ Numbers = Sequence[float] | NDArray[Any]
 @lru_cache(maxsize=256)
 def _as_function(
     build: Callable[..., Matrix], sizes: tuple[int, ...], key: tuple[Any, ...]
-) -> Matrix:
+) -> ca.Function:
     symbols = [ca.SX.sym(f"x{i}", size) for i, size in enumerate(sizes)]
     return ca.Function(build.__name__.strip("_"), symbols, [ca.cse(build(*key, *symbols))])
 

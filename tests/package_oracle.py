@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -16,6 +17,7 @@ from softimpact.codegen.samples import Sample
 from softimpact.symbolic import (
     Drives,
     ImpactModel,
+    Matrix,
     Robot,
     directional_giaf,
     dynamic_impact_measure,
@@ -59,7 +61,7 @@ def oracle(package: Generated, sample: Sample) -> dict[str, list[Array]]:
     reduced, chain = model.reduced(q, n), model.chain(q, n, package.manifest.chain_order)
     real, free = model.mobility(q), model.free_mobility(q)
     extremes = extreme_directional_giaf(free, real)
-    values = {
+    values: dict[str, list[Any]] = {
         "mass_matrix": [model.mass_matrix(q)],
         "jacobian": [model.jacobian(q)],
         "generalised_mass_matrix": [model.generalised_mass(q).matrix],
@@ -94,10 +96,10 @@ def loaded(package: Generated, sample: Sample) -> Robot:
 
 def shape_and_joints(
     model: ImpactModel, q: ca.DM, n: ca.DM, sample: Sample
-) -> dict[str, list[ca.DM]]:
+) -> dict[str, list[Matrix]]:
     """Return what has a value for the arm alone or for each joint."""
     J, H = model.jacobian(q), model.rotor_mass_matrix(q)
-    values = {
+    values: dict[str, list[Matrix]] = {
         "manipulability": [manipulability(J), J @ J.T],
         "force_measure": [force_measure(J)],
         "impact_measure": [dynamic_impact_measure(H, J), impact_matrix(H, J)],
@@ -116,7 +118,7 @@ def shape_and_joints(
     }
 
 
-def base_set_free(package: Generated, model: ImpactModel, q: ca.DM) -> dict[str, list[ca.DM]]:
+def base_set_free(package: Generated, model: ImpactModel, q: ca.DM) -> dict[str, list[Matrix]]:
     """Return the impact mitigation of the robot on a floating base."""
     if not package.manifest.floating:
         return {}

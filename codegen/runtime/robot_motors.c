@@ -202,7 +202,7 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
 /* Sweeps that make what modes bend orthogonal, which it nearly is. */
 #define SWEEPS_OF_SERVO 2
 
-static robot_real dot(const robot_real a[ROBOT_SYSTEM], const robot_real b[ROBOT_SYSTEM])
+static robot_real product_of(const robot_real a[ROBOT_SYSTEM], const robot_real b[ROBOT_SYSTEM])
 {
     robot_real sum = ROBOT_R(0.0);
     for (int k = 0; k < ROBOT_SYSTEM; ++k) {
@@ -212,7 +212,7 @@ static robot_real dot(const robot_real a[ROBOT_SYSTEM], const robot_real b[ROBOT
 }
 
 /* Turns two rows by an angle of tangent t. */
-static void turn(robot_real t, robot_real a[ROBOT_SYSTEM], robot_real b[ROBOT_SYSTEM])
+static void turn_both(robot_real t, robot_real a[ROBOT_SYSTEM], robot_real b[ROBOT_SYSTEM])
 {
     const robot_real c = ROBOT_R(1.0)/ROBOT_SQRT(ROBOT_R(1.0) + t*t);
     for (int k = 0; k < ROBOT_SYSTEM; ++k) {
@@ -244,7 +244,7 @@ static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes
             off += root*(ROBOT_FABS(modes->shape[i][j]) + ROBOT_FABS(turned));
 #endif
         }
-        modes->squared[i] = dot(bent[i], bent[i]);
+        modes->squared[i] = product_of(bent[i], bent[i]);
         off *= ROBOT_EPSILON;
         modes->noise[i] = off*(off + ROBOT_R(2.0)*ROBOT_SQRT(modes->squared[i]));
     }
@@ -253,16 +253,16 @@ static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes
         turned = false;
         for (int i = 0; i < ROBOT_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
-                const robot_real off = dot(bent[i], bent[j]);
+                const robot_real off = product_of(bent[i], bent[j]);
                 if (off*off > ROBOT_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
                     const robot_real half = ROBOT_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const robot_real length = ROBOT_FABS(half) + ROBOT_SQRT(half*half + ROBOT_R(1.0));
                     const robot_real t = (half < ROBOT_R(0.0) ? ROBOT_R(-1.0) : ROBOT_R(1.0))/length;
-                    turn(t, bent[i], bent[j]);
-                    turn(t, modes->shape[i], modes->shape[j]);
-                    modes->squared[i] = dot(bent[i], bent[i]);
-                    modes->squared[j] = dot(bent[j], bent[j]);
+                    turn_both(t, bent[i], bent[j]);
+                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = product_of(bent[i], bent[i]);
+                    modes->squared[j] = product_of(bent[j], bent[j]);
                 }
             }
         }

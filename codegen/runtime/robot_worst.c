@@ -77,7 +77,8 @@ static void direction_of(int k, robot_real along[3])
  */
 static void try_across(const robot_region *region, const robot_params *p, hardest *w)
 {
-    const robot_real (*const J)[ROBOT_N] = (const robot_real (*)[ROBOT_N])&w->impact.arrival.links.J[3*w->point];
+    const robot_links_t *const links = &w->impact.arrival.links;
+    const int x = 3*w->point;
     robot_matrix square;
     robot_matrix vectors;
     robot_real values[ROBOT_SYSTEM];
@@ -87,8 +88,8 @@ static void try_across(const robot_region *region, const robot_params *p, hardes
             const robot_real *const b = robot_directions[l];
             square[k][l] = ROBOT_R(0.0);
             for (int i = 0; i < ROBOT_N; ++i) {
-                const robot_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
-                const robot_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                const robot_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
+                const robot_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
                 square[k][l] += robot_has_motor[i] ? by_a*by_b : ROBOT_R(0.0);
             }
         }

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import casadi as ca
 
 from softimpact.symbolic import Contact, Matrix
+from softimpact.symbolic.matrices import MatrixExpression
 
 from .motor_laws import LAW, MotorLaws
 
@@ -97,7 +98,7 @@ def contact_forces(
     step: Matrix,
     nodes: int,
     substeps: int,
-) -> Matrix:
+) -> MatrixExpression:
     """Return the force at ``nodes`` equidistant times, length ``nodes`` [N], differentiable.
 
     Between contacts the force is zero and the body comes back; every contact counts.
@@ -111,7 +112,7 @@ def contact_forces(
         substeps: time steps from node to node.
     """
     D, K_V = dynamics.joint_damping, dynamics.potential
-    parameters = ca.vertcat(
+    given: list[Matrix] = [
         ca.vec(dynamics.mobility),
         dynamics.jacobian.T,
         dynamics.springs,
@@ -124,18 +125,21 @@ def contact_forces(
         ca.vec(dynamics.carried),
         *([] if D is None else [_nonzeros(D)]),
         *([] if K_V is None else [ca.vec(K_V)]),
-    )
+    ]
+    parameters: MatrixExpression = ca.vertcat(*given)
     n = dynamics.springs.shape[0]
     damping = ca.Sparsity(n, n) if D is None else D.sparsity()
     patterns = (tuple(each.compress()) for each in (dynamics.gains.sparsity(), damping))
     steps = n, substeps, *patterns, dynamics.rigid, K_V is not None
+    velocity: MatrixExpression = dynamics.velocity
     start = ca.vertcat(
         ca.MX.zeros(2 * n),
-        dynamics.velocity,
-        dynamics.velocity,
+        velocity,
+        velocity,
         ca.MX.zeros(len(BodyState._fields)),
     )
-    _, forces = _in_a_row(nodes, *steps)(start, parameters, laws.at_nodes(step, substeps, nodes))
+    motors: MatrixExpression = laws.at_nodes(step, substeps, nodes)
+    _, forces = _in_a_row(nodes, *steps)(start, parameters, motors)
     return forces.T
 
 

@@ -22,7 +22,7 @@ from softimpact.symbolic import (
     Matrix,
     Motors,
 )
-from softimpact.symbolic.matrices import Factorisation
+from softimpact.symbolic.matrices import Factorisation, MatrixExpression
 from softimpact.symbolic.robot.rigid import Array
 from softimpact.toolchain import c_compiler, cache_folder
 
@@ -227,7 +227,7 @@ def _peaks(nodes: int) -> ca.Function:
 
 
 def _pull(
-    model: ImpactModel, given: Matrix, nodes: int, substeps: int, parts: Parts
+    model: ImpactModel, given: MatrixExpression, nodes: int, substeps: int, parts: Parts
 ) -> ca.Function:
     """Return (given, p, weights) -> derivative by given of a weighted sum of the forces.
 
@@ -327,12 +327,12 @@ def _split(p: Matrix) -> dict[str, Matrix]:
 
 def _forces(
     model: ImpactModel, given: Matrix, p: Matrix, nodes: int, substeps: int, parts: Parts
-) -> Matrix:
+) -> MatrixExpression:
     n, R, N = len(model.independent), rigid(model), model.robot.n
     d, v = n * bool(model.robot.damping.any()), n * _has_potential(model, parts)
     sizes = [n * n, n, n, n, n * n, n * len(R), N * ("rotors" in parts), int("cover" in parts)]
     offsets = np.cumsum([0, *sizes, d * d, v * v]).tolist()
-    pieces = ca.vertsplit(given, offsets)
+    pieces: list[Matrix] = ca.vertsplit(given, offsets)
     mobility, jacobian, velocity, springs, gains, carried, rotors, cover, drag, potential = pieces
     pattern = ca.DM(model.position_gains(ca.SX.sym("q", N)).sparsity(), 1)
     damping = model.drives.damping_gains

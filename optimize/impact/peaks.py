@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from softimpact.symbolic import Matrix
+from softimpact.symbolic.matrices import MatrixExpression
 from softimpact.symbolic.robot.rigid import Array
 
 WINDOWS = 2
@@ -27,7 +28,7 @@ LEAST_CURVATURE = 1e-9
 """Curvature [N] below which three forces lie on a line."""
 
 
-def peaks_in_windows(forces: Matrix, boundary: Matrix) -> Matrix:
+def peaks_in_windows(forces: Matrix, boundary: Matrix) -> MatrixExpression:
     """Return the largest force before and from a node on, length ``WINDOWS`` [N].
 
     Args:

@@ -19,7 +19,7 @@ from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM, Limits
 from softimpact.symbolic.dynamics.equations_of_motion import mass_matrix
 from softimpact.symbolic.dynamics.kinematics import contact_point_jacobian
 from softimpact.symbolic.impact.motors import refuse_held
-from softimpact.symbolic.matrices import Factorisation
+from softimpact.symbolic.matrices import Factorisation, MatrixExpression
 from softimpact.toolchain import c_compiler
 
 from .compiled import compiled_functions
@@ -142,16 +142,17 @@ def _forces(
     contact: Contact,
     motors: Motors,
     horizon: float,
-) -> Matrix:
+) -> MatrixExpression:
     drives, n = model.drives, model.robot.n
     gains = ca.sparsify(ca.diag(ca.DM(drives.gains)))
+    damping = ca.DM.zeros(n) if drives.damping_gains is None else ca.DM(drives.damping_gains)
     dynamics = ImpactDynamics(
         mobility=mobility,
         jacobian=jacobian,
         springs=ca.MX(ca.DM(drives.springs)),
         rotor_mobility=ca.MX(1 / known_rotors(model)),
         gains=ca.MX(gains),
-        damping=ca.MX(ca.DM.zeros(n) if drives.damping_gains is None else drives.damping_gains),
+        damping=ca.MX(damping),
         velocity=rate,
         joint_damping=_joint_damping(model),
     )

@@ -19,6 +19,7 @@ import casadi as ca
 import numpy as np
 
 from softimpact.symbolic import Matrix
+from softimpact.symbolic.matrices import MatrixExpression
 from softimpact.symbolic.robot.rigid import Array, Indices
 
 from ..bounds import row
@@ -103,7 +104,7 @@ def hardware_function(study: Study, parts: Parts) -> ca.Function:
     """Return v -> log10 of the parts that impacts feel, and its derivative."""
     v = ca.SX.sym("v", study.range.lower.size)
     hardware = _hardware(study, v)
-    values = {
+    values: dict[str, Any] = {  # parts that are not sought may be None
         "springs": hardware.springs,
         "rotors": hardware.reflected_rotors,
         "masses": hardware.masses,
@@ -175,7 +176,7 @@ def problem_functions(program: Program, shape: NlpShape) -> dict[str, ca.Functio
     levels, speeds, *by_own = _allowed(of, scenarios, O)(own)
     value, slope = [], []
 
-    def placed(of_v: Matrix, of_q: Matrix, k: int, of_own: Matrix) -> Matrix:
+    def placed(of_v: Matrix, of_q: Matrix, k: int, of_own: Matrix) -> MatrixExpression:
         """Put a derivative by v, q of one posture and own into a row of all variables."""
         rows = of_v.shape[0]
         before, after = ca.DM(rows, n * k), ca.DM(rows, n * (K - 1 - k))
@@ -198,7 +199,7 @@ def problem_functions(program: Program, shape: NlpShape) -> dict[str, ca.Functio
         slope.append(placed(ca.mtimes(springs, by_v), by_x[:, :n], k, of_own))
     g, J = ca.vertcat(*value), ca.vertcat(*slope)
     at_speed = ca.vertcat(*[given[K + c][SPEED] for c in range(C)])
-    cost = of.cost(own, scenarios, at_speed)
+    cost: MatrixExpression = of.cost(own, scenarios, at_speed)
     slope_of_cost = ca.densify(ca.jacobian(cost, x)).T
     return {
         "f": ca.Function("nlp_f", [x, p], [cost], ["x", "p"], ["f"]),

@@ -69,7 +69,7 @@ def factors(
         other_mass=other_mass,
     )
     robot = scene.model.robot
-    own = len(scene.q) - len(found.impulse.joints)  # a floating base comes first
+    own = len(scene.q) - found.impulse.joints.shape[0]  # a floating base comes first
     result: dict[str, Any] = {
         "robot": robot.name,
         "joints": robot.joint_names[own:],

@@ -8,6 +8,7 @@ for any point of any body. Two functions are for drawing: where bodies are, and 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -59,7 +60,7 @@ class PlacedContact(ImpactModel):
     contact: Matrix = (0.0, 0.0, 0.0)
     moved_by: Matrix = ()
 
-    def jacobian(self, q: Matrix, axes_of: int = BASE) -> Matrix:
+    def jacobian(self, q: Any, axes_of: int = BASE) -> Any:
         """Return J of the point in the base's axes, whatever axes are asked for."""
         return placed_point_jacobian(self.robot, q, self.contact, self.moved_by)
 

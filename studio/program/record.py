@@ -118,11 +118,11 @@ def print_program(found: ProgramResult, out: Path | None) -> None:
 def in_a_sentence(record: dict[str, Any]) -> str:
     """Return how long a program takes when it is slowed down."""
     before, after = record["time_before"], record["time_after"]
-    formula = record["iso"]["time_after"]
+    formula, ratio = record["iso"]["time_after"], after / before
+    longer = f"+{100 * (ratio - 1):.3g} %" if ratio < 4 else f"{ratio:.3g} times as long"
     return (
-        f"{before:.4g} s become {after:.4g} s (+{100 * (after / before - 1):.3g} %; by the "
-        f"two-body formula {formula:.4g} s); {record['slowed']} of {record['samples']} samples "
-        "slow down"
+        f"{before:.4g} s become {after:.4g} s ({longer}; by the two-body formula {formula:.4g} s); "
+        f"{record['slowed']} of {record['samples']} samples slow down"
     )
 
 

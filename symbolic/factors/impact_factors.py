@@ -171,7 +171,7 @@ def impact_factors(
     own = slice(BASE_COORDINATES if floating else 0, None)
     row = ca.DM(direction_jacobian(model.robot, model.tip, angles, n))
     impulse = impulse_along(M, rotors, row.T, speed, restitution, 1 / other_mass, G)
-    H = M + rotor_mass(rotors, G)
+    H = ca.DM(M + rotor_mass(rotors, G))
     return ImpactFactors(
         rank=rank,
         reflected_mass_free=masses[0],

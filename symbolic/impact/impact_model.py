@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal, overload
+from typing import Any, Literal, overload
 
 import casadi as ca
 import numpy as np
@@ -214,7 +214,7 @@ class ImpactModel(ByContent):
 
     def position_gains(self, q: Matrix) -> Matrix:
         """Return K_p = diag(gains) + k_p M_θθ over the motors, n×n, sparse where it is zero."""
-        gains = ca.diag(self.drives.gains)
+        gains: Any = ca.diag(self.drives.gains)
         gains = self.congruent(q, ca.sparsify(gains) if isinstance(gains, ca.DM) else gains)
         if self.drives.computed_torque_gain is None:
             return gains

@@ -85,7 +85,7 @@ def _with_followers(robot: Robot, locked: Mapping[str, float]) -> dict[str, floa
             follower = coupling.follower
             led = all(name in all_locked for name, _ in coupling.leading)
             if follower is not None and led and follower not in locked:
-                all_locked[follower] = coupling.follow(all_locked.__getitem__)
+                all_locked[follower] = float(coupling.follow(all_locked.__getitem__))
     return all_locked
 
 

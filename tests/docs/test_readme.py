@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import json
 import re
 import shlex
 import shutil
@@ -36,11 +37,20 @@ def test_c_and_python_print_the_speed_that_the_page_states(tmp_path: Path) -> No
     speed, force = map(float, re.findall(r"^([\d.]+) m/s: (\d+) N at most$", printed)[0])
     assert f"Both say {speed:.2f} m/s." in README
     limit = body_region("chest").transient_limit
-    assert limit is not None and force < limit
+    assert limit is not None
+    assert force < limit
     said = io.StringIO()
     with contextlib.redirect_stdout(said):
         exec(PYTHON, {})
     assert f"; {speed:.2f} m/s keep every limit" in said.getvalue()
+
+
+def test_readme_says_what_safe_speeds_cost() -> None:
+    costs = json.loads((ROOT / "generated/panda/manifest.json").read_text())["costs"]["functions"]
+    mean = {f["name"].removeprefix("panda_safe_speed"): f["m7"]["mean"] / 1e6 for f in costs}
+    said = re.search(r"([\d.]+) million instructions.*?([\d.]+) million for driven", README, re.S)
+    assert said is not None
+    assert [float(x) for x in said.groups()] == [round(mean[x], 2) for x in ("", " (driven)")]
 
 
 def test_readme_shows_commands() -> None:

@@ -106,8 +106,8 @@ def test_floating_robot_leaves_the_base_out_of_joint_results() -> None:
     assert found.mitigation is not None
     assert found.spatial is not None
     assert 0 < found.mitigation.imf < found.mitigation.directional_imf < 1
-    assert len(found.impulse.joints) == len(found.impulse.gears) == 12
-    assert len(found.impulse.velocity_change) == 18
+    assert found.impulse.joints.shape == found.impulse.gears.shape == (12,)
+    assert found.impulse.velocity_change.shape == (18,)
     assert len(found.spatial.single_joint_giaf) == len(found.spatial.giaf_by_rotor) == 12
     # only the struck leg's rotors matter much
     assert set(np.argsort(found.spatial.single_joint_giaf)[:3]) == {0, 1, 2}
@@ -145,6 +145,6 @@ def test_a_planar_closed_chain_has_what_a_plane_leaves() -> None:
     assert found.rank == 2
     assert found.spatial is None
     assert 0 < found.mass_ratio < 1
-    assert len(found.impulse.joints) == len(found.impulse.gears) == robot.n
+    assert found.impulse.joints.shape == found.impulse.gears.shape == (robot.n,)
     with pytest.raises(LoopCannotClose):
         impact_factors(model, q + 0.1, [1.0, 0.0, 0.0])
