@@ -202,7 +202,7 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
 /* Sweeps that make what modes bend orthogonal, which it nearly is. */
 #define SWEEPS_OF_SERVO 2
 
-static panda_real dot(const panda_real a[PANDA_SYSTEM], const panda_real b[PANDA_SYSTEM])
+static panda_real product_of(const panda_real a[PANDA_SYSTEM], const panda_real b[PANDA_SYSTEM])
 {
     panda_real sum = PANDA_R(0.0);
     for (int k = 0; k < PANDA_SYSTEM; ++k) {
@@ -212,7 +212,7 @@ static panda_real dot(const panda_real a[PANDA_SYSTEM], const panda_real b[PANDA
 }
 
 /* Turns two rows by an angle of tangent t. */
-static void turn(panda_real t, panda_real a[PANDA_SYSTEM], panda_real b[PANDA_SYSTEM])
+static void turn_both(panda_real t, panda_real a[PANDA_SYSTEM], panda_real b[PANDA_SYSTEM])
 {
     const panda_real c = PANDA_R(1.0)/PANDA_SQRT(PANDA_R(1.0) + t*t);
     for (int k = 0; k < PANDA_SYSTEM; ++k) {
@@ -244,7 +244,7 @@ static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes
             off += root*(PANDA_FABS(modes->shape[i][j]) + PANDA_FABS(turned));
 #endif
         }
-        modes->squared[i] = dot(bent[i], bent[i]);
+        modes->squared[i] = product_of(bent[i], bent[i]);
         off *= PANDA_EPSILON;
         modes->noise[i] = off*(off + PANDA_R(2.0)*PANDA_SQRT(modes->squared[i]));
     }
@@ -253,16 +253,16 @@ static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes
         turned = false;
         for (int i = 0; i < PANDA_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
-                const panda_real off = dot(bent[i], bent[j]);
+                const panda_real off = product_of(bent[i], bent[j]);
                 if (off*off > PANDA_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
                     const panda_real half = PANDA_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const panda_real length = PANDA_FABS(half) + PANDA_SQRT(half*half + PANDA_R(1.0));
                     const panda_real t = (half < PANDA_R(0.0) ? PANDA_R(-1.0) : PANDA_R(1.0))/length;
-                    turn(t, bent[i], bent[j]);
-                    turn(t, modes->shape[i], modes->shape[j]);
-                    modes->squared[i] = dot(bent[i], bent[i]);
-                    modes->squared[j] = dot(bent[j], bent[j]);
+                    turn_both(t, bent[i], bent[j]);
+                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = product_of(bent[i], bent[i]);
+                    modes->squared[j] = product_of(bent[j], bent[j]);
                 }
             }
         }

@@ -77,7 +77,8 @@ static void direction_of(int k, panda_real along[3])
  */
 static void try_across(const panda_region *region, const panda_params *p, hardest *w)
 {
-    const panda_real (*const J)[PANDA_N] = (const panda_real (*)[PANDA_N])&w->impact.arrival.links.J[3*w->point];
+    const panda_links_t *const links = &w->impact.arrival.links;
+    const int x = 3*w->point;
     panda_matrix square;
     panda_matrix vectors;
     panda_real values[PANDA_SYSTEM];
@@ -87,8 +88,8 @@ static void try_across(const panda_region *region, const panda_params *p, hardes
             const panda_real *const b = panda_directions[l];
             square[k][l] = PANDA_R(0.0);
             for (int i = 0; i < PANDA_N; ++i) {
-                const panda_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
-                const panda_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                const panda_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
+                const panda_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
                 square[k][l] += panda_has_motor[i] ? by_a*by_b : PANDA_R(0.0);
             }
         }

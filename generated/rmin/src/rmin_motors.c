@@ -202,7 +202,7 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
 /* Sweeps that make what modes bend orthogonal, which it nearly is. */
 #define SWEEPS_OF_SERVO 2
 
-static rmin_real dot(const rmin_real a[RMIN_SYSTEM], const rmin_real b[RMIN_SYSTEM])
+static rmin_real product_of(const rmin_real a[RMIN_SYSTEM], const rmin_real b[RMIN_SYSTEM])
 {
     rmin_real sum = RMIN_R(0.0);
     for (int k = 0; k < RMIN_SYSTEM; ++k) {
@@ -212,7 +212,7 @@ static rmin_real dot(const rmin_real a[RMIN_SYSTEM], const rmin_real b[RMIN_SYST
 }
 
 /* Turns two rows by an angle of tangent t. */
-static void turn(rmin_real t, rmin_real a[RMIN_SYSTEM], rmin_real b[RMIN_SYSTEM])
+static void turn_both(rmin_real t, rmin_real a[RMIN_SYSTEM], rmin_real b[RMIN_SYSTEM])
 {
     const rmin_real c = RMIN_R(1.0)/RMIN_SQRT(RMIN_R(1.0) + t*t);
     for (int k = 0; k < RMIN_SYSTEM; ++k) {
@@ -244,7 +244,7 @@ static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
             off += root*(RMIN_FABS(modes->shape[i][j]) + RMIN_FABS(turned));
 #endif
         }
-        modes->squared[i] = dot(bent[i], bent[i]);
+        modes->squared[i] = product_of(bent[i], bent[i]);
         off *= RMIN_EPSILON;
         modes->noise[i] = off*(off + RMIN_R(2.0)*RMIN_SQRT(modes->squared[i]));
     }
@@ -253,16 +253,16 @@ static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
         turned = false;
         for (int i = 0; i < RMIN_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
-                const rmin_real off = dot(bent[i], bent[j]);
+                const rmin_real off = product_of(bent[i], bent[j]);
                 if (off*off > RMIN_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
                     const rmin_real half = RMIN_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const rmin_real length = RMIN_FABS(half) + RMIN_SQRT(half*half + RMIN_R(1.0));
                     const rmin_real t = (half < RMIN_R(0.0) ? RMIN_R(-1.0) : RMIN_R(1.0))/length;
-                    turn(t, bent[i], bent[j]);
-                    turn(t, modes->shape[i], modes->shape[j]);
-                    modes->squared[i] = dot(bent[i], bent[i]);
-                    modes->squared[j] = dot(bent[j], bent[j]);
+                    turn_both(t, bent[i], bent[j]);
+                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = product_of(bent[i], bent[i]);
+                    modes->squared[j] = product_of(bent[j], bent[j]);
                 }
             }
         }

@@ -77,7 +77,8 @@ static void direction_of(int k, rmin_real along[3])
  */
 static void try_across(const rmin_region *region, const rmin_params *p, hardest *w)
 {
-    const rmin_real (*const J)[RMIN_N] = (const rmin_real (*)[RMIN_N])&w->impact.arrival.links.J[3*w->point];
+    const rmin_links_t *const links = &w->impact.arrival.links;
+    const int x = 3*w->point;
     rmin_matrix square;
     rmin_matrix vectors;
     rmin_real values[RMIN_SYSTEM];
@@ -87,8 +88,8 @@ static void try_across(const rmin_region *region, const rmin_params *p, hardest 
             const rmin_real *const b = rmin_directions[l];
             square[k][l] = RMIN_R(0.0);
             for (int i = 0; i < RMIN_N; ++i) {
-                const rmin_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
-                const rmin_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                const rmin_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
+                const rmin_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
                 square[k][l] += rmin_has_motor[i] ? by_a*by_b : RMIN_R(0.0);
             }
         }

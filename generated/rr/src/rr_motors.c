@@ -202,7 +202,7 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
 /* Sweeps that make what modes bend orthogonal, which it nearly is. */
 #define SWEEPS_OF_SERVO 2
 
-static rr_real dot(const rr_real a[RR_SYSTEM], const rr_real b[RR_SYSTEM])
+static rr_real product_of(const rr_real a[RR_SYSTEM], const rr_real b[RR_SYSTEM])
 {
     rr_real sum = RR_R(0.0);
     for (int k = 0; k < RR_SYSTEM; ++k) {
@@ -212,7 +212,7 @@ static rr_real dot(const rr_real a[RR_SYSTEM], const rr_real b[RR_SYSTEM])
 }
 
 /* Turns two rows by an angle of tangent t. */
-static void turn(rr_real t, rr_real a[RR_SYSTEM], rr_real b[RR_SYSTEM])
+static void turn_both(rr_real t, rr_real a[RR_SYSTEM], rr_real b[RR_SYSTEM])
 {
     const rr_real c = RR_R(1.0)/RR_SQRT(RR_R(1.0) + t*t);
     for (int k = 0; k < RR_SYSTEM; ++k) {
@@ -244,7 +244,7 @@ static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
             off += root*(RR_FABS(modes->shape[i][j]) + RR_FABS(turned));
 #endif
         }
-        modes->squared[i] = dot(bent[i], bent[i]);
+        modes->squared[i] = product_of(bent[i], bent[i]);
         off *= RR_EPSILON;
         modes->noise[i] = off*(off + RR_R(2.0)*RR_SQRT(modes->squared[i]));
     }
@@ -253,16 +253,16 @@ static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
         turned = false;
         for (int i = 0; i < RR_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
-                const rr_real off = dot(bent[i], bent[j]);
+                const rr_real off = product_of(bent[i], bent[j]);
                 if (off*off > RR_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
                     const rr_real half = RR_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const rr_real length = RR_FABS(half) + RR_SQRT(half*half + RR_R(1.0));
                     const rr_real t = (half < RR_R(0.0) ? RR_R(-1.0) : RR_R(1.0))/length;
-                    turn(t, bent[i], bent[j]);
-                    turn(t, modes->shape[i], modes->shape[j]);
-                    modes->squared[i] = dot(bent[i], bent[i]);
-                    modes->squared[j] = dot(bent[j], bent[j]);
+                    turn_both(t, bent[i], bent[j]);
+                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = product_of(bent[i], bent[i]);
+                    modes->squared[j] = product_of(bent[j], bent[j]);
                 }
             }
         }

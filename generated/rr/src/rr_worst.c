@@ -77,7 +77,8 @@ static void direction_of(int k, rr_real along[3])
  */
 static void try_across(const rr_region *region, const rr_params *p, hardest *w)
 {
-    const rr_real (*const J)[RR_N] = (const rr_real (*)[RR_N])&w->impact.arrival.links.J[3*w->point];
+    const rr_links_t *const links = &w->impact.arrival.links;
+    const int x = 3*w->point;
     rr_matrix square;
     rr_matrix vectors;
     rr_real values[RR_SYSTEM];
@@ -87,8 +88,8 @@ static void try_across(const rr_region *region, const rr_params *p, hardest *w)
             const rr_real *const b = rr_directions[l];
             square[k][l] = RR_R(0.0);
             for (int i = 0; i < RR_N; ++i) {
-                const rr_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
-                const rr_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                const rr_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
+                const rr_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
                 square[k][l] += rr_has_motor[i] ? by_a*by_b : RR_R(0.0);
             }
         }

@@ -202,7 +202,7 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
 /* Sweeps that make what modes bend orthogonal, which it nearly is. */
 #define SWEEPS_OF_SERVO 2
 
-static ur5e_real dot(const ur5e_real a[UR5E_SYSTEM], const ur5e_real b[UR5E_SYSTEM])
+static ur5e_real product_of(const ur5e_real a[UR5E_SYSTEM], const ur5e_real b[UR5E_SYSTEM])
 {
     ur5e_real sum = UR5E_R(0.0);
     for (int k = 0; k < UR5E_SYSTEM; ++k) {
@@ -212,7 +212,7 @@ static ur5e_real dot(const ur5e_real a[UR5E_SYSTEM], const ur5e_real b[UR5E_SYST
 }
 
 /* Turns two rows by an angle of tangent t. */
-static void turn(ur5e_real t, ur5e_real a[UR5E_SYSTEM], ur5e_real b[UR5E_SYSTEM])
+static void turn_both(ur5e_real t, ur5e_real a[UR5E_SYSTEM], ur5e_real b[UR5E_SYSTEM])
 {
     const ur5e_real c = UR5E_R(1.0)/UR5E_SQRT(UR5E_R(1.0) + t*t);
     for (int k = 0; k < UR5E_SYSTEM; ++k) {
@@ -244,7 +244,7 @@ static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
             off += root*(UR5E_FABS(modes->shape[i][j]) + UR5E_FABS(turned));
 #endif
         }
-        modes->squared[i] = dot(bent[i], bent[i]);
+        modes->squared[i] = product_of(bent[i], bent[i]);
         off *= UR5E_EPSILON;
         modes->noise[i] = off*(off + UR5E_R(2.0)*UR5E_SQRT(modes->squared[i]));
     }
@@ -253,16 +253,16 @@ static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
         turned = false;
         for (int i = 0; i < UR5E_SYSTEM; ++i) {
             for (int j = 0; j < i; ++j) {
-                const ur5e_real off = dot(bent[i], bent[j]);
+                const ur5e_real off = product_of(bent[i], bent[j]);
                 if (off*off > UR5E_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
                     const ur5e_real half = UR5E_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
                     const ur5e_real length = UR5E_FABS(half) + UR5E_SQRT(half*half + UR5E_R(1.0));
                     const ur5e_real t = (half < UR5E_R(0.0) ? UR5E_R(-1.0) : UR5E_R(1.0))/length;
-                    turn(t, bent[i], bent[j]);
-                    turn(t, modes->shape[i], modes->shape[j]);
-                    modes->squared[i] = dot(bent[i], bent[i]);
-                    modes->squared[j] = dot(bent[j], bent[j]);
+                    turn_both(t, bent[i], bent[j]);
+                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    modes->squared[i] = product_of(bent[i], bent[i]);
+                    modes->squared[j] = product_of(bent[j], bent[j]);
                 }
             }
         }

@@ -77,7 +77,8 @@ static void direction_of(int k, ur5e_real along[3])
  */
 static void try_across(const ur5e_region *region, const ur5e_params *p, hardest *w)
 {
-    const ur5e_real (*const J)[UR5E_N] = (const ur5e_real (*)[UR5E_N])&w->impact.arrival.links.J[3*w->point];
+    const ur5e_links_t *const links = &w->impact.arrival.links;
+    const int x = 3*w->point;
     ur5e_matrix square;
     ur5e_matrix vectors;
     ur5e_real values[UR5E_SYSTEM];
@@ -87,8 +88,8 @@ static void try_across(const ur5e_region *region, const ur5e_params *p, hardest 
             const ur5e_real *const b = ur5e_directions[l];
             square[k][l] = UR5E_R(0.0);
             for (int i = 0; i < UR5E_N; ++i) {
-                const ur5e_real by_a = a[0]*J[0][i] + a[1]*J[1][i] + a[2]*J[2][i];
-                const ur5e_real by_b = b[0]*J[0][i] + b[1]*J[1][i] + b[2]*J[2][i];
+                const ur5e_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
+                const ur5e_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
                 square[k][l] += ur5e_has_motor[i] ? by_a*by_b : UR5E_R(0.0);
             }
         }
