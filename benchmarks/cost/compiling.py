@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 import casadi as ca
@@ -16,26 +16,22 @@ from expressions import Quantities
 HERE = Path(__file__).parent
 FLAGS = ("-O3", "-march=native", "-ffp-contract=fast", "-DNDEBUG")
 """For C and C++ alike; Pinocchio and Eigen are compiled from their headers."""
-QUICK_FLAGS = ("-O0", *FLAGS[1:])
-"""Where values are compared and times do not matter."""
 
 
-def build_host(
-    folder: Path, rivals: Mapping[str, Quantities], flags: Sequence[str] = FLAGS
-) -> tuple[Path, str]:
+def build_host(folder: Path, rivals: Mapping[str, Quantities]) -> tuple[Path, str]:
     """Return the program and what compiled it."""
     declare(rivals, folder)
     objects, package = [], folder / "panda"
     includes = [f"-I{package / 'include'}", f"-I{HERE}", f"-I{folder}"]
     for source in [*sorted(package.glob("src/*.c")), HERE / "rk4.c", *sorted(folder.glob("*.c"))]:
         objects.append(folder / f"{source.stem}.o")
-        run("gcc", "-std=gnu99", *flags, *includes, "-c", source, "-o", objects[-1])
+        run("gcc", "-std=gnu99", *FLAGS, *includes, "-c", source, "-o", objects[-1])
     program = folder / "host"
     limits = ["-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS", "-DBOOST_MPL_LIMIT_LIST_SIZE=30"]
     libraries = [f"-isystem{path}" for path in include_folders()]
-    told = ["-std=c++17", "-w", *flags, *limits, *includes, *libraries]
-    run("g++", *told, HERE / "host.cpp", *objects, "-o", program, "-lm")
-    return program, f"{run('g++', '--version').splitlines()[0]}, `{' '.join(flags)}`"
+    flags = ["-std=c++17", "-w", *FLAGS, *limits, *includes, *libraries]
+    run("g++", *flags, HERE / "host.cpp", *objects, "-o", program, "-lm")
+    return program, f"{run('g++', '--version').splitlines()[0]}, `{' '.join(FLAGS)}`"
 
 
 def declare(rivals: Mapping[str, Quantities], folder: Path) -> None:

@@ -27,7 +27,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 import casadi as ca  # noqa: E402
 from arm import numbers, urdf  # noqa: E402
 from compiled_packages import Generated  # noqa: E402
-from compiling import FLAGS, QUICK_FLAGS, build_host  # noqa: E402
+from compiling import build_host  # noqa: E402
 from expressions import QUANTITIES, SLOW, Quantities, built_on, our_expressions  # noqa: E402
 from microcontroller import counts  # noqa: E402
 from page import Table, page, processor  # noqa: E402
@@ -70,7 +70,7 @@ def measure(folder: Path, others: Path, quick: bool) -> tuple[Table, str]:
     manifest = generate_package(robot, folder / "panda", chain_order=order)
     package = Generated(robot, manifest.tip, folder / "panda", manifest)
     rivals = {"CasADi": our_expressions(robot), **from_others(robot, others, folder)}
-    program, compiler = build_host(folder, rivals, QUICK_FLAGS if quick else FLAGS)
+    program, compiler = build_host(folder, rivals)
     times = run_host(program, given(robot, order, quick))
     own = {f.name.removeprefix("panda_"): f.flops for f in manifest.functions}
     flops: Table = {

@@ -24,7 +24,7 @@ from softimpact.codegen.functions.impact_factors import directional_factor, impa
 from softimpact.codegen.functions.reductions import reduced_model, reflected_mass
 from softimpact.codegen.functions.symbols import function_over, symbols_of
 from softimpact.codegen.impact_source import DEFAULT_BUDGET, HORIZON, PEAK_ERROR, ImpactSource
-from softimpact.codegen.inputs import ANY, SHARE, Parameter, parameters_of
+from softimpact.codegen.inputs import ANY, SHARE, Parameter, is_elastic, parameters_of
 from softimpact.codegen.manifest import FunctionRecord, ImpactRecord
 from softimpact.codegen.package import TIP
 from softimpact.codegen.render import Package
@@ -93,6 +93,8 @@ def page_package(robot: Robot, drives: Drives) -> Package:
         functions.append(reduced_model(symbols))
     if moves_in_space(replace(at_tip, robot=robot)):
         functions += [impact_factors(symbols), directional_factor(symbols)]
+    if not is_elastic(robot):  # springs of its own: those that the page guesses are not for it
+        drives = replace(drives, elastic=(False,) * robot.n)
     numbers = defaults_of(robot, parameters[: -len(_placed(robot))], drives, Payload())
     return Package(
         prefix=PREFIX,
