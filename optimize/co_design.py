@@ -21,7 +21,7 @@ from .running.workers import as_completed, awake, cores, workers, works_elsewher
 from .search.accurate_springs import accurate_springs
 from .search.branches import branches
 from .search.failure import SolverFailure
-from .search.ipopt import IN_TURN, minimise
+from .search.ipopt import IN_TURN, Begin, Nlp, minimise
 from .search.optima import Optimum, distinct
 from .search.problem import Problem, felt_numbers, peak_force, prepare, study_impacts
 from .search.reach import infeasible, reach, reachable
@@ -244,12 +244,10 @@ def design(
 
 def _answers(problem: Problem, winner: Outcome, results: Sequence[PoseResult]) -> Answers:
     """Return what the winner means: bounds that bind, numbers that matter, and a fair reference."""
-    study, instance, program = problem.study, problem.numbers(), problem.program
-    free, limits = winner.mode == "free", problem.bounds
+    study, instance, free = problem.study, problem.numbers(), winner.mode == "free"
     with IN_TURN:
-        again = minimise(
-            program, instance, limits, winner.q[None, :], winner.springs, winner.others, free=free
-        )
+        end = Begin(winner.q[None, :], winner.springs, winner.others)
+        again = minimise(Nlp(problem.program, instance, problem.bounds), end, free=free)
     meant = meaning(problem, winner, instance, again)
     task = next(r for r in results if r.candidate.pose.name == study.task_pose.name)
     at = task.candidate.q
@@ -326,7 +324,7 @@ def _start(study: Study, candidate: Candidate, mode: Mode, table: Outcome | None
     return Start(candidate.pose.name, mode, points, fallbacks)
 
 
-Begin = Callable[[Study, Candidate, Outcome], tuple[Array, Array]]
+BeginAgain = Callable[[Study, Candidate, Outcome], tuple[Array, Array]]
 """Where a laggard begins again: posture and springs, by the study, its pose and the best found."""
 
 
@@ -342,7 +340,7 @@ def _laggards(
     study: Study,
     poses: Sequence[Candidate],
     outcomes: dict[tuple[str, Mode], Outcome],
-    begin: Begin,
+    begin: BeginAgain,
 ) -> list[Start]:
     """Return another start for free searches that failed or end above the best."""
     found = {name: outcome for (name, mode), outcome in outcomes.items() if mode == "free"}
@@ -359,10 +357,8 @@ def _laggards(
 
 
 def _run(problem: Problem, starts: Sequence[Start], pool: Executor) -> Iterator[Outcome]:
-    numbers = problem.numbers()
-    futures = [
-        pool.submit(solve, problem.program, start, problem.bounds, numbers) for start in starts
-    ]
+    nlp = Nlp(problem.program, problem.numbers(), problem.bounds)
+    futures = [pool.submit(solve, nlp, start) for start in starts]
     for future in as_completed(futures):
         yield future.result()
 

@@ -10,6 +10,7 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array
 
 from ..search.branches import branches
+from ..search.ipopt import Nlp
 from ..search.solve import Mode, Outcome, Start, better, preference, solve
 from ..search.stiffest import Stiffest
 from .dominance import WORTH
@@ -141,7 +142,7 @@ def _improve(
     """Put what is found into ``best``; return the levels that gained by more than rounding."""
     before, problem = dict(best), searches.problem
     jobs = {
-        k: (problem.program, start, problem.bounds, levels[i].numbers)
+        k: (Nlp(problem.program, levels[i].numbers, problem.bounds), start)
         for k, (i, start) in enumerate(tasks)
     }
     for k, outcome in searches.run(what, solve, jobs):

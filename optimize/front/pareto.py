@@ -23,6 +23,7 @@ from ..impact.timing import Timing
 from ..meaning import meaning
 from ..running.workers import Progress, cores, workers, works_elsewhere
 from ..search.failure import SolverFailure
+from ..search.ipopt import Begin, Nlp
 from ..search.problem import Problem, prepare
 from ..search.solve import Outcome, Start, better, preference, search, solve
 from ..search.stiffest import Stiffest, stiffest
@@ -218,7 +219,7 @@ def _seed_held(
         for name, end in ends.items():
             if held[name][i] is not None:
                 start = Start(name, "table", ((end.q, found.springs),))
-                jobs[name, i] = (problem.program, start, problem.bounds, level.numbers)
+                jobs[name, i] = (Nlp(problem.program, level.numbers, problem.bounds), start)
     for (name, i), outcome in searches.run("held from free", solve, jobs):
         known = held[name][i]
         held[name][i] = outcome if known is None else better(known, outcome)
@@ -250,12 +251,11 @@ def _explained(searches: Searches, found: Pareto) -> Pareto:
     points = {id(p.outcome): p for front in told.values() for p in front.points}
     jobs = {}
     for key, point in points.items():
-        o, instance = point.outcome, problem.numbers(point.bound)
-        start = o.q[None, :], o.springs, o.others
-        jobs[key] = (problem.program, instance, problem.bounds, *start, o.mode == "free")
+        o, nlp = point.outcome, Nlp(problem.program, problem.numbers(point.bound), problem.bounds)
+        jobs[key] = (nlp, Begin(o.q[None, :], o.springs, o.others), o.mode == "free")
     meant = {}
     for key, again in searches.run("prices", search, jobs):
-        point, instance = points[key], jobs[key][1]
+        point, instance = points[key], jobs[key][0].instance
         meant[key] = meaning(problem, point.outcome, instance, again, point.bound)
 
     def explained(front: Front) -> Front:

@@ -10,7 +10,7 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array
 
-from ..search.ipopt import Instance, VariableBounds
+from ..search.ipopt import Instance, Nlp, VariableBounds
 from ..search.nlp import Program
 from ..search.solve import Outcome, Start, better, preference, solve
 from ..search.stiffest import Stiffest
@@ -41,7 +41,8 @@ def sweep(
     """
 
     def searched(level: Level, springs: Array) -> Outcome:
-        return solve(program, Start(name, "table", ((end.q, springs),)), bounds, level.numbers)
+        nlp = Nlp(program, level.numbers, bounds)
+        return solve(nlp, Start(name, "table", ((end.q, springs),)))
 
     springs, bound, there = end.springs, end.deflection, []
     for level in levels:

@@ -13,7 +13,7 @@ from softimpact.symbolic.robot.rigid import Array
 from ..posture.tip_pose import tip_poses
 from ..running.workers import as_completed
 from ..search.failure import SolverFailure
-from ..search.ipopt import Found, Instance
+from ..search.ipopt import Begin, Found, Instance, Nlp
 from ..search.minimax import GIVEN_UP, ROUGH, WHOLE, Effort, serves
 from ..search.nlp import NlpShape, task_numbers
 from ..search.solve import Outcome, search
@@ -59,15 +59,6 @@ class ExchangeState:
     def bound(self) -> float:
         """Share of the limit that the NLP says is the least."""
         return self.best.worst * self.unit
-
-
-@dataclass(frozen=True, eq=False)
-class _Start:
-    """Where a search begins: springs, other values, and postures of all poses."""
-
-    springs: Array
-    others: Array | None
-    postures: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,12 +116,11 @@ def exchange(
     instance = _instance(setting, active, poses, unit)
     if thorough:
         known = [limits.vector(*each) for each in starts]
-        shared = setting.program, instance, limits, given[poses]
-        starts = promising(*shared, known, SAMPLED)
-        begun = [_Start(*each, postures) for each in starts]
+        starts = promising(_nlp(setting, instance), given[poses], known, SAMPLED)
+        begun = [Begin(postures, *each) for each in starts]
         found = _until_known(setting, instance, poses, begun)
     else:
-        begun = [_Start(*each, postures) for each in starts]
+        begun = [Begin(postures, *each) for each in starts]
         found = _apart(_searched(setting, instance, poses, begun, free))
     hops, left = HOPS if thorough else 0, np.inf
     effort = ROUGH if thorough else WHOLE
@@ -193,13 +183,17 @@ def _settled(
         found = [*again, *(each for each in found if each is not best)]
 
 
-def _again(best: _Optimum) -> _Start:
-    """Return the start of a search from where another ended."""
-    return _Start(best.found.springs, best.found.others, best.postures)
+def _again(best: _Optimum) -> Begin:
+    """Return where another search goes on: with postures of all poses."""
+    return replace(best.found.end, postures=best.postures)
+
+
+def _nlp(setting: Setting, instance: Instance) -> Nlp:
+    return Nlp(setting.program, instance, setting.limits)
 
 
 def _until_known(
-    setting: Setting, instance: Instance, poses: list[int], starts: Sequence[_Start]
+    setting: Setting, instance: Instance, poses: list[int], starts: Sequence[Begin]
 ) -> list[_Optimum]:
     """Return optima, found roughly, until a search ends in one that is known; postures are held."""
     found: list[_Optimum] = []
@@ -222,15 +216,12 @@ def _hops(setting: Setting, instance: Instance, poses: list[int], best: _Optimum
     Postures are held. Values near the tip, which impacts feel least, come last.
     """
     better: list[_Optimum] = []
-    shared, V = (
-        (setting.program, instance, setting.limits, setting.given[poses]),
-        setting.limits.lower.size,
-    )
+    nlp, V = _nlp(setting, instance), setting.limits.lower.size
     for begin in range(0, V, AT_ONCE):
         v = setting.limits.vector(best.found.springs, best.found.others)
         values = range(begin, min(begin + AT_ONCE, V))
-        hardware = elsewhere(*shared, v, best.found.shares, values)
-        starts = [_Start(*each, setting.given) for each in hardware]
+        hardware = elsewhere(nlp, setting.given[poses], v, best.found.shares, values)
+        starts = [Begin(setting.given, *each) for each in hardware]
         effort = replace(ROUGH, reach=best.found.cost * (1 - FEASIBLE))
         found = _feasible(setting, instance, poses, starts, False, effort)[0]
         better += [each for each in found if each.found.status != GIVEN_UP]
@@ -294,7 +285,7 @@ def _searched(
     setting: Setting,
     instance: Instance,
     poses: list[int],
-    starts: Sequence[_Start],
+    starts: Sequence[Begin],
     free: bool,
     effort: Effort = WHOLE,
 ) -> list[_Optimum]:
@@ -318,16 +309,14 @@ def _feasible(
     setting: Setting,
     instance: Instance,
     poses: list[int],
-    starts: Sequence[_Start],
+    starts: Sequence[Begin],
     free: bool,
     effort: Effort = WHOLE,
 ) -> tuple[list[_Optimum], list[Found]]:
     """Return what searches found that keeps the bounds, and what does not."""
-    shared = setting.program, instance, setting.limits
-    jobs = [
-        setting.pool.submit(search, *shared, s.postures[poses], s.springs, s.others, free, effort)
-        for s in starts
-    ]
+    nlp = _nlp(setting, instance)
+    begun = [replace(start, postures=start.postures[poses]) for start in starts]
+    jobs = [setting.pool.submit(search, nlp, begin, free, effort) for begin in begun]
     optima, missed = [], []
     for job in as_completed(jobs):
         found = job.result()

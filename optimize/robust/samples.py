@@ -10,9 +10,8 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array, Indices
 
-from ..search.ipopt import Instance, VariableBounds, felt
+from ..search.ipopt import Nlp, felt
 from ..search.minimax_point import values_of_bounds
-from ..search.nlp import Program
 from .screening import largest_forces
 
 SAMPLES = 128
@@ -44,9 +43,7 @@ SampledHardware = tuple[Array, Array]
 
 
 def promising(
-    program: Program,
-    instance: Instance,
-    bounds: VariableBounds,
+    nlp: Nlp,
     postures: Array,
     known: Sequence[Array],
     count: int,
@@ -54,29 +51,25 @@ def promising(
     """Return the best of what is known and of samples, best first.
 
     Args:
-        program: the functions.
-        instance: the NLP.
-        bounds: on its variables.
+        nlp: what is to be solved.
         postures: that are held, K×n [rad].
         known: log10 of all values, V each.
         count: number of them returned.
     """
-    random = np.random.default_rng(SEED)
+    random, bounds = np.random.default_rng(SEED), nlp.bounds
     v = random.uniform(bounds.lower, bounds.upper, (SAMPLES, bounds.lower.size))
     for _ in range(SCALED):
-        missed = _missed(program, instance, postures, v)
+        missed = _missed(nlp, postures, v)
         # a deflection over its limit is in proportion to 1/k_s, and its row has the square
         v[:, : bounds.springs] += 0.5 * np.log10(1 + missed)[:, None]
         v = np.clip(v, bounds.lower, bounds.upper)
     v = np.vstack([*known, v])
-    best = _best(program, instance, postures, v, count, range(len(instance.impacts)))
+    best = _best(nlp, postures, v, count, range(len(nlp.instance.impacts)))
     return [bounds.parted(each.v) for each in best]
 
 
 def elsewhere(
-    program: Program,
-    instance: Instance,
-    bounds: VariableBounds,
+    nlp: Nlp,
     postures: Array,
     v: Array,
     shares: Array,
@@ -88,7 +81,7 @@ def elsewhere(
     own, often one at each end: of it the best above is returned, and the best below. Where forces
     are much larger than with v, whose largest share of each impact is known, nothing is returned.
     """
-    found = []
+    found, bounds = [], nlp.bounds
     order, cost = np.argsort(-shares), float(shares.max())
     for i, own in zip(values, v[list(values)], strict=True):
         places = np.linspace(bounds.lower[i], bounds.upper[i], PLACES)
@@ -97,7 +90,7 @@ def elsewhere(
         for side in (far[far < own], far[far > own]):
             moved = np.tile(v, (side.size, 1))
             moved[:, i] = side
-            sides += _best(program, instance, postures, moved, 1, order)
+            sides += _best(nlp, postures, moved, 1, order)
         sides.sort(key=lambda each: each.cost)
         hardly = [k for k in sides[1:] if k.cost <= cost * (1 + HARDLY)]
         found += [k.v for k in [*sides[:1], *hardly] if k.worst <= cost * (1 + HOPELESS)]
@@ -114,8 +107,7 @@ class _Sample:
 
 
 def _best(
-    program: Program,
-    instance: Instance,
+    nlp: Nlp,
     postures: Array,
     v: Array,
     count: int,
@@ -127,8 +119,7 @@ def _best(
     any more are left out.
 
     Args:
-        program: the functions.
-        instance: the NLP.
+        nlp: what is to be solved.
         postures: that are held, K×n [rad].
         v: log10 of all values, m×V.
         count: of what is returned, at most.
@@ -136,40 +127,40 @@ def _best(
     """
     if not v.size:
         return []
-    missed = np.maximum(_missed(program, instance, postures, v), 0.0)
-    worst = _worst(program, instance, postures, v, order[:1])
+    missed = np.maximum(_missed(nlp, postures, v), 0.0)
+    worst = _worst(nlp, postures, v, order[:1])
     least, costs = worst + missed, np.full(len(v), np.inf)
     ranked = np.argsort(least, kind="stable")
     for begin in range(0, len(v), 2 * count):
         some = ranked[begin : begin + 2 * count]
         if np.sort(costs)[min(count, len(v)) - 1] <= least[some[0]]:
             break
-        rest = _worst(program, instance, postures, v[some], order[1:])
+        rest = _worst(nlp, postures, v[some], order[1:])
         worst[some] = np.maximum(worst[some], rest)
         costs[some] = worst[some] + missed[some]
     best = np.argsort(costs, kind="stable")[:count]
     return [_Sample(v[i], float(worst[i]), float(costs[i])) for i in best]
 
 
-def _missed(program: Program, instance: Instance, postures: Array, v: Array) -> Array:
+def _missed(nlp: Nlp, postures: Array, v: Array) -> Array:
     """Return the largest row of any bound for each sample, below zero where all are kept."""
-    some, tasks = postures[:MOST_BENT], instance.tasks[:MOST_BENT]
+    some, tasks = postures[:MOST_BENT], nlp.instance.tasks[:MOST_BENT]
     q, b = np.tile(some, (len(v), 1)), np.tile(tasks, (len(v), 1))
-    rows = values_of_bounds(program, q, np.repeat(v, len(some), axis=0), b)
+    rows = values_of_bounds(nlp.program, q, np.repeat(v, len(some), axis=0), b)
     return np.asarray(rows.reshape(len(v), -1).max(axis=1))
 
 
-def _worst(
-    program: Program, instance: Instance, postures: Array, v: Array, which: Sequence[int] | Indices
-) -> Array:
+def _worst(nlp: Nlp, postures: Array, v: Array, which: Sequence[int] | Indices) -> Array:
     """Return the largest share of each sample in some impacts; zero without any."""
-    y = np.array([felt(program, each) for each in v])
+    instance = nlp.instance
+    y = np.array([felt(nlp.program, each) for each in v])
     shares = np.zeros((len(v), len(which)))
     points = np.array([instance.shape.impacts[i][1] for i in which])
     for point in np.unique(points):
         at = [i for i, own in zip(which, points, strict=True) if own == point]
         poses = postures[[instance.shape.impacts[i][0] for i in at]]
         x = np.column_stack([np.tile(poses, (len(v), 1)), np.repeat(y, len(at), axis=0)])
-        forces = largest_forces(program, int(point), x, np.tile(instance.impacts[at], (len(v), 1)))
+        numbers = np.tile(instance.impacts[at], (len(v), 1))
+        forces = largest_forces(nlp.program, int(point), x, numbers)
         shares[:, points == point] = forces.reshape(len(v), -1) / instance.units[at]
     return np.asarray(shares.max(axis=1, initial=0.0))

@@ -7,9 +7,10 @@ CasADi's virtual machine if it has no compiler. Dask runs the jobs of a worker t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 from softimpact.symbolic import InvalidValue
@@ -42,9 +43,12 @@ class Cluster(Executor):
         self._shipped: dict[int, tuple[Program, Any]] = {}
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Run a job on some worker."""
-        sent = [self._sent(arg) if isinstance(arg, Program) else arg for arg in args]
-        job: Future[Any] = self._executor.submit(fn, *sent, **kwargs)
+        """Run a job on some worker; programs, alone or part of an argument, are sent once."""
+        programs = [_program_of(arg) for arg in args]
+        pairs = zip(args, programs, strict=True)
+        bare = [arg if own is None else _with(arg, None) for arg, own in pairs]
+        sent = [None if own is None else self._sent(own) for own in programs]
+        job: Future[Any] = self._executor.submit(_run, fn, bare, kwargs, *sent)
         return job
 
     def _sent(self, program: Program) -> Any:
@@ -53,6 +57,23 @@ class Cluster(Executor):
             shipped = self._client.scatter(program, broadcast=True)
             self._shipped[id(program)] = program, shipped
         return self._shipped[id(program)][1]
+
+
+def _program_of(argument: Any) -> Program | None:
+    """Return the program that an argument is or has."""
+    found = getattr(argument, "program", argument)
+    return found if isinstance(found, Program) else None
+
+
+def _with(argument: Any, program: Program | None) -> Any:
+    """Return an argument with this program."""
+    return replace(argument, program=program) if hasattr(argument, "program") else program
+
+
+def _run(fn: Callable[..., Any], args: Sequence[Any], named: dict[str, Any], *programs: Any) -> Any:
+    """Run a job, its programs put back; on a worker."""
+    pairs = zip(args, programs, strict=True)
+    return fn(*[arg if own is None else _with(arg, own) for arg, own in pairs], **named)
 
 
 @contextmanager

@@ -19,7 +19,7 @@ from ..machine.coordinates import posture_limits
 from ..posture.tip_pose import posture_error, tip_pose
 from ..solver_options import quiet
 from ..study.study import Study
-from .ipopt import Instance, VariableBounds, one_posture
+from .ipopt import Instance, Nlp, VariableBounds, one_posture
 from .nlp import task_numbers
 from .problem import study_impacts, study_program
 from .solve import Start, solve
@@ -84,7 +84,6 @@ def posture_of_least_force(study: Study, start: Array) -> BestPosture:
     shape = one_posture(len(impacts))
     instance = Instance(shape, task[None, :], impacts, np.full(len(impacts), 100.0))
     program = study_program(free, (impact,))
-    found = solve(
-        program, Start("start", "free", ((start, springs),)), VariableBounds.of(free), instance
-    )
+    nlp = Nlp(program, instance, VariableBounds.of(free))
+    found = solve(nlp, Start("start", "free", ((start, springs),)))
     return BestPosture(found.q, found.force, found.status, found.solved)

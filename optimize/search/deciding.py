@@ -13,8 +13,8 @@ import numpy as np
 
 from softimpact.symbolic.robot.rigid import Array, Indices
 
-from .ipopt import Found, Instance, VariableBounds, impact_forces, minimise
-from .nlp import NlpShape, Program
+from .ipopt import Begin, Found, Instance, Nlp, impact_forces, minimise
+from .nlp import NlpShape
 
 CARRIED_FROM = 0.98
 """Share of the worst force from which on an impact is carried from the start."""
@@ -23,31 +23,21 @@ MOST_EXCESS = 1e-4
 """Share by which an impact that is left out may exceed the worst: forces are no better known."""
 
 
-def minimise_deciding(
-    program: Program,
-    instance: Instance,
-    bounds: VariableBounds,
-    postures: Array,
-    springs: Array,
-    others: Array | None = None,
-    *,
-    free: bool,
-) -> Found:
+def minimise_deciding(nlp: Nlp, begin: Begin, *, free: bool) -> Found:
     """Return what ``minimise`` does, the largest of all forces made small.
 
     Impacts are carried that are near the worst where the search starts, and those that turn out to
     be worse where it ends; from there it goes on.
     """
-    v = bounds.vector(springs, others)
-    shares = instance.shares(impact_forces(program, instance, postures, v))
+    shares = _shares(nlp, begin)
     carried = np.flatnonzero(shares >= CARRIED_FROM * shares.max())
     iterations = 0
     while True:
-        some = _some(instance, carried)
-        found = minimise(program, some, bounds, postures, springs, others, free=free)
+        some = replace(nlp, instance=_some(nlp.instance, carried))
+        found = minimise(some, begin, free=free)
         iterations += found.iterations
-        v = bounds.vector(found.springs, found.others)
-        shares = instance.shares(impact_forces(program, instance, found.postures, v))
+        begin = found.end
+        shares = _shares(nlp, begin)
         worse = np.flatnonzero(shares > found.worst * (1 + MOST_EXCESS))
         fresh = np.setdiff1d(worse, carried)
         shares[carried] = found.shares
@@ -55,7 +45,12 @@ def minimise_deciding(
         if not fresh.size:
             return found
         carried = np.union1d(carried, fresh)
-        postures, springs, others = found.postures, found.springs, found.others
+
+
+def _shares(nlp: Nlp, at: Begin) -> Array:
+    """Return the largest share of each impact."""
+    v = nlp.bounds.vector(at.springs, at.others)
+    return nlp.instance.shares(impact_forces(nlp.program, nlp.instance, at.postures, v))
 
 
 def _some(instance: Instance, carried: Indices) -> Instance:

@@ -114,6 +114,36 @@ class VariableBounds:
         return values[: self.springs][list(self.groups)], values[self.springs :]
 
 
+@dataclass(frozen=True, eq=False)
+class Nlp:
+    """What is to be solved: the functions of a study's NLPs, one with its numbers, and its limits.
+
+    Attributes:
+        program: the functions.
+        instance: the NLP.
+        bounds: on its variables.
+    """
+
+    program: Program
+    instance: Instance
+    bounds: VariableBounds
+
+
+@dataclass(frozen=True, eq=False)
+class Begin:
+    """Where a search begins.
+
+    Attributes:
+        postures: to start from, or that are held, K×n [rad].
+        springs: to start from, length n [N·m/rad].
+        others: values of the other variables to start from; None: the machine as it is.
+    """
+
+    postures: Array
+    springs: Array
+    others: Array | None = None
+
+
 NO_OTHERS = np.empty(0)
 """Values of no other variables."""
 
@@ -162,6 +192,11 @@ class Found:
         """Whether it is a local optimum that keeps all bounds."""
         return self.success and self.violation <= FEASIBLE
 
+    @property
+    def end(self) -> Begin:
+        """Where another search can go on."""
+        return Begin(self.postures, self.springs, self.others)
+
 
 Rank = tuple[bool, bool, float]
 """Not solved, not feasible, and what was made small; or the violation, where it is not."""
@@ -187,33 +222,18 @@ def _solver(program: Program, shape: NlpShape) -> ca.Function:
     return nlp_solver(program, shape, quiet(IPOPT))
 
 
-def minimise(
-    program: Program,
-    instance: Instance,
-    bounds: VariableBounds,
-    postures: Array,
-    springs: Array,
-    others: Array | None = None,
-    *,
-    free: bool,
-) -> Found:
+def minimise(nlp: Nlp, begin: Begin, *, free: bool) -> Found:
     """Run Ipopt, again with other windows of time where one of them hid a peak that matters.
 
-    Args:
-        program: the functions.
-        instance: the NLP.
-        bounds: on its variables.
-        postures: to start from, or that are held, K×n [rad].
-        springs: to start from, length n [N·m/rad].
-        others: values of the other variables to start from; default the machine as it is.
-        free: whether the postures are sought as well.
+    With ``free`` the postures are sought as well.
     """
-    best = _round(program, instance, bounds, postures, bounds.vector(springs, others), free)
+    instance, bounds = nlp.instance, nlp.bounds
+    best = _round(nlp, begin.postures, bounds.vector(begin.springs, begin.others), free)
     iterations = best[0].iterations
     for _ in range(EXCHANGES - 1):
         found, boundaries = best
         v = bounds.vector(found.springs, found.others)
-        forces = impact_forces(program, instance, found.postures, v, found.speeds)
+        forces = impact_forces(nlp.program, instance, found.postures, v, found.speeds)
         shares = instance.shares(forces)
         active = shares > NEARLY_AS_LARGE * shares.max()
         hidden = [
@@ -221,7 +241,7 @@ def minimise(
         ]
         if not any(hidden):
             break
-        again = _round(program, instance, bounds, found.postures, v, free)
+        again = _round(nlp, found.postures, v, free)
         iterations += again[0].iterations
         gained = (found.cost - again[0].cost) / abs(found.cost)
         if rank(again[0]) < rank(found):
@@ -265,15 +285,9 @@ def _loaded(serialised: str) -> ca.Function:
     return ca.Function.deserialize(serialised)
 
 
-def _round(
-    program: Program,
-    instance: Instance,
-    bounds: VariableBounds,
-    postures: Array,
-    v: Array,
-    free: bool,
-) -> tuple[Found, list[int]]:
+def _round(nlp: Nlp, postures: Array, v: Array, free: bool) -> tuple[Found, list[int]]:
     """Run Ipopt once; return what it found and the boundaries of its windows."""
+    program, instance, bounds = nlp.program, nlp.instance, nlp.bounds
     shape, n = instance.shape, program.n
     K, V = shape.postures, program.variables
     postures = np.clip(postures, bounds.q_lower, bounds.q_upper)

@@ -23,9 +23,9 @@ from softimpact.symbolic.robot.rigid import Array
 
 from ..objectives import Objective, WorstForce
 from ..solver_options import FEASIBLE
-from .ipopt import Found, Instance, VariableBounds
+from .ipopt import Begin, Found, Nlp, VariableBounds
 from .minimax_point import Held, Point
-from .nlp import Program, peak_rows
+from .nlp import peak_rows
 
 STEPS = 100
 """Most steps."""
@@ -134,7 +134,6 @@ class _Search:
 
     Attributes:
         held: the NLP.
-        bounds: limits of v.
         at: the best iterate.
         curvature: of the Lagrangian by steps from there, V×V.
         trust: radius within which the model is trusted, in decades.
@@ -143,12 +142,16 @@ class _Search:
     """
 
     held: Held
-    bounds: VariableBounds
     at: Point
     curvature: Array
     trust: float
     penalty: float = 1.0
     asked: frozenset[tuple[int, int]] = frozenset()
+
+    @property
+    def bounds(self) -> VariableBounds:
+        """Limits of v."""
+        return self.held.nlp.bounds
 
     def merit(self, point: Point) -> float:
         """Return what is made small: the worst share, and the penalty on bounds that are missed."""
@@ -190,20 +193,12 @@ def serves(objective: Objective, *, free: bool) -> bool:
     return not free and objective.kind == WorstForce.kind
 
 
-def least_worst(
-    program: Program,
-    instance: Instance,
-    bounds: VariableBounds,
-    postures: Array,
-    springs: Array,
-    others: Array | None = None,
-    effort: Effort = WHOLE,
-) -> Found:
-    """Make the largest of all shares small over the hardware; arguments as ``ipopt.minimise``."""
-    postures = np.clip(postures, bounds.q_lower, bounds.q_upper)
-    held = Held(program, instance, postures, bounds.springs)
-    at = held.at(bounds.vector(springs, others))
-    search = _Search(held, bounds, at, np.empty(0), TRUST).forgotten()
+def least_worst(nlp: Nlp, begin: Begin, effort: Effort = WHOLE) -> Found:
+    """Make the largest of all shares small over the hardware, the postures held."""
+    bounds = nlp.bounds
+    held = Held(nlp, np.clip(begin.postures, bounds.q_lower, bounds.q_upper))
+    at = held.at(bounds.vector(begin.springs, begin.others))
+    search = _Search(held, at, np.empty(0), TRUST).forgotten()
     status, fresh, steps = "Maximum_Iterations_Exceeded", 0, 0
     while steps < STEPS:
         model = _model(search)
@@ -358,7 +353,7 @@ def _unasked(search: _Search, model: _Model, tried: Point) -> set[tuple[int, int
 
 def _found(search: _Search, model: _Model, step: _Step, steps: int, status: str) -> Found:
     held, bounds, at = search.held, search.bounds, search.at
-    program, shape = held.program, held.instance.shape
+    program, shape = held.nlp.program, held.nlp.instance.shape
     multipliers = np.zeros(peak_rows(program, shape).stop)
     for key, price in zip(model.of[model.peaks :], step.prices[model.peaks :], strict=True):
         multipliers[key[0] * program.rows + program.held + key[1]] = price

@@ -15,7 +15,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from ..impact.impact_program import ImpactProgram
 from ..impact.peaks import top_weights, tops
-from .ipopt import Instance
+from .ipopt import Nlp
 from .nlp import Program
 
 TOGETHER = 4
@@ -33,21 +33,22 @@ class Held:
     """A design NLP whose postures are held: what is sought is v, the log10 of the hardware.
 
     Attributes:
-        program: the functions.
-        instance: the numbers.
+        nlp: the NLP.
         postures: K×n [rad].
-        springs: how many of v, the first, are springs.
     """
 
-    program: Program
-    instance: Instance
+    nlp: Nlp
     postures: Array
-    springs: int
+
+    @property
+    def springs(self) -> int:
+        """How many of v, the first, are springs."""
+        return self.nlp.bounds.springs
 
     @property
     def decades(self) -> Array:
         """Derivative of v by a step: by the share by which a compliance grows, for springs."""
-        found = np.ones(self.program.variables)
+        found = np.ones(self.nlp.program.variables)
         found[: self.springs] = -1 / np.log(10)
         return found
 
@@ -59,7 +60,7 @@ class Held:
 
     def at(self, v: Array) -> Point:
         """Evaluate forces and bounds."""
-        program, instance, K = self.program, self.instance, len(self.postures)
+        program, instance, K = self.nlp.program, self.nlp.instance, len(self.postures)
         y, by_v = (np.array(a) for a in _loaded(program.hardware)(v))
         rows, slopes = bound_rows(program, self.postures, np.tile(v, (K, 1)), instance.tasks)
         squares = np.array(program.squares)
@@ -86,13 +87,14 @@ class Held:
 
     def _forces(self, felt: Array) -> Array:
         """Return the force of each impact over time, over what counts as one there."""
-        points = np.array([point for _, point in self.instance.shape.impacts])
-        found = np.empty((len(points), self.program.impacts[0].nodes))
+        program, instance = self.nlp.program, self.nlp.instance
+        points = np.array([point for _, point in instance.shape.impacts])
+        found = np.empty((len(points), program.impacts[0].nodes))
         for point in np.unique(points):
             at = np.flatnonzero(points == point)
-            forces = _mapped(self.program.impacts[point], "forces", at.size)
-            found[at] = np.array(forces(felt[at].T, self.instance.impacts[at].T)).T
-        return found / self.instance.units[:, None]
+            forces = _mapped(program.impacts[point], "forces", at.size)
+            found[at] = np.array(forces(felt[at].T, instance.impacts[at].T)).T
+        return found / instance.units[:, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +145,8 @@ class Point:
 
     def slopes_of(self, tops: Sequence[tuple[int, int]]) -> Array:
         """Return the derivatives by a step of some peaks' shares, given by impact and node."""
-        impacts, program = self.held.instance.shape.impacts, self.held.program
+        nlp = self.held.nlp
+        impacts, program = nlp.instance.shape.impacts, nlp.program
         asked = [top for top in tops if top not in self._known]
         for point in {impacts[impact][1] for impact, _ in asked}:
             some = [top for top in asked if impacts[top[0]][1] == point]
@@ -160,13 +163,13 @@ class Point:
         by_x = np.array(
             slope(
                 self.felt[which_padded].T,
-                self.held.instance.impacts[which_padded].T,
+                self.held.nlp.instance.impacts[which_padded].T,
                 weights[padded].T,
             )
         ).reshape(padded.size, -1)[: len(tops)]
-        n = self.held.program.n
+        n = self.held.nlp.program.n
         by_felt = by_x[:, n : n + len(self.by_step)]
-        return np.asarray(by_felt @ self.by_step / self.held.instance.units[which][:, None])
+        return np.asarray(by_felt @ self.by_step / self.held.nlp.instance.units[which][:, None])
 
     def same_top(self, impact: int, node: int) -> tuple[int, float] | None:
         """Return node and share of the peak that was at some node in another iterate."""

@@ -14,16 +14,16 @@ from .deciding import minimise_deciding
 from .ipopt import (
     IN_TURN,
     NO_OTHERS,
+    Begin,
     Found,
     Instance,
+    Nlp,
     Rank,
-    VariableBounds,
     minimise,
     rank,
     ranked,
 )
 from .minimax import ROUGH, WHOLE, Effort, least_worst, serves
-from .nlp import Program
 
 Mode = Literal["table", "free"]
 """``table``: the posture is given and k_s is sought; ``free``: both are sought."""
@@ -79,7 +79,7 @@ class Outcome:
     others: Array = field(default_factory=lambda: NO_OTHERS)
 
 
-def solve(program: Program, start: Start, bounds: VariableBounds, instance: Instance) -> Outcome:
+def solve(nlp: Nlp, start: Start) -> Outcome:
     """Search from all points of a start, and from its fallbacks as long as Ipopt fails.
 
     Returns:
@@ -87,18 +87,18 @@ def solve(program: Program, start: Start, bounds: VariableBounds, instance: Inst
         the one of least violation.
     """
     with IN_TURN:
-        return _search(program, start, bounds, instance)
+        return _search(nlp, start)
 
 
-def _search(program: Program, start: Start, bounds: VariableBounds, instance: Instance) -> Outcome:
+def _search(nlp: Nlp, start: Start) -> Outcome:
     begin = time.perf_counter()
-    found = _held(program, start, bounds, instance)
+    found = _held(nlp, start)
     if not any(outcome.solved for outcome in found):
-        found += [_attempt(program, start, *point, bounds, instance) for point in start.points]
+        found += [_attempt(nlp, start, *point) for point in start.points]
     for point in start.fallbacks:
         if any(outcome.solved for outcome in found):
             break
-        found.append(_attempt(program, start, *point, bounds, instance))
+        found.append(_attempt(nlp, start, *point))
     return replace(
         min(found, key=preference),
         iterations=sum(outcome.iterations for outcome in found),
@@ -107,23 +107,21 @@ def _search(program: Program, start: Start, bounds: VariableBounds, instance: In
     )
 
 
-def _held(
-    program: Program, start: Start, bounds: VariableBounds, instance: Instance
-) -> list[Outcome]:
+def _held(nlp: Nlp, start: Start) -> list[Outcome]:
     """Search a held posture roughly from each point, and from the best end of these to the end.
 
     Nothing where ``least_worst`` does not serve.
     """
+    instance = nlp.instance
     if start.mode == "free" or not serves(instance.shape.objective, free=False):
         return []
-    shared = program, instance, bounds
-    if len(start.points) == 1:
-        ((q, springs),) = start.points
-        found = least_worst(*shared, q[None, :], springs)
+    points = [Begin(q[None, :], springs) for q, springs in start.points]
+    if len(points) == 1:
+        found = least_worst(nlp, points[0])
         return [_outcome(start, instance, found, found.iterations)]
-    rough = [least_worst(*shared, q[None, :], k, None, ROUGH) for q, k in start.points]
+    rough = [least_worst(nlp, point, ROUGH) for point in points]
     best = min(rough, key=lambda end: (end.violation > FEASIBLE, end.cost))
-    found = least_worst(*shared, best.postures, best.springs, best.others)
+    found = least_worst(nlp, best.end)
     iterations = found.iterations + sum(end.iterations for end in rough)
     return [_outcome(start, instance, found, iterations)]
 
@@ -144,22 +142,15 @@ def better(first: Outcome, second: Outcome) -> Outcome:
     )
 
 
-def _attempt(
-    program: Program,
-    start: Start,
-    q: Array,
-    springs: Array,
-    bounds: VariableBounds,
-    instance: Instance,
-) -> Outcome:
+def _attempt(nlp: Nlp, start: Start, q: Array, springs: Array) -> Outcome:
     free = start.mode == "free"
-    found = minimise_deciding(program, instance, bounds, q[None, :], springs, free=free)
+    found = minimise_deciding(nlp, Begin(q[None, :], springs), free=free)
     iterations = found.iterations
-    if not found.solved and serves(instance.shape.objective, free=free):
-        again = least_worst(program, instance, bounds, q[None, :], found.springs, found.others)
+    if not found.solved and serves(nlp.instance.shape.objective, free=free):
+        again = least_worst(nlp, found.end)
         found = min(found, again, key=rank)
         iterations += again.iterations
-    return _outcome(start, instance, found, iterations)
+    return _outcome(start, nlp.instance, found, iterations)
 
 
 def _outcome(start: Start, instance: Instance, found: Found, iterations: int) -> Outcome:
@@ -179,22 +170,12 @@ def _outcome(start: Start, instance: Instance, found: Found, iterations: int) ->
     )
 
 
-def search(
-    program: Program,
-    instance: Instance,
-    bounds: VariableBounds,
-    postures: Array,
-    springs: Array,
-    others: Array | None,
-    free: bool,
-    effort: Effort = WHOLE,
-) -> Found:
+def search(nlp: Nlp, begin: Begin, free: bool, effort: Effort = WHOLE) -> Found:
     """Run ``least_worst`` or, where it does not serve or fails, ``minimise``, too."""
-    shared = program, instance, bounds, postures, springs, others
     with IN_TURN:
-        if not serves(instance.shape.objective, free=free):
-            return minimise(*shared, free=free)
-        found = least_worst(*shared, effort)
+        if not serves(nlp.instance.shape.objective, free=free):
+            return minimise(nlp, begin, free=free)
+        found = least_worst(nlp, begin, effort)
         if found.solved or effort != WHOLE:
             return found
-        return min(found, minimise(*shared, free=free), key=rank)
+        return min(found, minimise(nlp, begin, free=free), key=rank)

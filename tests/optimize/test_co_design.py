@@ -22,6 +22,7 @@ from softimpact.optimize.posture.tip_pose import tip_pose, tip_pose_error
 from softimpact.optimize.search import ipopt as solving
 from softimpact.optimize.search import solve
 from softimpact.optimize.search.accurate_springs import accurate_springs
+from softimpact.optimize.search.ipopt import Begin, Nlp
 from softimpact.optimize.search.problem import peak_force
 from softimpact.optimize.solver_options import FEASIBLE
 from softimpact.simulate import Approach, simulate_impact
@@ -206,8 +207,8 @@ def impatient(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Ipopt that stops where it starts, and nothing that goes on from there."""
     monkeypatch.setattr(solving, "IPOPT", {**solving.IPOPT, "max_iter": 0})
 
-    def least_worst(*shared: Any) -> solving.Found:
-        return solving.minimise(*shared[:6], free=False)  # whatever the effort
+    def least_worst(nlp: Nlp, begin: Begin, *effort: Any) -> solving.Found:
+        return solving.minimise(nlp, begin, free=False)  # whatever the effort
 
     monkeypatch.setattr(solve, "least_worst", least_worst)
     solving._solver.cache_clear()

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from studies import study_of
 
 from softimpact.optimize.impact.peaks import peaks_in_windows, top_weights, tops
-from softimpact.optimize.search.ipopt import minimise, ranked
+from softimpact.optimize.search.ipopt import Begin, Nlp, minimise, ranked
 from softimpact.optimize.search.minimax import least_worst
 from softimpact.optimize.search.minimax_point import Held
 from softimpact.optimize.search.problem import Problem, prepare
@@ -42,11 +42,11 @@ def posture(problem: Problem) -> Array:
 def test_no_springs_nearby_are_better(problem: Problem, begin: str) -> None:
     bounds, instance, study = problem.bounds, problem.numbers(), problem.study
     q = posture(problem)
-    found = least_worst(problem.program, instance, bounds, q, getattr(study, begin))
+    nlp = Nlp(problem.program, instance, bounds)
+    found = least_worst(nlp, Begin(q, getattr(study, begin)))
     assert found.success
     assert found.violation <= 1e-5
-    held = Held(problem.program, instance, q, bounds.springs)
-    random = np.random.default_rng(1)
+    held, random = Held(nlp, q), np.random.default_rng(1)
     v = bounds.vector(found.springs)
     for length in (1e-3, 1e-2, 3e-2):
         for _ in range(30):
@@ -60,8 +60,9 @@ def test_no_springs_nearby_are_better(problem: Problem, begin: str) -> None:
 @pytest.mark.slow
 def test_it_is_no_worse_than_ipopt_from_where_that_ends(problem: Problem) -> None:
     bounds, instance, q = problem.bounds, problem.numbers(), posture(problem)
-    ipopt = minimise(problem.program, instance, bounds, q, problem.study.nominal, free=False)
-    found = least_worst(problem.program, instance, bounds, q, ipopt.springs)
+    nlp = Nlp(problem.program, instance, bounds)
+    ipopt = minimise(nlp, Begin(q, problem.study.nominal), free=False)
+    found = least_worst(nlp, Begin(q, ipopt.springs))
     assert found.cost <= ipopt.cost * (1 + 1e-5)
     assert found.violation <= max(ipopt.violation, 1e-7)
     forces = held_forces(problem, q, bounds.vector(found.springs))
@@ -76,8 +77,8 @@ def held_forces(problem: Problem, q: Array, v: Array) -> Array:
 
 @pytest.mark.slow
 def test_derivatives_are_those_of_the_peaks(problem: Problem) -> None:
-    springs = problem.bounds.springs
-    held = Held(problem.program, problem.numbers(), posture(problem), springs)
+    nlp = Nlp(problem.program, problem.numbers(), problem.bounds)
+    held = Held(nlp, posture(problem))
     v = problem.bounds.vector(problem.study.nominal)
     at = held.at(v)
     for impact, (nodes, heights) in enumerate(at.tops):
