@@ -8,8 +8,9 @@ Each round puts one question (``questions.py``) to one robot and build, of ``COU
 and climbs ``TURNS`` times from the ``CLIMBS`` worst of them; drives and bodies are those there are,
 or (wide) of many decades. The speed answered and slower ones of each input are integrated
 (``oracle/``), those that come near the limit once more in finer steps. Rounds that are done stand
-in the journal, with a digest of what they looked at: started again, the search goes on. Ends with 1
-if a force exceeds its limit.
+in the journal, with a digest of what they looked at: started again, the search goes on.
+``--record`` writes all of those that looked at packages as they are, with ``--inputs 0`` without
+more. Ends with 1 if a force exceeds its limit.
 """
 
 from __future__ import annotations
@@ -146,15 +147,20 @@ def main() -> int:
                 found[key(job)] = result
                 rest = (time.monotonic() - start) / n * (len(left) - n)
                 say(job, result, f"{n}/{len(left)}, {rest / 60:.0f} min left")
-    rows = [(job, found[key(job)]) for job in asked]
     if told.record:
-        write(rows)
-    return conclude(rows)
+        write(of_now(found, digests))
+    return conclude([(job, found[key(job)]) for job in asked])
 
 
 def key(job: Mapping[str, Any]) -> str:
     """Return what tells a round from others."""
     return json.dumps([job[name] for name in KEYS])
+
+
+def of_now(found: Mapping[str, Mapping[str, Any]], digests: Mapping[str, str]) -> Rows:
+    """Return all rounds of a journal that looked at packages as they are."""
+    rounds = [(dict(zip(KEYS, json.loads(key), strict=True)), what) for key, what in found.items()]
+    return [(job, what) for job, what in rounds if digests.get(job["robot"]) == job["of"]]
 
 
 def read(journal: Path) -> dict[str, dict[str, Any]]:

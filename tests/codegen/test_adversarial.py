@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from adversarial.__main__ import key, read
+from adversarial.__main__ import key, of_now, read
 from adversarial.cases import Cases, stacked
 from adversarial.draw import WIDE_ROTORS, Draw
-from adversarial.forces import forces
+from adversarial.forces import both_forces, forces
 from adversarial.impacts import Robot
 from adversarial.plain import plain_forces
 from adversarial.questions import QUESTIONS, Answers, Question
@@ -109,15 +109,16 @@ def test_what_was_found_once_keeps_its_limit(
 ) -> None:
     robot = robot_of(package, name, tmp_path)
     for row in (row for row in FOUND if row["robot"] == name):
-        cases = stacked([row])
-        status, speed = robot.speeds(cases, row["real"])
-        if row["was"] > SINGULAR_ONCE:
-            assert status[0] == SINGULAR, row
+        cases, question = stacked([row]), QUESTIONS[row.get("question", "limit")]
+        told = robot.answers(question, cases, row["real"])
+        if row["was"] > SINGULAR_ONCE and not question.presses:
+            assert told.status[0] == SINGULAR, row
             continue
-        assert status[0] in (OK, BOUNDED), row
-        shares = np.array([[1.0, 0.95, 0.8, 0.74, 0.66, 0.5, 0.3]])
-        right = forces(robot, cases, speed[0] * shares, 4.0) / cases.limit
-        assert right.max() <= 1, row
+        assert told.status[0] in (OK, BOUNDED), row
+        shares = np.array([[1.0, 0.95, 0.8, 0.74, 0.66, 0.5, 0.3, 0.1]])
+        right, late = both_forces(robot, cases, told.speed * shares, 4.0, late=question.presses)
+        assert (right / cases.limit).max() <= 1, row
+        assert (late / cases.pressing).max() <= 1, row
 
 
 def test_float_finds_what_double_does_where_slow_modes_carry_the_motion(
@@ -217,6 +218,8 @@ def test_a_journal_may_end_within_a_line(tmp_path: Path) -> None:
     assert read(path) == {}
     path.write_text(json.dumps(row) + "\n" + json.dumps({**row, "seed": 4})[:-9])
     assert read(path) == {key(row): {"a": 1}}
+    assert of_now(read(path), {"panda": "a"}) == [({**job, "of": "a"}, {"a": 1})]
+    assert of_now(read(path), {"panda": "b", "rr": "a"}) == []
 
 
 def test_five_robots_and_more_are_looked_at() -> None:
