@@ -81,6 +81,7 @@ typedef struct {
     robot_real damping[ROBOT_DAMPERS];
     robot_real together[ROBOT_DAMPERS][ROBOT_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
+    int longest_pressed; /* level of the longest step in contact */
     robot_level level[ROBOT_LEVELS];
 } robot_phase;
 

@@ -17,8 +17,6 @@
 #define SHORTEST (ROBOT_LEVELS - 1)
 #define SHORTEST_APART 4
 #define SHORTEST_ROUGH 2
-/* Level of the longest step in contact: half a radian of its vibration, lest a force looks straight as it turns. */
-#define LONGEST_PRESSED 1
 /* Steps of a falling force, or of none, after which it is looked whether the rest matters. */
 #define LOOKS 3
 /* Share of a first step within which the damper has to press the skin in, and the share of that time missed. */
@@ -268,7 +266,7 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
         if (was == TO_BE_SHORTER) {
             continue;
         }
-        const bool is_longest = s->touching && !rough && s->level <= LONGEST_PRESSED;
+        const bool is_longest = s->touching && !rough && s->level <= s->phase->longest_pressed;
         tick(s, was == TAKEN_AND_STRAIGHT && !is_longest);
         const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
         falls += fell && s->phase->settles && !(s->rise > ROBOT_R(0.0)) ? 1 : 0;
