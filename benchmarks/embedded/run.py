@@ -47,7 +47,7 @@ TAIL = """
 Instructions are means over the golden inputs, and the largest of them; those of `safe_speed` are
 for each region's own limit, and grow with the number of impacts it integrates. Golden inputs take
 motors of all kinds by turns, servos among them, which cost most; *driven* is a call with motors
-that drive on for 20 ms, a horizon of 0.1 s and a budget of 185 steps. Code is `.text` and
+that drive on for 20 ms, a horizon of 0.1 s and a budget of 180 steps. Code is `.text` and
 constants of the function's own source on the M7, stack the deepest of its calls without the C
 library's. What functions share:
 

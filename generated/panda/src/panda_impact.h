@@ -81,6 +81,7 @@ typedef struct {
     panda_real damping[PANDA_DAMPERS];
     panda_real together[PANDA_DAMPERS][PANDA_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
+    int longest_pressed; /* level of the longest step in contact */
     panda_level level[PANDA_LEVELS];
 } panda_phase;
 

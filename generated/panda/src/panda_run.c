@@ -3,7 +3,7 @@
 #include "panda_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS PANDA_R(0.02)
+#define BENDS PANDA_R(0.03)
 #define BENDS_ROUGH PANDA_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT PANDA_R(0.22)
@@ -266,7 +266,8 @@ static bool run_phase(panda_state *s, panda_budget *budget, panda_peak *peak)
         if (was == TO_BE_SHORTER) {
             continue;
         }
-        tick(s, was == TAKEN_AND_STRAIGHT);
+        const bool is_longest = s->touching && !rough && s->level <= s->phase->longest_pressed;
+        tick(s, was == TAKEN_AND_STRAIGHT && !is_longest);
         const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
         falls += fell && s->phase->settles && !(s->rise > PANDA_R(0.0)) ? 1 : 0;
         peak->ended = fell && (peak->force > budget->stop_above || (rough && !s->touching));

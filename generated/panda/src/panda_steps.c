@@ -2,8 +2,12 @@
 /* Steps in time of panda_'s modes. */
 #include "panda_impact.h"
 
-/* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
+/*
+ * Most radians of the contact's own vibration, and of any mode's, in the longest step; and of the former while they
+ * touch: a force that turns looks straight over more.
+ */
 #define CONTACT_STEP PANDA_R(1.0)
+#define PRESSED_STEP PANDA_R(0.5)
 #define MODE_STEP PANDA_R(5.6)
 /* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP PANDA_R(0.1)
@@ -180,6 +184,7 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
     const panda_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const panda_real h = wanted < MOST ? time/(panda_real)phase->steps : PANDA_R(1.0)/rate;
+    phase->longest_pressed = share*contact*h*h > PRESSED_STEP*PRESSED_STEP ? 1 : 0;
     phase->level[0].h = h;
     for (int k = 1; k < PANDA_LEVELS; ++k) {
         phase->level[k].h = PANDA_R(0.5)*phase->level[k - 1].h;

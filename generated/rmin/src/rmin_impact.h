@@ -81,6 +81,7 @@ typedef struct {
     rmin_real damping[RMIN_DAMPERS];
     rmin_real together[RMIN_DAMPERS][RMIN_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
+    int longest_pressed; /* level of the longest step in contact */
     rmin_level level[RMIN_LEVELS];
 } rmin_phase;
 

@@ -2,8 +2,12 @@
 /* Steps in time of rmin_'s modes. */
 #include "rmin_impact.h"
 
-/* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
+/*
+ * Most radians of the contact's own vibration, and of any mode's, in the longest step; and of the former while they
+ * touch: a force that turns looks straight over more.
+ */
 #define CONTACT_STEP RMIN_R(1.0)
+#define PRESSED_STEP RMIN_R(0.5)
 #define MODE_STEP RMIN_R(5.6)
 /* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP RMIN_R(0.1)
@@ -180,6 +184,7 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
     const rmin_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const rmin_real h = wanted < MOST ? time/(rmin_real)phase->steps : RMIN_R(1.0)/rate;
+    phase->longest_pressed = share*contact*h*h > PRESSED_STEP*PRESSED_STEP ? 1 : 0;
     phase->level[0].h = h;
     for (int k = 1; k < RMIN_LEVELS; ++k) {
         phase->level[k].h = RMIN_R(0.5)*phase->level[k - 1].h;

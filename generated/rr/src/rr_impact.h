@@ -81,6 +81,7 @@ typedef struct {
     rr_real damping[RR_DAMPERS];
     rr_real together[RR_DAMPERS][RR_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
+    int longest_pressed; /* level of the longest step in contact */
     rr_level level[RR_LEVELS];
 } rr_phase;
 

@@ -2,8 +2,12 @@
 /* Steps in time of rr_'s modes. */
 #include "rr_impact.h"
 
-/* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
+/*
+ * Most radians of the contact's own vibration, and of any mode's, in the longest step; and of the former while they
+ * touch: a force that turns looks straight over more.
+ */
 #define CONTACT_STEP RR_R(1.0)
+#define PRESSED_STEP RR_R(0.5)
 #define MODE_STEP RR_R(5.6)
 /* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP RR_R(0.1)
@@ -180,6 +184,7 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
     const rr_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const rr_real h = wanted < MOST ? time/(rr_real)phase->steps : RR_R(1.0)/rate;
+    phase->longest_pressed = share*contact*h*h > PRESSED_STEP*PRESSED_STEP ? 1 : 0;
     phase->level[0].h = h;
     for (int k = 1; k < RR_LEVELS; ++k) {
         phase->level[k].h = RR_R(0.5)*phase->level[k - 1].h;

@@ -81,6 +81,7 @@ typedef struct {
     ur5e_real damping[UR5E_DAMPERS];
     ur5e_real together[UR5E_DAMPERS][UR5E_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
+    int longest_pressed; /* level of the longest step in contact */
     ur5e_level level[UR5E_LEVELS];
 } ur5e_phase;
 

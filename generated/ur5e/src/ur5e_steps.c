@@ -2,8 +2,12 @@
 /* Steps in time of ur5e_'s modes. */
 #include "ur5e_impact.h"
 
-/* Most radians of the contact's own vibration, and of any mode's, in the longest step. */
+/*
+ * Most radians of the contact's own vibration, and of any mode's, in the longest step; and of the former while they
+ * touch: a force that turns looks straight over more.
+ */
 #define CONTACT_STEP UR5E_R(1.0)
+#define PRESSED_STEP UR5E_R(0.5)
 #define MODE_STEP UR5E_R(5.6)
 /* Most damping of joints and of a servo in the longest step, as a share of what it acts on. */
 #define SERVO_STEP UR5E_R(0.1)
@@ -180,6 +184,7 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
     const ur5e_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const ur5e_real h = wanted < MOST ? time/(ur5e_real)phase->steps : UR5E_R(1.0)/rate;
+    phase->longest_pressed = share*contact*h*h > PRESSED_STEP*PRESSED_STEP ? 1 : 0;
     phase->level[0].h = h;
     for (int k = 1; k < UR5E_LEVELS; ++k) {
         phase->level[k].h = UR5E_R(0.5)*phase->level[k - 1].h;
