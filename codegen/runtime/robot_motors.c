@@ -199,8 +199,11 @@ int robot_driven_modes(const robot_arrival *arrival, const robot_params *p, robo
 #endif
 
 #if !ROBOT_POTENTIAL
-/* Sweeps that make what modes bend orthogonal, which it nearly is. */
-#define SWEEPS_OF_SERVO 2
+/*
+ * Most sweeps that make what modes bend orthogonal: one or two, as it nearly is, but where springs or rotors are a
+ * thousand times others.
+ */
+#define SWEEPS_OF_SERVO 8
 
 static robot_real product_of(const robot_real a[ROBOT_SYSTEM], const robot_real b[ROBOT_SYSTEM])
 {
@@ -229,6 +232,7 @@ static void turn_both(robot_real t, robot_real a[ROBOT_SYSTEM], robot_real b[ROB
  */
 static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes)
 {
+    robot_real known[ROBOT_SYSTEM]; /* error of the root of a squared frequency */
     (void)p;
     for (int i = 0; i < ROBOT_SYSTEM; ++i) {
         robot_real off = ROBOT_R(0.0);
@@ -245,8 +249,7 @@ static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes
 #endif
         }
         modes->squared[i] = product_of(bent[i], bent[i]);
-        off *= ROBOT_EPSILON;
-        modes->noise[i] = off*(off + ROBOT_R(2.0)*ROBOT_SQRT(modes->squared[i]));
+        known[i] = ROBOT_EPSILON*off;
     }
     bool turned = true;
     for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
@@ -266,6 +269,9 @@ static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes
                 }
             }
         }
+    }
+    for (int i = 0; i < ROBOT_SYSTEM && !turned; ++i) { /* else they err as QR does */
+        modes->noise[i] = known[i]*(known[i] + ROBOT_R(2.0)*ROBOT_SQRT(modes->squared[i]));
     }
 }
 #endif

@@ -84,13 +84,14 @@ static robot_real blur_of(const robot_impact *impact, const robot_phase *phase, 
         if (!(modes->noise[i] > ROBOT_R(0.0))) {
             continue;
         }
-        const robot_real turns = ROBOT_FABS(modes->squared[i])*time*time;
+        const robot_real known = ROBOT_FMAX(ROBOT_FABS(modes->squared[i]) - modes->noise[i], ROBOT_R(0.0));
+        const robot_real turns = known*time*time;
         const robot_real off = time*ROBOT_SQRT(modes->noise[i]/ROBOT_FMAX(turns, ROBOT_R(1.0)));
         const robot_real pulled = led ? ROBOT_FMIN(turns, ROBOT_R(1.0)) : ROBOT_R(1.0);
         rows += ROBOT_FABS(modes->row[i])*off;
         starts += ROBOT_FABS(modes->start[i])*pulled*off;
     }
-    return rows*(led ? ROBOT_FMAX(starts, rows/impact->mobility) : starts);
+    return rows*ROBOT_FMAX(starts, rows/impact->mobility);
 }
 
 #if !ROBOT_STRUCTURED
