@@ -199,8 +199,11 @@ int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, pand
 #endif
 
 #if !PANDA_POTENTIAL
-/* Sweeps that make what modes bend orthogonal, which it nearly is. */
-#define SWEEPS_OF_SERVO 2
+/*
+ * Most sweeps that make what modes bend orthogonal: one or two, as it nearly is, but where springs or rotors are a
+ * thousand times others.
+ */
+#define SWEEPS_OF_SERVO 8
 
 static panda_real product_of(const panda_real a[PANDA_SYSTEM], const panda_real b[PANDA_SYSTEM])
 {
@@ -229,6 +232,7 @@ static void turn_both(panda_real t, panda_real a[PANDA_SYSTEM], panda_real b[PAN
  */
 static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes)
 {
+    panda_real known[PANDA_SYSTEM]; /* error of the root of a squared frequency */
     (void)p;
     for (int i = 0; i < PANDA_SYSTEM; ++i) {
         panda_real off = PANDA_R(0.0);
@@ -245,8 +249,7 @@ static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes
 #endif
         }
         modes->squared[i] = product_of(bent[i], bent[i]);
-        off *= PANDA_EPSILON;
-        modes->noise[i] = off*(off + PANDA_R(2.0)*PANDA_SQRT(modes->squared[i]));
+        known[i] = PANDA_EPSILON*off;
     }
     bool turned = true;
     for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
@@ -266,6 +269,9 @@ static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes
                 }
             }
         }
+    }
+    for (int i = 0; i < PANDA_SYSTEM && !turned; ++i) { /* else they err as QR does */
+        modes->noise[i] = known[i]*(known[i] + PANDA_R(2.0)*PANDA_SQRT(modes->squared[i]));
     }
 }
 #endif

@@ -84,13 +84,14 @@ static panda_real blur_of(const panda_impact *impact, const panda_phase *phase, 
         if (!(modes->noise[i] > PANDA_R(0.0))) {
             continue;
         }
-        const panda_real turns = PANDA_FABS(modes->squared[i])*time*time;
+        const panda_real known = PANDA_FMAX(PANDA_FABS(modes->squared[i]) - modes->noise[i], PANDA_R(0.0));
+        const panda_real turns = known*time*time;
         const panda_real off = time*PANDA_SQRT(modes->noise[i]/PANDA_FMAX(turns, PANDA_R(1.0)));
         const panda_real pulled = led ? PANDA_FMIN(turns, PANDA_R(1.0)) : PANDA_R(1.0);
         rows += PANDA_FABS(modes->row[i])*off;
         starts += PANDA_FABS(modes->start[i])*pulled*off;
     }
-    return rows*(led ? PANDA_FMAX(starts, rows/impact->mobility) : starts);
+    return rows*PANDA_FMAX(starts, rows/impact->mobility);
 }
 
 #if !PANDA_STRUCTURED

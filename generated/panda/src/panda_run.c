@@ -3,7 +3,7 @@
 #include "panda_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS PANDA_R(0.03)
+#define BENDS PANDA_R(0.025)
 #define BENDS_ROUGH PANDA_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT PANDA_R(0.22)

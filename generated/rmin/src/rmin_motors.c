@@ -199,8 +199,11 @@ int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mo
 #endif
 
 #if !RMIN_POTENTIAL
-/* Sweeps that make what modes bend orthogonal, which it nearly is. */
-#define SWEEPS_OF_SERVO 2
+/*
+ * Most sweeps that make what modes bend orthogonal: one or two, as it nearly is, but where springs or rotors are a
+ * thousand times others.
+ */
+#define SWEEPS_OF_SERVO 8
 
 static rmin_real product_of(const rmin_real a[RMIN_SYSTEM], const rmin_real b[RMIN_SYSTEM])
 {
@@ -229,6 +232,7 @@ static void turn_both(rmin_real t, rmin_real a[RMIN_SYSTEM], rmin_real b[RMIN_SY
  */
 static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
 {
+    rmin_real known[RMIN_SYSTEM]; /* error of the root of a squared frequency */
     (void)p;
     for (int i = 0; i < RMIN_SYSTEM; ++i) {
         rmin_real off = RMIN_R(0.0);
@@ -245,8 +249,7 @@ static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
 #endif
         }
         modes->squared[i] = product_of(bent[i], bent[i]);
-        off *= RMIN_EPSILON;
-        modes->noise[i] = off*(off + RMIN_R(2.0)*RMIN_SQRT(modes->squared[i]));
+        known[i] = RMIN_EPSILON*off;
     }
     bool turned = true;
     for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
@@ -266,6 +269,9 @@ static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
                 }
             }
         }
+    }
+    for (int i = 0; i < RMIN_SYSTEM && !turned; ++i) { /* else they err as QR does */
+        modes->noise[i] = known[i]*(known[i] + RMIN_R(2.0)*RMIN_SQRT(modes->squared[i]));
     }
 }
 #endif

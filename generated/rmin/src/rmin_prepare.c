@@ -84,13 +84,14 @@ static rmin_real blur_of(const rmin_impact *impact, const rmin_phase *phase, rmi
         if (!(modes->noise[i] > RMIN_R(0.0))) {
             continue;
         }
-        const rmin_real turns = RMIN_FABS(modes->squared[i])*time*time;
+        const rmin_real known = RMIN_FMAX(RMIN_FABS(modes->squared[i]) - modes->noise[i], RMIN_R(0.0));
+        const rmin_real turns = known*time*time;
         const rmin_real off = time*RMIN_SQRT(modes->noise[i]/RMIN_FMAX(turns, RMIN_R(1.0)));
         const rmin_real pulled = led ? RMIN_FMIN(turns, RMIN_R(1.0)) : RMIN_R(1.0);
         rows += RMIN_FABS(modes->row[i])*off;
         starts += RMIN_FABS(modes->start[i])*pulled*off;
     }
-    return rows*(led ? RMIN_FMAX(starts, rows/impact->mobility) : starts);
+    return rows*RMIN_FMAX(starts, rows/impact->mobility);
 }
 
 #if !RMIN_STRUCTURED

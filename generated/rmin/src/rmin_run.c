@@ -3,7 +3,7 @@
 #include "rmin_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS RMIN_R(0.03)
+#define BENDS RMIN_R(0.025)
 #define BENDS_ROUGH RMIN_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT RMIN_R(0.22)

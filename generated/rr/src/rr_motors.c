@@ -199,8 +199,11 @@ int rr_driven_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mod
 #endif
 
 #if !RR_POTENTIAL
-/* Sweeps that make what modes bend orthogonal, which it nearly is. */
-#define SWEEPS_OF_SERVO 2
+/*
+ * Most sweeps that make what modes bend orthogonal: one or two, as it nearly is, but where springs or rotors are a
+ * thousand times others.
+ */
+#define SWEEPS_OF_SERVO 8
 
 static rr_real product_of(const rr_real a[RR_SYSTEM], const rr_real b[RR_SYSTEM])
 {
@@ -229,6 +232,7 @@ static void turn_both(rr_real t, rr_real a[RR_SYSTEM], rr_real b[RR_SYSTEM])
  */
 static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
 {
+    rr_real known[RR_SYSTEM]; /* error of the root of a squared frequency */
     (void)p;
     for (int i = 0; i < RR_SYSTEM; ++i) {
         rr_real off = RR_R(0.0);
@@ -245,8 +249,7 @@ static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
 #endif
         }
         modes->squared[i] = product_of(bent[i], bent[i]);
-        off *= RR_EPSILON;
-        modes->noise[i] = off*(off + RR_R(2.0)*RR_SQRT(modes->squared[i]));
+        known[i] = RR_EPSILON*off;
     }
     bool turned = true;
     for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
@@ -266,6 +269,9 @@ static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
                 }
             }
         }
+    }
+    for (int i = 0; i < RR_SYSTEM && !turned; ++i) { /* else they err as QR does */
+        modes->noise[i] = known[i]*(known[i] + RR_R(2.0)*RR_SQRT(modes->squared[i]));
     }
 }
 #endif

@@ -84,13 +84,14 @@ static rr_real blur_of(const rr_impact *impact, const rr_phase *phase, rr_real t
         if (!(modes->noise[i] > RR_R(0.0))) {
             continue;
         }
-        const rr_real turns = RR_FABS(modes->squared[i])*time*time;
+        const rr_real known = RR_FMAX(RR_FABS(modes->squared[i]) - modes->noise[i], RR_R(0.0));
+        const rr_real turns = known*time*time;
         const rr_real off = time*RR_SQRT(modes->noise[i]/RR_FMAX(turns, RR_R(1.0)));
         const rr_real pulled = led ? RR_FMIN(turns, RR_R(1.0)) : RR_R(1.0);
         rows += RR_FABS(modes->row[i])*off;
         starts += RR_FABS(modes->start[i])*pulled*off;
     }
-    return rows*(led ? RR_FMAX(starts, rows/impact->mobility) : starts);
+    return rows*RR_FMAX(starts, rows/impact->mobility);
 }
 
 #if !RR_STRUCTURED

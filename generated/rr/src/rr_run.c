@@ -3,7 +3,7 @@
 #include "rr_state.h"
 
 /* Half the second difference of the force, over its size, above which a step is halved. */
-#define BENDS RR_R(0.03)
+#define BENDS RR_R(0.025)
 #define BENDS_ROUGH RR_R(0.15)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT RR_R(0.22)

@@ -199,8 +199,11 @@ int ur5e_driven_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mo
 #endif
 
 #if !UR5E_POTENTIAL
-/* Sweeps that make what modes bend orthogonal, which it nearly is. */
-#define SWEEPS_OF_SERVO 2
+/*
+ * Most sweeps that make what modes bend orthogonal: one or two, as it nearly is, but where springs or rotors are a
+ * thousand times others.
+ */
+#define SWEEPS_OF_SERVO 8
 
 static ur5e_real product_of(const ur5e_real a[UR5E_SYSTEM], const ur5e_real b[UR5E_SYSTEM])
 {
@@ -229,6 +232,7 @@ static void turn_both(ur5e_real t, ur5e_real a[UR5E_SYSTEM], ur5e_real b[UR5E_SY
  */
 static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
 {
+    ur5e_real known[UR5E_SYSTEM]; /* error of the root of a squared frequency */
     (void)p;
     for (int i = 0; i < UR5E_SYSTEM; ++i) {
         ur5e_real off = UR5E_R(0.0);
@@ -245,8 +249,7 @@ static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
 #endif
         }
         modes->squared[i] = product_of(bent[i], bent[i]);
-        off *= UR5E_EPSILON;
-        modes->noise[i] = off*(off + UR5E_R(2.0)*UR5E_SQRT(modes->squared[i]));
+        known[i] = UR5E_EPSILON*off;
     }
     bool turned = true;
     for (int sweep = 0; sweep < SWEEPS_OF_SERVO && turned; ++sweep) {
@@ -266,6 +269,9 @@ static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
                 }
             }
         }
+    }
+    for (int i = 0; i < UR5E_SYSTEM && !turned; ++i) { /* else they err as QR does */
+        modes->noise[i] = known[i]*(known[i] + UR5E_R(2.0)*UR5E_SQRT(modes->squared[i]));
     }
 }
 #endif

@@ -84,13 +84,14 @@ static ur5e_real blur_of(const ur5e_impact *impact, const ur5e_phase *phase, ur5
         if (!(modes->noise[i] > UR5E_R(0.0))) {
             continue;
         }
-        const ur5e_real turns = UR5E_FABS(modes->squared[i])*time*time;
+        const ur5e_real known = UR5E_FMAX(UR5E_FABS(modes->squared[i]) - modes->noise[i], UR5E_R(0.0));
+        const ur5e_real turns = known*time*time;
         const ur5e_real off = time*UR5E_SQRT(modes->noise[i]/UR5E_FMAX(turns, UR5E_R(1.0)));
         const ur5e_real pulled = led ? UR5E_FMIN(turns, UR5E_R(1.0)) : UR5E_R(1.0);
         rows += UR5E_FABS(modes->row[i])*off;
         starts += UR5E_FABS(modes->start[i])*pulled*off;
     }
-    return rows*(led ? UR5E_FMAX(starts, rows/impact->mobility) : starts);
+    return rows*UR5E_FMAX(starts, rows/impact->mobility);
 }
 
 #if !UR5E_STRUCTURED
