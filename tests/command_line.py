@@ -12,7 +12,6 @@ from typing import Any
 
 from softimpact.cli import main
 
-
 PROGRESS = re.compile(r"^[^\n]*: \d+( of \d+)?, \d+ s\n", re.MULTILINE)
 """A line that commands say on the way once they take ten seconds, as all may on a busy machine."""
 
