@@ -22,9 +22,9 @@
  */
 #define SHORT_OF_JUMP PANDA_R(0.99)
 /*
- * Shares of a speed at which laws by table are tried, too: where they stiffen at once, a later contact may press
- * harder at a slower speed, by up to 1.24 times the limit in inputs that a search climbed to, over a third of the
- * speeds and more.
+ * Shares of a speed at which laws by table and bodies that hardly damp are tried, too: a later contact may press
+ * harder at a slower speed, by up to 1.24 and 2.4 times the limit in inputs that a search climbed to, over a third
+ * of the speeds and more.
  */
 #define SHARES 6
 /* Most that a speed may be off its force's power law at once. */
@@ -150,13 +150,13 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
         if (status != PANDA_OK) {
             return status;
         }
-        const panda_real counts = impact->smooth < HARD || impact->smooth > HARDLY ? COUNTS_ELSEWHERE*limit
-            : limit;
+        const bool hardly_damps = impact->smooth > HARDLY;
+        const panda_real counts = impact->smooth < HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
         const panda_real guess = panda_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)};
         bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
-        if (region->law != NULL) {
-            const panda_real share = impact->smooth > HARDLY ? SHORT_OF_JUMP : PANDA_R(1.0);
+        if (region->law != NULL || hardly_damps) {
+            const panda_real share = region->law != NULL && hardly_damps ? SHORT_OF_JUMP : PANDA_R(1.0);
             s.low = is_known ? share*s.low : PANDA_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, &s, &budget);
         }

@@ -22,9 +22,9 @@
  */
 #define SHORT_OF_JUMP RMIN_R(0.99)
 /*
- * Shares of a speed at which laws by table are tried, too: where they stiffen at once, a later contact may press
- * harder at a slower speed, by up to 1.24 times the limit in inputs that a search climbed to, over a third of the
- * speeds and more.
+ * Shares of a speed at which laws by table and bodies that hardly damp are tried, too: a later contact may press
+ * harder at a slower speed, by up to 1.24 and 2.4 times the limit in inputs that a search climbed to, over a third
+ * of the speeds and more.
  */
 #define SHARES 6
 /* Most that a speed may be off its force's power law at once. */
@@ -150,13 +150,13 @@ int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real l
         if (status != RMIN_OK) {
             return status;
         }
-        const rmin_real counts = impact->smooth < HARD || impact->smooth > HARDLY ? COUNTS_ELSEWHERE*limit
-            : limit;
+        const bool hardly_damps = impact->smooth > HARDLY;
+        const rmin_real counts = impact->smooth < HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
         const rmin_real guess = rmin_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, RMIN_R(0.0), RMIN_R(0.0), RMIN_R(0.0)};
         bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
-        if (region->law != NULL) {
-            const rmin_real share = impact->smooth > HARDLY ? SHORT_OF_JUMP : RMIN_R(1.0);
+        if (region->law != NULL || hardly_damps) {
+            const rmin_real share = region->law != NULL && hardly_damps ? SHORT_OF_JUMP : RMIN_R(1.0);
             s.low = is_known ? share*s.low : RMIN_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, &s, &budget);
         }
