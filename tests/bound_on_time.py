@@ -64,7 +64,7 @@ def rounds(line: str, name: str, n: int) -> Rounds:
     table: list[tuple[str, Rounds]] = [
         (r"ticks > 0", Budget()),
         (r"k < TRIALS", Budget(STEPS_OF_RUN)),
-        (r"k < SHARES", 0),  # of laws by table
+        (r"k < SHARES", Budget(STEPS_OF_RUN)),
         (r"motors >= first", 1),
         (r"step <= most", qr_steps + 1),
         (r"spectrum.*last > 0", n / (qr_steps + 1)),
