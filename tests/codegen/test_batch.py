@@ -92,7 +92,8 @@ def test_without_a_limit_what_presses_later_counts_too(rr: batch.CompiledPackage
     given = {"stiffness": 75e3, "effective_mass": 0.6, "hertz_stiffness": 19e6, "force_limit": 280}
     with pytest.raises(InvalidValue, match="no quasi_static_limit"):
         rr.safe_speed(q, n, region=given)
-    assert (rr.safe_speed(q, n, region=given, clamped=False)["status"] == 0).all()
+    free = rr.safe_speed(q, n, region=given, clamped=False, steps=8000)
+    assert (free["status"] == 0).all()  # slower speeds are tried as it does not damp
     with pytest.raises(InvalidValue, match="no force_limit"):
         rr.safe_speed(q, n, region={**given, "force_limit": 0.0})
 
