@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
 from compiled_packages import COMMITTED, Generated, candidate_poses  # noqa: E402
-from measured_costs import compiler_version, measure  # noqa: E402
+from measured_costs import FEW_STEPS, compiler_version, measure  # noqa: E402
 
 from softimpact.codegen import generate_package  # noqa: E402
 from softimpact.codegen.costs import COSTS, Costs, FunctionCost  # noqa: E402
@@ -47,7 +47,7 @@ TAIL = """
 Instructions are means over the golden inputs, and the largest of them; those of `safe_speed` are
 for each region's own limit, and grow with the number of impacts it integrates. Golden inputs take
 motors of all kinds by turns, servos among them, which cost most; *driven* is a call with motors
-that drive on for 20 ms, a horizon of 0.1 s and a budget of 180 steps. Code is `.text` and
+that drive on for 20 ms, a horizon of 0.1 s and a budget of {steps} steps. Code is `.text` and
 constants of the function's own source on the M7, stack the deepest of its calls without the C
 library's. What functions share:
 
@@ -83,7 +83,7 @@ def page(costs: Costs) -> str:
     rows = [row(function) for function in costs.functions]
     shared = [f"| `{s.name}.c` | {s.text + s.rodata} B |" for s in costs.shared]
     head = HEAD.format(compiler=costs.compiler, flags=costs.flags)
-    return head + "\n".join(rows) + "\n" + TAIL + "\n".join(shared) + "\n"
+    return head + "\n".join(rows) + "\n" + TAIL.format(steps=FEW_STEPS) + "\n".join(shared) + "\n"
 
 
 def row(f: FunctionCost) -> str:

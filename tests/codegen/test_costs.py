@@ -63,6 +63,7 @@ def test_built_in_packages_know_their_costs(
     readme = (generated.folder / "README.md").read_text()
     for function in costs.functions:
         assert f"| `{function.name}` | {function.m4.mean} |" in readme
+        assert "driven" not in function.name or f"budget of {FEW_STEPS} steps" in readme
     assert json.loads((generated.folder / "manifest.json").read_text())["costs"]
 
 
