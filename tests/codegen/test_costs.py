@@ -18,10 +18,10 @@ from compiled_packages import COMMITTED, Generated, missing, run, tool
 from cross_compiled import GCC, flags, machine
 from measured_costs import FEW_STEPS, compiler_version, measure, stacks_of
 
-from softimpact.codegen import costs as costs_module
 from softimpact.codegen import generate_package
-from softimpact.codegen.cost_digests import cost_digests
-from softimpact.codegen.costs import (
+from softimpact.codegen.record import costs as costs_module
+from softimpact.codegen.record.cost_digests import cost_digests
+from softimpact.codegen.record.costs import (
     Costs,
     FunctionCost,
     Instructions,

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import UnknownDeclaration
+from ..errors import UnknownDeclaration
 
 POINTER = 8
 """Size of an address where a library for Python runs [bytes]; WebAssembly has ``WASM_POINTER``."""

@@ -12,8 +12,8 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
+from ..errors import UnsupportedOperation
 from . import exact, sine
-from .errors import UnsupportedOperation
 
 
 class Binding(IntEnum):

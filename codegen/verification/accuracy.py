@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .description import CFunction
-from .evaluate import evaluate_exactly, evaluate_rounded
-from .exact import DIGITS
-from .samples import Sample
+from ..expressions.evaluate import evaluate_exactly, evaluate_rounded
+from ..expressions.exact import DIGITS
+from ..functions.description import CFunction
+from ..inputs.samples import Sample
 
 Inputs = Sequence[NDArray[np.float64]]
 """All inputs of many samples, as ``as_columns`` returns them."""

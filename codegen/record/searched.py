@@ -10,10 +10,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-HERE = Path(__file__).parent
-
-RECORD = HERE / "searched.json"
+RECORD = Path(__file__).parent / "searched.json"
 """Written by ``python -m adversarial --record``."""
+
+RUNTIME = Path(__file__).parents[1] / "runtime"
 
 ASKED = {
     "limit": "safe speeds",
@@ -78,7 +78,7 @@ class Searched:
 
 def sources_digest() -> str:
     """Return a digest of the runtime's C."""
-    files = sorted(HERE.glob("runtime/*.[ch]"))
+    files = sorted(RUNTIME.glob("*.[ch]"))
     return hashlib.sha256(b"\0".join(path.read_bytes() for path in files)).hexdigest()[:16]
 
 

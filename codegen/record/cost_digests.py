@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
 
-from .interface import ENUM, FUNCTION, LAYOUT, STRUCT, TABLE
+from ..bindings.interface import ENUM, FUNCTION, LAYOUT, STRUCT, TABLE
 
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 

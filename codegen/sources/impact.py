@@ -12,16 +12,16 @@ from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.impact.motors import REACTION_TIME
 from softimpact.symbolic.robot.rigid import Array
 
-from .contacts import BuiltIn
-from .directions import directions_of_motion
-from .functions import Symbols, has_potential, links_of
-from .functions.frames import frames_of
-from .functions.guards import fastest_arrival, heaviest
-from .impacts import Impact, draw_impacts, reference_force
-from .inputs import Parameter, is_elastic
-from .manifest import FunctionRecord, ImpactRecord
-from .searched import searched
-from .source import CSource
+from ..functions import Symbols, has_potential, links_of
+from ..functions.frames import frames_of
+from ..functions.guards import fastest_arrival, heaviest
+from ..inputs.directions import directions_of_motion
+from ..inputs.parameters import Parameter, is_elastic
+from ..inputs.regions import BuiltIn
+from ..record.manifest import FunctionRecord, ImpactRecord
+from ..record.searched import searched
+from ..verification.impacts import Impact, draw_impacts, reference_force
+from .function import CSource
 
 GOLDEN_IMPACTS = 12
 """Impacts in a package's own test."""

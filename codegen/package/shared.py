@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from .functions import Symbols, stages_of
+from ..functions import Symbols, stages_of
+from ..sharing.split import split_all
+from ..sources.function import CSource
+from ..sources.stage import StageSource
 from .render import Package
-from .sharing import split_all
-from .source import CSource
-from .stage_source import StageSource
 
 
 def with_stages(package: Package, symbols: Symbols) -> Package:

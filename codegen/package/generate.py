@@ -13,25 +13,25 @@ from softimpact.symbolic import STANDARD_GRAVITY, Contact, Drives, InvalidValue,
 from softimpact.symbolic.former_names import renamed
 from softimpact.symbolic.impact.impact_model import WEIGHTLESS
 
-from .accuracy import Inputs, accuracy, golden_results, is_regular
-from .configuration import Configuration, has_configuration
-from .configuration_source import configuration_source
-from .contacts import built_in
-from .costs import Costs
-from .defaults import Payload, defaults_of, frozen_parameters
-from .description import CFunction
+from ..functions import coordinates_of, functions_of, symbols_of
+from ..functions.description import CFunction
+from ..inputs.defaults import Payload, defaults_of, frozen_parameters
+from ..inputs.parameters import parameters_of
+from ..inputs.poses import checked_poses
+from ..inputs.regions import built_in
+from ..inputs.samples import Sample, as_columns, draw_samples
+from ..record.costs import Costs
+from ..record.manifest import MANIFEST, FunctionRecord, Manifest, Real
+from ..sources.configuration import configuration_source
+from ..sources.function import CSource
+from ..sources.impact import GOLDEN_IMPACTS, NOT_MEASURED, impact_source
+from ..verification.accuracy import Inputs, accuracy, golden_results, is_regular
+from ..verification.configuration import Configuration, has_configuration
+from ..verification.replay import replay
 from .files import replace_package, require_place, sha256
-from .functions import coordinates_of, functions_of, symbols_of
-from .impact_source import GOLDEN_IMPACTS, NOT_MEASURED, impact_source
-from .inputs import parameters_of
-from .manifest import MANIFEST, FunctionRecord, Manifest, Real
 from .names import c_name
-from .poses import checked_poses
 from .render import MEASURED_SAMPLES, Package, render
-from .replay import replay
-from .samples import Sample, as_columns, draw_samples
 from .shared import with_stages
-from .source import CSource
 
 LONGEST_CHAIN = 8
 """Most masses of a generated chain; longer ones lose their last masses to rounding."""

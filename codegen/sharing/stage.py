@@ -12,8 +12,8 @@ import casadi as ca
 
 from softimpact.symbolic import Matrix
 
-from .graph import Graph, Node, graph_of
-from .reciprocals import with_reciprocals
+from ..expressions.graph import Graph, Node, graph_of
+from ..expressions.reciprocals import with_reciprocals
 from .values import Value, Values
 
 

@@ -11,8 +11,11 @@ import numpy as np
 
 from softimpact.symbolic import NoEquilibrium
 
-from .accuracy import DOUBLE_ERROR, MARGIN, SHARE_STATED, rounded_up
-from .configuration import (
+from ..expressions.printer import Statements, print_graph
+from ..inputs.samples import Sample
+from ..record.manifest import FunctionRecord
+from ..verification.accuracy import DOUBLE_ERROR, MARGIN, SHARE_STATED, rounded_up
+from ..verification.configuration import (
     LAST_STEP,
     LONGEST_MOVE,
     LONGEST_STEP,
@@ -22,9 +25,6 @@ from .configuration import (
     golden_configuration,
     rounded_configurations,
 )
-from .manifest import FunctionRecord
-from .printer import Statements, print_graph
-from .samples import Sample
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,9 +11,9 @@ import numpy as np
 
 from softimpact.symbolic import Matrix
 
-from .graph import Graph, graph_of
-from .inputs import Parameter
-from .reciprocals import with_reciprocals
+from ..expressions.graph import Graph, graph_of
+from ..expressions.reciprocals import with_reciprocals
+from ..inputs.parameters import Parameter
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 
 from softimpact.symbolic import Drives, InvalidValue, Robot, UnknownName
 
-from .inputs import POSITIVE, Parameter, freeze, lacks_springs
+from .parameters import POSITIVE, Parameter, freeze, lacks_springs
 
 ALL = "all"
 """Stands for all parameters where some are named."""

@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from .errors import FailedOwnTest
+from ..errors import FailedOwnTest
 
 LONGEST_RUN = 300.0
 """Seconds after which a compiler or a test hangs; thirty joints take some ten."""

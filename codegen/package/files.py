@@ -9,8 +9,8 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..record.manifest import GENERATOR, MANIFEST
 from .folder import ForeignFolder, refusals, replaced, require_replaceable
-from .manifest import GENERATOR, MANIFEST
 
 
 def sha256(text: str) -> str:

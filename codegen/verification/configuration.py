@@ -30,8 +30,8 @@ from softimpact.symbolic import (
 from softimpact.symbolic.matrices import Factorisation
 from softimpact.symbolic.robot.rigid import Array
 
-from .evaluate import evaluate_exactly, evaluate_rounded
-from .graph import Graph, graph_of
+from ..expressions.evaluate import evaluate_exactly, evaluate_rounded
+from ..expressions.graph import Graph, graph_of
 
 NEWTON_STEPS = 12
 """Most Newton steps for one move of the motors."""

@@ -15,25 +15,25 @@ import softimpact
 from softimpact.symbolic import REGIONS, JointKind, Robot, closed_chain
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 
-from . import sine, wide_sine
-from .bindings import bindings
-from .configuration_source import ConfigurationSource
-from .contacts import BuiltIn
-from .costs import Costs, stored_costs
-from .defaults import Default
-from .functions import coordinates_of
-from .impact_source import ImpactSource
-from .inputs import SCALARS, Parameter, is_elastic
-from .interface import interface_of
-from .law_points import MOST_POINTS
-from .manifest import Real
-from .samples import Sample
-from .source import CSource
-from .stage_source import StageSource
+from ..bindings.interface import interface_of
+from ..bindings.languages import bindings
+from ..expressions import sine, wide_sine
+from ..functions import coordinates_of
+from ..inputs.defaults import Default
+from ..inputs.law_points import MOST_POINTS
+from ..inputs.parameters import SCALARS, Parameter, is_elastic
+from ..inputs.regions import BuiltIn
+from ..inputs.samples import Sample
+from ..record.costs import Costs, stored_costs
+from ..record.manifest import Real
+from ..sources.configuration import ConfigurationSource
+from ..sources.function import CSource
+from ..sources.impact import ImpactSource
+from ..sources.stage import StageSource
 
-TEMPLATES = Path(__file__).parent / "templates"
+TEMPLATES = Path(__file__).parents[1] / "templates"
 
-RUNTIME = Path(__file__).parent / "runtime"
+RUNTIME = Path(__file__).parents[1] / "runtime"
 """C that is the same for every robot but for its prefix, which is ``robot_`` there."""
 
 POINT = "robot_point.c"

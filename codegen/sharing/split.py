@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from .graph import FREE, Graph, Node
-from .shared_stage import SharedStage, Use
+from ..expressions.graph import FREE, Graph, Node
+from .stage import SharedStage, Use
 from .values import ZERO, Value, Values
 
 WORTH_A_CALL = 0.7

@@ -13,10 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
-from .inputs import SCALARS
-from .interface import SIZES, CVariable, Entry, interface_of
+from ..bindings.interface import SIZES, CVariable, Entry, interface_of
+from ..inputs.parameters import SCALARS
+from ..sources.function import CSource
 from .render import Package, Templates
-from .source import CSource
 
 ROWS = "batch/rows.c"
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from textwrap import wrap
 
-from .inputs import Parameter
-from .printer import INDENT, LINE, Statements, print_graph
-from .shared_stage import SharedStage
-from .source import DIRECTION
+from ..expressions.printer import INDENT, LINE, Statements, print_graph
+from ..inputs.parameters import Parameter
+from ..sharing.stage import SharedStage
+from .function import DIRECTION
 
 
 @dataclass(frozen=True, eq=False)

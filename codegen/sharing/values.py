@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import casadi as ca
 
-from .graph import Graph, Node
-from .operations import operation
+from ..expressions.graph import Graph, Node
+from ..expressions.operations import operation
 
 
 class Value(NamedTuple):

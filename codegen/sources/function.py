@@ -11,12 +11,12 @@ from typing import ClassVar
 
 import casadi as ca
 
-from .description import CFunction, Output
-from .graph import Graph, Node
-from .inputs import SCALARS, Parameter
-from .manifest import FunctionRecord
-from .printer import INDENT, Call, Statements, print_graph
-from .sharing import Split
+from ..expressions.graph import Graph, Node
+from ..expressions.printer import INDENT, Call, Statements, print_graph
+from ..functions.description import CFunction, Output
+from ..inputs.parameters import SCALARS, Parameter
+from ..record.manifest import FunctionRecord
+from ..sharing.split import Split
 
 Q, DIRECTION = 0, 1
 """Places of q and of the direction among a function's symbols."""

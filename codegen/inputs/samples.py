@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from softimpact.symbolic import Joint, JointKind, Robot
 
 from .closed_samples import closed_configurations
-from .inputs import SCALARS, Parameter
+from .parameters import SCALARS, Parameter
 
 STEPS_PER_UNIT = 1024
 """Joint coordinates are multiples of 1/1024 rad or m."""

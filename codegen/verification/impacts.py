@@ -15,11 +15,13 @@ from softimpact.symbolic import REGIONS, BodyRegion, Contact, Robot, closed_chai
 from softimpact.symbolic.body.laws.series import points_of
 from softimpact.symbolic.robot.rigid import Array
 
+from ..expressions.evaluate import evaluate_rounded
+from ..functions import Symbols
+from ..functions.description import CFunction
+from ..inputs.parameters import Parameter, is_elastic
+from ..inputs.regions import hertz_stiffness
+from ..inputs.samples import Sample, as_columns, draw_samples
 from .accuracy import rounded_unit
-from .description import CFunction
-from .evaluate import evaluate_rounded
-from .functions import Symbols
-from .inputs import Parameter, is_elastic
 from .reference import (
     ReferenceArrival,
     ReferenceBody,
@@ -27,8 +29,6 @@ from .reference import (
     reference_bracket,
     reference_peak,
 )
-from .region_parameters import hertz_stiffness
-from .samples import Sample, as_columns, draw_samples
 
 BODIES = ("head", "chest", "hand")
 """Regions of the random impacts."""
