@@ -13,7 +13,7 @@
 #define SERVO_STEP ROBOT_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
- * displacement, in a contact as fast as `contact`.
+ * displacement, in a contact as fast as `contact`, or as the time there is.
  */
 #define STANDS ROBOT_R(1e-5)
 /*
@@ -167,7 +167,7 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
-    let_stand(impact, contact, released, phase);
+    let_stand(impact, ROBOT_FMAX(contact, ROBOT_R(1.0)/(time*time)), released, phase);
     robot_real moving = ROBOT_R(0.0);
     robot_real rate2 = ROBOT_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
