@@ -247,7 +247,15 @@ bool robot_cholesky(int size, robot_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void robot_forward(int size, robot_matrix L, robot_real *x);
 void robot_backward(int size, robot_matrix L, robot_real *x);
-/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+/* Turns two vectors, a towards b, by an angle of such a cosine and sine, or of a tangent. */
+void robot_turn(int size, robot_real c, robot_real s, robot_real *a, robot_real *b);
+void robot_turn_by(int size, robot_real t, robot_real *a, robot_real *b);
+/*
+ * Tangent of the angle that leaves nothing of an entry `off` of a symmetric matrix (Jacobi): the later one of its
+ * entries on the diagonal, which is more by `apart`, turns towards the earlier one.
+ */
+robot_real robot_tangent(robot_real apart, robot_real off);
+/* Turns the rows of X, and A with them, until A = XKX' is diagonal (Jacobi); false if that does not end. */
 bool robot_diagonalise(int size, robot_matrix A, robot_matrix X);
 /*
  * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is

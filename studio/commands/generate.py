@@ -112,7 +112,7 @@ def generate(
 ) -> None:
     """Write a C99 package; the drives given are the defaults of its parameters."""
     from softimpact.codegen import generate_package
-    from softimpact.codegen.manifest import Real
+    from softimpact.codegen.record.manifest import Real
     from softimpact.symbolic import InvalidValue
 
     from ..output.printed import print_json, print_warnings
@@ -175,7 +175,7 @@ def early_word(joints: int) -> str:
 
 def _compiler() -> tuple[str, ...] | None:
     """Return the C compiler that a package's own test is run with; say so if there is none."""
-    from softimpact.codegen.replay import works
+    from softimpact.codegen.verification.replay import works
     from softimpact.toolchain import c_compiler
 
     found = c_compiler()

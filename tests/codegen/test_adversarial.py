@@ -25,7 +25,7 @@ from compiled_impacts import BOUNDED, DRIVEN, FREE, OK, SERVO, SINGULAR
 from compiled_packages import KINDS, Generated, mostly_slow
 from independent_impacts import arm_of, force_by_scipy
 
-from softimpact.codegen.searched import ASKED, record, searched
+from softimpact.codegen.record.searched import ASKED, record, searched
 from softimpact.simulate import Approach
 from softimpact.symbolic import REGIONS, Contact, Drives, Motors, impact_model
 
@@ -236,9 +236,9 @@ def test_packages_and_the_page_say_what_the_search_wrote(
     impact = package("panda").manifest.impact
     assert impact is not None
     assert impact.searched == searched()
-    monkeypatch.setattr("softimpact.codegen.searched.sources_digest", lambda: told.sources)
+    monkeypatch.setattr("softimpact.codegen.record.searched.sources_digest", lambda: told.sources)
     assert "before its last changes" not in searched()
-    monkeypatch.setattr("softimpact.codegen.searched.sources_digest", lambda: "other")
+    monkeypatch.setattr("softimpact.codegen.record.searched.sources_digest", lambda: "other")
     assert "before its last changes" in searched()
 
 

@@ -14,7 +14,8 @@ from compiled_packages import run, tool
 
 from softimpact import batch
 from softimpact.batch import build
-from softimpact.codegen import region_parameters, wide_sine
+from softimpact.codegen import region_parameters
+from softimpact.codegen.expressions import wide_sine
 from softimpact.symbolic import (
     Contact,
     InvalidValue,

@@ -19,7 +19,7 @@ from softimpact.symbolic.body.verdict import limits_of
 from .build import PREFIX, Sources
 
 if TYPE_CHECKING:
-    from softimpact.codegen.interface import Entry, Interface, CVariable
+    from softimpact.codegen.bindings.interface import Entry, Interface, CVariable
 
 Arrays = dict[str, NDArray[Any]]
 """Results by name, one row a call, and ``status``."""
@@ -181,7 +181,7 @@ class CompiledPackage:
         return inputs
 
     def _kind(self, type_: str) -> np.dtype[Any]:
-        from softimpact.codegen.interface import NUMPY
+        from softimpact.codegen.bindings.interface import NUMPY
 
         return np.dtype(NUMPY[self.sources.real if type_ == "real" else type_])
 
