@@ -118,12 +118,12 @@ static bool look_slower(robot_impact *impact, search *s, robot_budget *budget)
     const robot_real force = s->low_force;
     robot_real from = found;
     s->low = ROBOT_R(0.0);
-    int k = 0;
+    int k = 0; /* of them that are safe */
     while (k < SHARES) {
         robot_real unused;
         s->high = ROBOT_R(0.0);
         if (!try_speed(impact, slower[k]*from, false, s, budget, &unused) || (s->high > ROBOT_R(0.0) && k > 0)) {
-            return k > 0 && !(from < found);
+            break;
         }
         if (s->high > ROBOT_R(0.0)) {
             from = s->high;
@@ -134,9 +134,11 @@ static bool look_slower(robot_impact *impact, search *s, robot_budget *budget)
     if (from < found) {
         return false;
     }
-    s->low = found;
-    s->low_force = force;
-    return true;
+    if (k == SHARES) {
+        s->low = found;
+        s->low_force = force;
+    }
+    return k > 0;
 }
 
 /* Whether loose motors bring too little energy for a force: robot_settled.c, w = 0 at first touch. */
@@ -171,8 +173,8 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
         search s = {counts, ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
         bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
         if (region->law != NULL || hardly_damps) {
-            const bool may_jump = region->law != NULL && (hardly_damps || impact->phase[impact->first].damped);
-            const robot_real share = may_jump ? SHORT_OF_JUMP : ROBOT_R(1.0);
+            const bool exact = !hardly_damps && !impact->phase[impact->first].damped;
+            const robot_real share = region->law == NULL || exact ? ROBOT_R(1.0) : SHORT_OF_JUMP;
             s.low = is_known ? share*s.low : ROBOT_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, &s, &budget);
         }
