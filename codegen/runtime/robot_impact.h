@@ -164,9 +164,13 @@ void robot_impact_let_go(robot_impact *impact);
  * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
  */
 robot_real robot_twice_energy(const robot_impact *impact);
+/* The first of these, r'(M + B)r. */
+robot_real robot_twice_energy_of_arrival(const robot_arrival *arrival, const robot_params *p);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 robot_real robot_bound(const robot_impact *impact);
+/* The same for a K and an energy of one's own, where there is a bound. */
+robot_real robot_bound_by(const robot_impact *impact, robot_real hold, robot_real twice);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void robot_kinds_of_motors(const robot_params *p, int *first, int *last);
