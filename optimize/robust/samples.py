@@ -153,7 +153,7 @@ def _missed(nlp: Nlp, postures: Array, v: Array) -> Array:
 def _worst(nlp: Nlp, postures: Array, v: Array, which: Sequence[int] | Indices) -> Array:
     """Return the largest share of each sample in some impacts; zero without any."""
     instance = nlp.instance
-    y = np.array([felt(nlp.program, each) for each in v])
+    y = felt(nlp.program, v)
     shares = np.zeros((len(v), len(which)))
     points = np.array([instance.shape.impacts[i][1] for i in which])
     for point in np.unique(points):
