@@ -46,12 +46,18 @@ def by_rows(function: ca.Function, *arguments: Array) -> list[Array]:
         for each, own in zip(found, together, strict=True):
             each[some] = own.full().T.reshape(AT_ONCE, -1)
     buffer, evaluate = function.buffer()
+    own = [np.empty(each.shape[1]) for each in given]
+    made = [np.empty(each.shape[1]) for each in found]
+    for i, each in enumerate(own):
+        buffer.set_arg(i, memoryview(each))
+    for i, each in enumerate(made):
+        buffer.set_res(i, memoryview(each))
     for k in range(many, rows):
-        for i, each in enumerate(given):
-            buffer.set_arg(i, memoryview(each[k]))
-        for i, each in enumerate(found):
-            buffer.set_res(i, memoryview(each[k]))
+        for each, rows_of in zip(own, given, strict=True):
+            each[:] = rows_of[k]
         evaluate()
         if buffer.ret():
             raise RuntimeError(f"{function.name()} failed")
+        for each, rows_of in zip(made, found, strict=True):
+            rows_of[k] = each
     return found
