@@ -197,4 +197,3 @@ def _bounds(serialised: str, held: int, n: int | None) -> ca.Function:
     rows, by_x = task(x, b)
     found = [rows[held:, :]] if n is None else [rows[held:, :], by_x[held:, n:]]
     return ca.Function("bounds", [x, b], found)
-

@@ -7,6 +7,7 @@ For a few rows these would cost as much as the impacts that are simulated.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -45,19 +46,20 @@ def by_rows(function: ca.Function, *arguments: Array) -> list[Array]:
         together = function.map(AT_ONCE).call([each[some].T for each in given])
         for each, own in zip(found, together, strict=True):
             each[some] = own.full().T.reshape(AT_ONCE, -1)
+    buffer: Any  # CasADi's stubs want what its Python does not take
     buffer, evaluate = function.buffer()
-    own = [np.empty(each.shape[1]) for each in given]
+    row = [np.empty(each.shape[1]) for each in given]
     made = [np.empty(each.shape[1]) for each in found]
-    for i, each in enumerate(own):
-        buffer.set_arg(i, memoryview(each))
-    for i, each in enumerate(made):
-        buffer.set_res(i, memoryview(each))
+    for i, argument in enumerate(row):
+        buffer.set_arg(i, argument.data)
+    for i, result in enumerate(made):
+        buffer.set_res(i, result.data)
     for k in range(many, rows):
-        for each, rows_of in zip(own, given, strict=True):
-            each[:] = rows_of[k]
+        for argument, each in zip(row, given, strict=True):
+            argument[:] = each[k]
         evaluate()
         if buffer.ret():
             raise RuntimeError(f"{function.name()} failed")
-        for each, rows_of in zip(made, found, strict=True):
-            rows_of[k] = each
+        for result, each in zip(made, found, strict=True):
+            each[k] = result
     return found
