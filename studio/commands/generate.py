@@ -115,7 +115,7 @@ def generate(
     from softimpact.codegen.record.manifest import Real
     from softimpact.symbolic import InvalidValue
 
-    from ..output.printed import print_json, print_warnings
+    from ..output.printed import print_json, print_warnings, say_beside
     from ..output.progress import progress_bar
     from ..typed.pose_table import pose_table
     from ..typed.situation import drives_of, gravity_of
@@ -145,7 +145,7 @@ def generate(
         compiler=_compiler(),
     )
     if robot.n >= MANY_JOINTS:
-        typer.echo(early_word(robot.n), err=True)
+        say_beside(early_word(robot.n))
     with progress_bar() as progress:
         task = progress.add_task("", total=None)
 
@@ -181,8 +181,10 @@ def _compiler() -> tuple[str, ...] | None:
     found = c_compiler()
     if found is not None and works(found):
         return found
+    from ..output.printed import print_warnings
+
     what = "there is no C compiler" if found is None else f"'{' '.join(found)}' makes no programs"
-    typer.echo(f"warning: {what}, so the package's own test was not run", err=True)
+    print_warnings([f"{what}, so the package's own test was not run"])
     return None
 
 
@@ -286,6 +288,9 @@ def _impact_rows(manifest: Manifest) -> list[tuple[str, str, str, str, str]]:
     flops, error = f"{impact.flops} + steps", f"{impact.accuracy:.1e}"
     names = ["safe_speed", "speed_factor", *(["select_configuration"] if manifest.poses else [])]
     return [
-        (f"{manifest.name}_peak_force", flops, "–", error, error),
-        *((f"{manifest.name}_{name}", flops, "–", "safe side", "safe side") for name in names),
+        (f"{manifest.name}_peak_force", flops, "not counted", error, error),
+        *(
+            (f"{manifest.name}_{name}", flops, "not counted", "safe side", "safe side")
+            for name in names
+        ),
     ]

@@ -7,6 +7,7 @@ from softimpact.optimize import Outcome
 from softimpact.optimize.study.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
 
+from ..output.dashes import explain, reasons
 from ..output.printed import Cell, print_table, say, tables_are_csv
 from .answers_in_words import answers_in_words
 from .report import (
@@ -54,6 +55,7 @@ def print_design(report: DesignReport) -> None:
     )
     if not fits:
         say("joint stiffness of each pose: --csv, or results.json")
+    explain(reasons(pose.figures for pose in report.poses))
     for line in [*_notes(report), *_winner(report)]:
         say(line)
 
