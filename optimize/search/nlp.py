@@ -26,7 +26,8 @@ from ..bounds import row
 from ..evaluation import equipped
 from ..impact.impact_program import NUMBERS, SIZES, ImpactProgram, Parts
 from ..impact.peaks import WINDOWS
-from ..machine.hardware import Hardware, Machine
+from ..machine.hardware import Hardware
+from ..machine.machine import Machine
 from ..objectives import Objective, WorstForce
 from ..posture.tip_pose import posture_error
 from ..study.study import Study
