@@ -58,7 +58,7 @@ format: $(VENV)/installed-test
 bench: $(VENV)/installed-test
 	$(BIN)/python -m benchmarks
 
-# instructions, stack and code size on emulated Cortex-M, written to codegen/costs, docs/embedded.md
+# instructions, stack and code size on emulated Cortex-M, written to codegen/record/costs, docs/embedded.md
 # and the packages themselves, which needs arm-none-eabi-gcc and QEMU;
 # then the same numbers by Pinocchio, CasADi, adam and urdf2casadi
 bench-c: $(VENV)/installed-test $(OTHERS)/installed

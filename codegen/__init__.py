@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """CasADi expressions to portable C99 packages."""
 
-from .defaults import Payload
 from .errors import FailedOwnTest, UnsupportedOperation
-from .folder import FolderNotWritable, ForeignFolder
-from .manifest import FunctionRecord, Manifest
-from .package import generate_package, package_of
-from .region_parameters import region_parameters
+from .inputs.defaults import Payload
+from .inputs.regions import region_parameters
+from .package.folder import FolderNotWritable, ForeignFolder
+from .package.generate import generate_package, package_of
+from .record.manifest import FunctionRecord, Manifest
 
 __all__ = [
     "FailedOwnTest",

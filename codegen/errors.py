@@ -13,7 +13,7 @@ class UnsupportedOperation(SoftImpactError):
         self.operation = operation
         super().__init__(
             f"CasADi operation {name} ({operation}) has no C counterpart here; "
-            "rewrite the expression or add it to codegen/operations.py"
+            "rewrite the expression or add it to codegen/expressions/operations.py"
         )
 
 

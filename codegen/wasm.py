@@ -21,9 +21,9 @@ from typing import Any
 from softimpact.symbolic import SoftImpactError
 from softimpact.toolchain import zig_environment
 
+from .bindings.interface import SIZES, WASM_POINTER, CVariable, Interface, read_interface
 from .errors import NoCrossCompiler
-from .interface import SIZES, WASM_POINTER, CVariable, Interface, read_interface
-from .manifest import Real
+from .record.manifest import Real
 
 GLUE = Path(__file__).parent / "web" / "package.mjs"
 """Module whose ``load(bytes)`` returns an object with a method for each function."""

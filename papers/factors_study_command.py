@@ -24,7 +24,7 @@ def factors_study(
 ) -> None:
     """Show impact factors over the poses and the self-motion, and how well they foretell force."""
     from softimpact.optimize import load_study
-    from softimpact.studio.output.printed import print_json, write_json
+    from softimpact.studio.output.printed import print_json, say_beside, write_json
     from softimpact.studio.output.results_folder import (
         RESULTS,
         replaced_folder,
@@ -37,7 +37,7 @@ def factors_study(
 
     problem = load_study(study)
     require_replaceable_results(out, GENERATOR)
-    found = factor_study(problem, tip or (), lambda stage: typer.echo(stage, err=True))
+    found = factor_study(problem, tip or (), say_beside)
     record = factor_study_record(found)
     with replaced_folder(out, GENERATOR) as fresh:
         write_json(fresh / RESULTS, record)

@@ -107,6 +107,7 @@ def _impact_factors(folder: Path) -> dict[str, Any]:
 
     from softimpact.optimize import load_study
     from softimpact.robots import FOLDER
+    from softimpact.studio.output.printed import say_beside
 
     from .factor_figures import draw_factor_figures
     from .factor_study import factor_study
@@ -114,7 +115,7 @@ def _impact_factors(folder: Path) -> dict[str, Any]:
     from .giaf.statements import STUDY, TIPS, statements
 
     study = load_study(FOLDER / STUDY)
-    found = factor_study(study, TIPS, lambda stage: typer.echo(stage, err=True))
+    found = factor_study(study, TIPS, say_beside)
     lines = statements(found)
     folder.mkdir()
     figures = [path.name for path in draw_factor_figures(found, folder)]

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from compiled_packages import KINDS, Generated
 
-from softimpact.codegen.impacts import Impact, draw_impacts
-from softimpact.codegen.inputs import parameters_of
-from softimpact.codegen.samples import Sample
+from softimpact.codegen.inputs.parameters import parameters_of
+from softimpact.codegen.inputs.samples import Sample
+from softimpact.codegen.verification.impacts import Impact, draw_impacts
 from softimpact.symbolic import REGIONS
 from softimpact.symbolic.robot.rigid import Array
 

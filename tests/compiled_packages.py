@@ -18,12 +18,12 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 from sharing import once
 
-from softimpact.codegen.description import CFunction
+from softimpact.codegen.bindings.interface import Interface, read_interface
 from softimpact.codegen.functions import functions_of, symbols_of
-from softimpact.codegen.inputs import SCALARS, Parameter, freeze, parameters_of
-from softimpact.codegen.interface import Interface, read_interface
-from softimpact.codegen.manifest import Manifest
-from softimpact.codegen.samples import Sample
+from softimpact.codegen.functions.description import CFunction
+from softimpact.codegen.inputs.parameters import SCALARS, Parameter, freeze, parameters_of
+from softimpact.codegen.inputs.samples import Sample
+from softimpact.codegen.record.manifest import Manifest
 from softimpact.studio.typed.pose_table import pose_table
 from softimpact.symbolic import Robot
 from softimpact.symbolic.robot.rigid import Array

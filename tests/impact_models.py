@@ -6,7 +6,7 @@ from __future__ import annotations
 import casadi as ca
 from compiled_impacts import Impacts
 
-from softimpact.codegen.samples import Sample
+from softimpact.codegen.inputs.samples import Sample
 from softimpact.symbolic import Drives, ImpactModel, impact_model
 
 

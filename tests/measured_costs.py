@@ -12,8 +12,8 @@ from bound_on_time import bound_of_driven_safe_speed
 from compiled_packages import Generated, run
 from cross_compiled import BOARD, CORES, GCC, OPTIMISE, build, compile_one, link, run_image
 
-from softimpact.codegen.cost_digests import cost_digests
-from softimpact.codegen.costs import Costs, FunctionCost, Instructions, SharedCost
+from softimpact.codegen.record.cost_digests import cost_digests
+from softimpact.codegen.record.costs import Costs, FunctionCost, Instructions, SharedCost
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "[^"]*\\n(\d+) bytes \((.*?)\)')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')

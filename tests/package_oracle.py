@@ -10,10 +10,10 @@ import casadi as ca
 import numpy as np
 from compiled_packages import Generated, Library, parameter
 
-from softimpact.codegen.description import CFunction, Output
-from softimpact.codegen.inputs import is_elastic
-from softimpact.codegen.manifest import FunctionRecord
-from softimpact.codegen.samples import Sample
+from softimpact.codegen.functions.description import CFunction, Output
+from softimpact.codegen.inputs.parameters import is_elastic
+from softimpact.codegen.inputs.samples import Sample
+from softimpact.codegen.record.manifest import FunctionRecord
 from softimpact.symbolic import (
     Drives,
     ImpactModel,

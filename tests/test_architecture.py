@@ -23,6 +23,10 @@ MAY_IMPORT = {
     "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }
 ORDER = {
+    "codegen": (
+        *("inputs", "expressions", "sharing", "functions", "bindings", "record"),
+        *("verification", "sources", "package"),
+    ),
     "optimize": ("machine", "posture", "search", "robust", "front"),
     "studio": (
         *("typed", "output", "robot", "impact", "program", "map", "design", "front"),

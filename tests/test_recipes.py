@@ -14,10 +14,11 @@ from command_line import run, run_json
 from compiled_packages import Generated
 
 from softimpact import cli, robots
-from softimpact.codegen import generate_package, package
-from softimpact.codegen.description import Output
+from softimpact.codegen import generate_package
 from softimpact.codegen.functions.catalogue import functions_of
+from softimpact.codegen.functions.description import Output
 from softimpact.codegen.functions.symbols import function_over
+from softimpact.codegen.package import generate
 from softimpact.studio.commands.common import common
 from softimpact.symbolic import frame_pose, load_robot
 
@@ -90,7 +91,7 @@ def test_a_c_function_is_a_function_and_its_place(
         own = function_over(s, "height", "Height of the contact point.", (output,))
         return (*functions_of(s, *given, **options), own)
 
-    monkeypatch.setattr(package, "functions_of", with_height)
+    monkeypatch.setattr(generate, "functions_of", with_height)
     robot = load_robot("ur5e")
     manifest = generate_package(robot, tmp_path / "c", chain_order=2)
     assert manifest.functions[-1].name == "ur5e_height"

@@ -4,7 +4,7 @@
 Usage: python benchmarks/embedded/run.py [--all] [ROBOT ...]
 
 Measures what has changed since it was last measured, or everything with ``--all``, and writes
-``codegen/costs/ROBOT.json`` for each robot (default: all of ``generated/``), from which the
+``codegen/record/costs/ROBOT.json`` for each robot (default: all of ``generated/``), from which the
 generator fills in README and manifest of a package, and ``docs/embedded.md`` for the Panda.
 Needs arm-none-eabi-gcc, newlib and qemu-system-arm. The numbers depend on nothing but the
 compiler's version.
@@ -23,7 +23,7 @@ from compiled_packages import COMMITTED, Generated, candidate_poses  # noqa: E40
 from measured_costs import FEW_STEPS, compiler_version, measure  # noqa: E402
 
 from softimpact.codegen import generate_package  # noqa: E402
-from softimpact.codegen.costs import COSTS, Costs, FunctionCost  # noqa: E402
+from softimpact.codegen.record.costs import COSTS, Costs, FunctionCost  # noqa: E402
 from softimpact.symbolic import load_robot  # noqa: E402
 
 PAGE = ROOT / "docs/embedded.md"

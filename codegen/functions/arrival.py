@@ -9,8 +9,8 @@ import casadi as ca
 
 from softimpact.symbolic import Matrix, contact_point_jacobian, loop_tangent
 
-from ..description import CFunction, Output
-from ..inputs import is_elastic
+from ..inputs.parameters import is_elastic
+from .description import CFunction, Output
 from .symbols import Symbols, function_over
 
 

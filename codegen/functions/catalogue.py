@@ -8,7 +8,7 @@ import numpy as np
 
 from softimpact.symbolic import ImpactModel
 
-from ..description import CFunction
+from .description import CFunction
 from .dynamics import (
     contact_jacobian,
     generalised_mass_matrix,

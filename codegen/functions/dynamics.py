@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from ..description import CFunction, Output
+from .description import CFunction, Output
 from .symbols import Symbols, function_over
 
 

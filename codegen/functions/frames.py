@@ -7,7 +7,7 @@ import casadi as ca
 
 from softimpact.symbolic.dynamics.kinematics import motions, poses
 
-from ..description import CFunction, Output
+from .description import CFunction, Output
 from .symbols import Symbols, function_over
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from softimpact.symbolic import ImpactModel, Matrix, Robot, loop_gaps
 
-from ..description import Guard
-from ..directions import some_configurations
+from ..inputs.directions import some_configurations
+from .description import Guard
 
 IMMOVABLE = 1e3
 """A contact point counts as unable to move where it feels this many times the robot's mass."""

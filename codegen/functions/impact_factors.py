@@ -16,7 +16,7 @@ from softimpact.symbolic import (
 from softimpact.symbolic.matrices import count_flops
 from softimpact.symbolic.robot.robot import BASE
 
-from ..description import CFunction, Guard, Output
+from .description import CFunction, Guard, Output
 from .guards import movable_in_space
 from .symbols import Symbols, function_over
 

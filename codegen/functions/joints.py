@@ -6,7 +6,7 @@ from __future__ import annotations
 from softimpact.symbolic import giaf_by_rotor, single_joint_giaf
 from softimpact.symbolic.factors.joint_impulse import impulse_along
 
-from ..description import CFunction, Guard, Output
+from .description import CFunction, Guard, Output
 from .guards import movable, movable_in_space
 from .symbols import Symbols, function_over
 

@@ -9,7 +9,7 @@ import casadi as ca
 
 from softimpact.symbolic import least_velocity, linearisation_error
 
-from ..description import CFunction, Guard, Output
+from .description import CFunction, Guard, Output
 from .guards import fastest_arrival, movable
 from .symbols import Symbols, function_over
 

@@ -9,7 +9,7 @@ from softimpact.symbolic import Matrix
 from softimpact.symbolic.factors import ellipsoids
 from softimpact.symbolic.matrices import symmetric
 
-from ..description import CFunction, Guard, Output
+from .description import CFunction, Guard, Output
 from .symbols import Symbols, function_over
 
 LEAST_MANIPULABILITY = 1e-3

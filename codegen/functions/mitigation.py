@@ -14,7 +14,7 @@ from softimpact.symbolic import (
 from softimpact.symbolic import impact_mitigation as mitigation
 from softimpact.symbolic.impact.floating import BASE_COORDINATES
 
-from ..description import CFunction, Output
+from .description import CFunction, Output
 from .guards import movable_in_space
 from .symbols import Symbols, function_over
 

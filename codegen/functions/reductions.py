@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from ..description import CFunction, Guard, Output
+from .description import CFunction, Guard, Output
 from .guards import movable
 from .symbols import Symbols, function_over
 

@@ -11,10 +11,10 @@ import casadi as ca
 from softimpact.symbolic import Matrix, contact_mobility
 from softimpact.symbolic.matrices import Factorisation, symmetric
 
-from ..graph import graph_of
-from ..inputs import is_elastic
-from ..shared_stage import SharedStage, Use
-from ..values import Value, Values
+from ..expressions.graph import graph_of
+from ..inputs.parameters import is_elastic
+from ..sharing.stage import SharedStage, Use
+from ..sharing.values import Value, Values
 from .impact_factors import axes_of_factors
 from .symbols import Symbols
 

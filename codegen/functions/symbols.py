@@ -12,8 +12,8 @@ import casadi as ca
 from softimpact.symbolic import Drives, ImpactModel, Matrix, Robot, closed_chain, contact_mobility
 from softimpact.symbolic.factors.contact_mobility import ContactMobility
 
-from ..description import CFunction, Guard, Output
-from ..inputs import SCALARS, Parameter, is_elastic
+from ..inputs.parameters import SCALARS, Parameter, is_elastic
+from .description import CFunction, Guard, Output
 from .guards import loops_closed
 
 

@@ -74,6 +74,7 @@ def _record(scene: Situation, result: Analysis) -> dict[str, Any]:
 
 def _print_rows(found: list[tuple[Situation, Analysis]]) -> None:
     """Print a line for each point and direction."""
+    from ..output.dashes import explain, reasons
     from ..output.printed import print_table
 
     print_table(
@@ -93,9 +94,11 @@ def _print_rows(found: list[tuple[Situation, Analysis]]) -> None:
             for scene, result in found
         ],
     )
+    explain(reasons(result for _, result in found))
 
 
 def _print_tables(result: Analysis) -> None:
+    from ..output.dashes import NO_PUSH, explain, reasons
     from ..output.printed import print_table
 
     print_table(
@@ -112,6 +115,8 @@ def _print_tables(result: Analysis) -> None:
             ("GIAF along the direction", result.directional_giaf, ""),
         ],
     )
+    no_push = [NO_PUSH] if result.static_stiffness is None else []
+    explain([*no_push, *reasons([result])])
     masses, springs = result.chain.mass, result.chain.stiffness
     print_table(
         "Chain, from the contact point to ground",

@@ -13,7 +13,7 @@ def check(study: o.StudyFileArgument, json: o.JsonOption = False) -> None:
     from softimpact.optimize.study.study import load_study
     from softimpact.optimize.study_check import study_problems
 
-    from ..output.printed import print_json, print_warnings, say
+    from ..output.printed import print_json, print_warnings, say, say_beside
 
     problems = study_problems(study)
     if json:
@@ -21,7 +21,7 @@ def check(study: o.StudyFileArgument, json: o.JsonOption = False) -> None:
     for problem in problems:
         where = study if problem.line is None else f"{study}:{problem.line}"
         what = f"{problem.field}: " if problem.field else ""
-        typer.echo(f"error: {where}: {what}{' '.join(problem.reason.split())}", err=True)
+        say_beside(f"error: {where}: {what}{' '.join(problem.reason.split())}")
     if problems:
         raise typer.Exit(2)
     found = load_study(study)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
 import typer
@@ -102,7 +102,18 @@ def flat(found: Any) -> dict[str, Any]:
     return result
 
 
+def _reasons(result: Mapping[str, Any]) -> Iterator[str]:
+    """Yield why numbers are dashes."""
+    from ..output.dashes import FEWER
+
+    if result["giaf"] is None or result["force_measure"] is None:
+        yield f"– GIAF and its kin, measures: {FEWER}"
+    if result["imf"] is None:
+        yield f"– IMF: {FEWER if result['floating'] else 'the base is held (--floating)'}"
+
+
 def _print_tables(result: Mapping[str, Any]) -> None:
+    from ..output.dashes import explain
     from ..output.printed import print_table
 
     least = result["directional_giaf_extremes"]
@@ -126,6 +137,7 @@ def _print_tables(result: Mapping[str, Any]) -> None:
             ("impulse of the impact", result["impulse"].contact, "N s"),
         ],
     )
+    explain(_reasons(result))
     rows = len(result["joints"])
     alone, slope = (
         [None] * rows if result[name] is None else result[name]

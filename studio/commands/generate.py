@@ -112,10 +112,10 @@ def generate(
 ) -> None:
     """Write a C99 package; the drives given are the defaults of its parameters."""
     from softimpact.codegen import generate_package
-    from softimpact.codegen.manifest import Real
+    from softimpact.codegen.record.manifest import Real
     from softimpact.symbolic import InvalidValue
 
-    from ..output.printed import print_json, print_warnings
+    from ..output.printed import print_json, print_warnings, say_beside
     from ..output.progress import progress_bar
     from ..typed.pose_table import pose_table
     from ..typed.situation import drives_of, gravity_of
@@ -145,7 +145,7 @@ def generate(
         compiler=_compiler(),
     )
     if robot.n >= MANY_JOINTS:
-        typer.echo(early_word(robot.n), err=True)
+        say_beside(early_word(robot.n))
     with progress_bar() as progress:
         task = progress.add_task("", total=None)
 
@@ -175,14 +175,16 @@ def early_word(joints: int) -> str:
 
 def _compiler() -> tuple[str, ...] | None:
     """Return the C compiler that a package's own test is run with; say so if there is none."""
-    from softimpact.codegen.replay import works
+    from softimpact.codegen.verification.replay import works
     from softimpact.toolchain import c_compiler
 
     found = c_compiler()
     if found is not None and works(found):
         return found
+    from ..output.printed import print_warnings
+
     what = "there is no C compiler" if found is None else f"'{' '.join(found)}' makes no programs"
-    typer.echo(f"warning: {what}, so the package's own test was not run", err=True)
+    print_warnings([f"{what}, so the package's own test was not run"])
     return None
 
 
@@ -259,26 +261,31 @@ def _payload(wanted: bool, mass: float | None, com: str | None) -> Payload | Non
 
 
 def _print_table(manifest: Manifest, out: Path) -> None:
+    from ..output.dashes import explain
     from ..output.printed import print_table
 
     print_table(
         f"{manifest.model}, {len(manifest.files)} files in {out}",
         ("function", "flops", "sin, cos", "error, double", "error, float"),
         [
-            (
-                function.name,
-                str(function.flops),
-                str(function.sines_and_cosines),
-                f"{function.double_error:.1e}",
-                f"{function.float_error:.1e}",
-            )
-            for function in manifest.functions
-        ]
-        + _impact_rows(manifest),
+            *(
+                (
+                    function.name,
+                    str(function.flops),
+                    str(function.sines_and_cosines),
+                    f"{function.double_error:.1e}",
+                    f"{function.float_error:.1e}",
+                )
+                for function in manifest.functions
+            ),
+            *_impact_rows(manifest),
+        ],
     )
+    if manifest.impact is not None:
+        explain(["– sin, cos: not counted of steps in time"])
 
 
-def _impact_rows(manifest: Manifest) -> list[tuple[str, str, str, str, str]]:
+def _impact_rows(manifest: Manifest) -> list[tuple[str, str, str | None, str, str]]:
     """Return the functions that step through impacts in time."""
     impact = manifest.impact
     if impact is None:
@@ -286,6 +293,6 @@ def _impact_rows(manifest: Manifest) -> list[tuple[str, str, str, str, str]]:
     flops, error = f"{impact.flops} + steps", f"{impact.accuracy:.1e}"
     names = ["safe_speed", "speed_factor", *(["select_configuration"] if manifest.poses else [])]
     return [
-        (f"{manifest.name}_peak_force", flops, "–", error, error),
-        *((f"{manifest.name}_{name}", flops, "–", "safe side", "safe side") for name in names),
+        (f"{manifest.name}_peak_force", flops, None, error, error),
+        *((f"{manifest.name}_{name}", flops, None, "safe side", "safe side") for name in names),
     ]

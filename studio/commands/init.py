@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import typer
-
 from ..typed import options as o
 
 
@@ -25,4 +23,4 @@ def init(
     if json:
         print_json({"text": text, "study": tomllib.loads(text), "warnings": warnings})
     else:
-        typer.echo(text, nl=False)
+        print(text, end="")

@@ -42,10 +42,10 @@ def _print_tables(found: Mapping[str, Any]) -> None:
         ],
     )
     print_table(
-        "Joints (q: entry of --q that is the joint's, for this contact frame)",
+        "Joints (q: entry of --q that is the joint's; no: off the way to the contact frame)",
         ("joint", "kind", "on", "moves [kg]", "q"),
         [
-            (j["name"], j["kind"], j["parent"], j["mass"], entries.get(j["name"]))
+            (j["name"], j["kind"], j["parent"] or "base", j["mass"], entries.get(j["name"], "no"))
             for j in found["joints"]
         ],
     )
@@ -86,7 +86,11 @@ def _print_tables(found: Mapping[str, Any]) -> None:
             ("name", "kind", "what it ties"),
             [(c["name"], c["kind"], c["ties"]) for c in found["constraints"]],
         )
-    print_table("Frames", ("frame", "moved by"), [(f["name"], f["joint"]) for f in found["frames"]])
+    print_table(
+        "Frames",
+        ("frame", "moved by"),
+        [(f["name"], f["joint"] or "base") for f in found["frames"]],
+    )
     print_table(
         "Mass matrix by others, largest difference over largest entry",
         ("library", "difference"),

@@ -36,7 +36,7 @@ def robots(json: JsonOption = False) -> None:
                 name,
                 str(robot.n),
                 robot.tip,
-                "\n".join(robot.rotor_inertia_sets) or None,
+                "\n".join(robot.rotor_inertia_sets) or "none",
                 path.name,
             )
             for name, (robot, path) in found.items()

@@ -17,6 +17,7 @@ from softimpact.symbolic import InvalidValue, analyse, directional_giaf, giaf
 from softimpact.symbolic.robot.rigid import Array
 
 from ..output.cautions import study_warnings
+from ..output.dashes import explain, reasons
 from ..output.printed import AS_CSV, Cell, print_table, say
 from .checks import simulated
 
@@ -193,6 +194,7 @@ def print_ranking(study: Study, criterion: Criterion, ranked: Sequence[PoseFigur
         f"limit {limit:.4g} N",
         *figures_table(shown),
     )
+    explain(reasons(shown))
     if len(shown) < len(ranked):
         say(f"the first {len(shown)} of {len(ranked):,}; --csv and --json have all")
 

@@ -7,6 +7,7 @@ from softimpact.optimize import Outcome
 from softimpact.optimize.study.poses import leaves_a_choice
 from softimpact.symbolic.robot.rigid import Array
 
+from ..output.dashes import explain, reasons
 from ..output.printed import Cell, print_table, say, tables_are_csv
 from .answers_in_words import answers_in_words
 from .report import (
@@ -20,6 +21,9 @@ from .report import (
     reactions_in_words,
 )
 
+MODES = ("table\nN", "free\nN")
+"""Columns of the searches, each of which one may leave out."""
+
 COLUMNS = (
     "rank",
     "pose",
@@ -28,8 +32,7 @@ COLUMNS = (
     "m_a\nkg",
     "GIAF",
     "before\nN",
-    "table\nN",
-    "free\nN",
+    *MODES,
     "Ipopt",
     "best k_s\nkN·m/rad",
 )
@@ -45,15 +48,21 @@ def print_design(report: DesignReport) -> None:
     held = "clamped" if contact.clamped else "free to give way"
     rows = [_row(pose) for pose in report.poses]
     fits = tables_are_csv() or all(len(str(row[-1])) <= NARROW for row in rows)
-    columns = COLUMNS if fits else COLUMNS[:-1]
+    columns = dict(zip(COLUMNS, zip(*rows, strict=True), strict=True))
+    if not fits:
+        del columns[COLUMNS[-1]]
+    for mode in MODES if not tables_are_csv() else ():
+        if not any(columns[mode]):
+            del columns[mode]
     print_table(
         f"{study.title}\n{contact.region.title}, {held}, {study.speed:g} m/s; "
         f"{peak_in_words(study)}. Nominal: k_s = {_stiffness(study.nominal)} kN·m/rad",
-        columns,
-        [row[: len(columns)] for row in rows],
+        list(columns),
+        list(zip(*columns.values(), strict=True)),
     )
     if not fits:
         say("joint stiffness of each pose: --csv, or results.json")
+    explain(reasons(pose.figures for pose in report.poses))
     for line in [*_notes(report), *_winner(report)]:
         say(line)
 

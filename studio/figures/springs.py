@@ -75,7 +75,8 @@ def _message(report: DesignReport) -> str:
     loose = [name for name, (low, high) in zip(names, ranges, strict=True) if high > LOOSE * low]
     if not loose:
         return "Joint stiffness of least peak force: every joint matters"
-    return f"Joint stiffness of least peak force: {len(loose)} of {len(names)} hardly matter"
+    matter = "matters" if len(loose) == 1 else "matter"
+    return f"Joint stiffness of least peak force: {len(loose)} of {len(names)} hardly {matter}"
 
 
 LOOSE = 10.0

@@ -14,7 +14,7 @@ from softimpact.symbolic.body.regions import NEWTON_PER_CM2
 from softimpact.symbolic.body.shapes import shape_from
 
 from ..output.cautions import not_permitted
-from ..output.printed import print_table
+from ..output.printed import print_table, tables_are_csv
 from .impact import Answer, controller_of
 
 
@@ -146,6 +146,13 @@ def _cautions(found: Assessment) -> Iterator[str]:
             yield f"joints {', '.join(names)} are {words}"
 
 
+_WITHOUT = {
+    "separation after": "not while it is looked at",
+    "largest safe speed (--safe-speed)": "not asked for",
+}
+"""What stands in the place of a number that there is not."""
+
+
 def print_impact(result: Mapping[str, Any]) -> None:
     """Print a record as a table."""
     separation, bracket = result["separation"], result["bracket"]
@@ -166,6 +173,7 @@ def print_impact(result: Mapping[str, Any]) -> None:
         ("pressure, at most", _per_cm2(result["pressure"]), "N/cm²"),
         ("limit, transient force", limits["transient"], "N"),
         ("limit, quasi-static force", limits["quasi_static"], "N"),
+        ("limit, transient energy", limits["energy"], "J"),
         (f"verdict, by {result['binding']}", result["verdict"], ""),
         ("two-body formula of the standard", result["iso"]["force"], "N"),
         ("  its speed for the transient limit", result["iso"]["safe_speed"], "m/s"),
@@ -176,11 +184,14 @@ def print_impact(result: Mapping[str, Any]) -> None:
         rows.insert(2, ("  95 of 100 cases lie within", f"{low} to {high}", "N"))
     absent = {
         "pressure, at most": result["pressure"],
+        "limit, transient energy": limits["energy"],
         "largest reading of the device": result["reading"],
     }
     rows = [row for row in rows if absent.get(row[0], 0.0) is not None]
-    if bracket is None:
+    if bracket is None or None in (bracket.get("free"), bracket.get("driven")):
         rows = [row for row in rows if "if " not in row[0][:5]]
+    if not tables_are_csv():
+        rows = [(name, _WITHOUT.get(name, "none") if x is None else x, u) for name, x, u in rows]
     print_table(
         f"{result['robot']} on {result['region']} ({held}) at {result['speed']:g} m/s, "
         f"model {result['model']}, motors {result['motors']}",

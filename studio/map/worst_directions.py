@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from softimpact.batch import compiled
-from softimpact.codegen.directions import directions_of_motion
-from softimpact.codegen.inputs import is_elastic
+from softimpact.codegen.inputs.directions import directions_of_motion
+from softimpact.codegen.inputs.parameters import is_elastic
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors, limits_of
 from softimpact.symbolic.robot.rigid import Array
 

@@ -42,7 +42,7 @@ def design_warnings(study: Study) -> list[str]:
 
 def in_c(model: ImpactModel) -> ImpactModel | None:
     """Return the model of which a design's C is, with its base held; None if springs were lost."""
-    from softimpact.codegen.inputs import lacks_springs
+    from softimpact.codegen.inputs.parameters import lacks_springs
 
     held = base_held(model) if is_floating(model.robot) else model
     return None if lacks_springs(held.robot, held.drives) else held

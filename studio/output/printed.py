@@ -12,7 +12,6 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
-import typer
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
@@ -46,18 +45,23 @@ def tables_are_csv() -> bool:
 
 def say(line: str) -> None:
     """Print a line for people to stdout; to stderr where stdout is for a machine."""
-    typer.echo(line, err=tables_are_csv())
+    print(line, file=sys.stderr if tables_are_csv() else sys.stdout)
+
+
+def say_beside(line: str) -> None:
+    """Print a line to stderr, where it is in no machine's way."""
+    print(line, file=sys.stderr)
 
 
 def print_json(result: Mapping[str, Any]) -> None:
     """Print one JSON object to stdout."""
-    typer.echo(json.dumps(plain(result), allow_nan=False))
+    print(json.dumps(plain(result), allow_nan=False))
 
 
 def print_warnings(lines: Iterable[str]) -> None:
     """Print what was ignored or assumed to stderr, one line each."""
     for line in lines:
-        typer.echo(f"warning: {' '.join(line.split())}", err=True)
+        say_beside(f"warning: {' '.join(line.split())}")
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from softimpact.codegen import ForeignFolder
-from softimpact.codegen import folder as place
+from softimpact.codegen.package import folder as place
 
 from .printed import print_warnings
 

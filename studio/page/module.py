@@ -14,7 +14,7 @@ from pathlib import Path
 import softimpact
 from softimpact.codegen import wasm
 from softimpact.codegen.errors import NoCrossCompiler
-from softimpact.codegen.render import Package, render
+from softimpact.codegen.package.render import Package, render
 from softimpact.toolchain import usable_cache
 
 from .package import PREFIX

@@ -13,23 +13,23 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from softimpact.codegen.defaults import Payload, defaults_of
-from softimpact.codegen.description import CFunction, Output
-from softimpact.codegen.directions import directions_of_motion
 from softimpact.codegen.functions import Symbols, coordinates_of, has_potential, links_of
 from softimpact.codegen.functions.catalogue import moves_in_space
+from softimpact.codegen.functions.description import CFunction, Output
 from softimpact.codegen.functions.frames import frames_of
 from softimpact.codegen.functions.guards import fastest_arrival, heaviest
 from softimpact.codegen.functions.impact_factors import directional_factor, impact_factors
 from softimpact.codegen.functions.reductions import reduced_model, reflected_mass
 from softimpact.codegen.functions.symbols import function_over, symbols_of
-from softimpact.codegen.impact_source import DEFAULT_BUDGET, HORIZON, PEAK_ERROR, ImpactSource
-from softimpact.codegen.inputs import ANY, SHARE, Parameter, is_elastic, parameters_of
-from softimpact.codegen.manifest import FunctionRecord, ImpactRecord
-from softimpact.codegen.package import TIP
-from softimpact.codegen.render import Package
-from softimpact.codegen.samples import Sample
-from softimpact.codegen.source import CSource
+from softimpact.codegen.inputs.defaults import Payload, defaults_of
+from softimpact.codegen.inputs.directions import directions_of_motion
+from softimpact.codegen.inputs.parameters import ANY, SHARE, Parameter, is_elastic, parameters_of
+from softimpact.codegen.inputs.samples import Sample
+from softimpact.codegen.package.generate import TIP
+from softimpact.codegen.package.render import Package
+from softimpact.codegen.record.manifest import FunctionRecord, ImpactRecord
+from softimpact.codegen.sources.function import CSource
+from softimpact.codegen.sources.impact import DEFAULT_BUDGET, HORIZON, PEAK_ERROR, ImpactSource
 from softimpact.symbolic import (
     Drives,
     ImpactModel,

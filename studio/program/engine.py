@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from softimpact.batch import CompiledPackage, NoCompiler, compiled_arm
 from softimpact.codegen import region_parameters
-from softimpact.codegen.inputs import is_elastic
+from softimpact.codegen.inputs.parameters import is_elastic
 from softimpact.simulate.history import PRESSED_UNTIL
 from softimpact.simulate.program import STILL, formula_speed
 from softimpact.simulate.trajectory import Passes

@@ -12,7 +12,7 @@ import numpy as np
 
 from softimpact.simulate.zones import Somebody
 
-from ..output.printed import Cell, folded, print_table, say
+from ..output.printed import Cell, folded, print_table, say, tables_are_csv
 from .moments import Question
 from .run import SlowedProgram
 
@@ -129,5 +129,7 @@ def in_a_sentence(record: dict[str, Any]) -> str:
 def moment_row(moment: dict[str, Any]) -> Sequence[Cell]:
     """Return a moment as a row below ``COLUMNS``."""
     words = (moment[name] for name in ("point", "region", "limit", "motors"))
-    numbers = (moment[name] for name in ("speed", "safe_speed", "peak"))
-    return (f"{moment['t']:.4g}", moment["factor"], *words, *numbers)
+    safe = moment["safe_speed"]
+    if safe is None and not tables_are_csv():
+        safe = "more"  # than the program has
+    return (f"{moment['t']:.4g}", moment["factor"], *words, moment["speed"], safe, moment["peak"])

@@ -25,6 +25,7 @@ from ..figures import (
     figure_of_springs,
 )
 from ..figures.robust import figure_of_robust_design
+from ..output.dashes import reasons
 from ..output.printed import Cell
 from .arms import ORIGIN, arm_picture
 from .page import Hit, Section, TableOfNumbers, write_page
@@ -93,6 +94,7 @@ def _design(report: DesignReport) -> Iterator[Section]:
         "All poses",
         figure=figure_of_ranking(report),
         caption="Peak force of each pose before and after.",
+        words=list(reasons(pose.figures for pose in report.poses)),
         tables=[TableOfNumbers("By rank", heads, rows)],
     )
     check = report.check

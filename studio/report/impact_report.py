@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from softimpact.simulate import Approach, simulate_impact
 
 from ..design.report import versions
-from ..figures.style import BLUE, FAINT, LIMIT, ORANGE, SMALL, TEXT, new_figure, tidy
+from ..figures.style import BLUE, FAINT, LIMIT, ORANGE, TEXT, legend_below, new_figure, tidy
 from ..impact.impact import Answer
 from ..output.printed import shown
 from .arms import ORIGIN, arm_picture
@@ -68,35 +68,25 @@ def write_impact_report(answer: Answer, record: Mapping[str, Any], path: Path) -
 
 def figure_of_impact(answer: Answer) -> Figure:
     """Draw the force over time at each end of what the motors may do, and the limits."""
-    figure = new_figure(8.0, 4.2)
+    figure = new_figure(8.0, 4.4)
     axes = figure.add_subplot()
     found = answer.found
     last = 0.0
+    handles: list[Any] = []
     for kind, history in found.ends.items():
-        axes.plot(1e3 * history.time, history.force, color=KIND_COLOURS[kind], linewidth=2)
-        axes.annotate(
-            KIND_WORDS[kind],
-            (1e3 * history.time_of_peak, history.peak),
-            xytext=(6, 4) if history is found.history else (6, -12),
-            textcoords="offset points",
-            color=KIND_COLOURS[kind],
-            fontsize=SMALL,
-        )
+        times = 1e3 * history.time
+        look: dict[str, Any] = {"color": KIND_COLOURS[kind], "label": KIND_WORDS[kind]}
+        handles += axes.plot(times, history.force, linewidth=2, **look)
         pressed = np.flatnonzero(history.force > 0.01 * history.peak)
-        last = max(last, 1e3 * float(history.time[pressed[-1]]))
+        last = max(last, float(times[pressed[-1]]))
     if found.band is not None:
         axes.axhspan(found.band.peak.low, found.band.peak.high, color=FAINT, zorder=0)
     limit = answer.contact.region.force_limit
     if np.isfinite(limit):
-        axes.axhline(limit, color=LIMIT, linestyle="--", linewidth=1.5)
-        axes.annotate(
-            f"transient limit {limit:g} N",
-            (0, limit),
-            xytext=(4, 3),
-            textcoords="offset points",
-            color=LIMIT,
-            fontsize=SMALL,
-        )
+        words = f"transient limit {limit:g} N"
+        line = axes.axhline(limit, color=LIMIT, linestyle="--", linewidth=1.5, label=words)
+        handles.append(line)
+    legend_below(figure, handles, columns=len(handles))
     axes.set_xlim(0, QUIET * last)
     axes.set_ylim(bottom=0)
     axes.set_xlabel("time since first touch [ms]", fontsize=TEXT)

@@ -16,6 +16,7 @@ from ..figures.pareto_designs import figure_of_designs
 from ..figures.select import figure_of_selection
 from ..front.pareto_report import ParetoReport
 from ..front.pareto_words import columns, in_words, rows
+from ..output.dashes import reasons
 from .arms import ORIGIN, arm_picture
 from .page import Hit, Section, TableOfNumbers, write_page
 from .study_pages import impact_in_words, study_page
@@ -107,6 +108,7 @@ def write_selection_report(
             "The ranking",
             figure=figure_of_selection(study, criterion, ranked),
             caption="Peak force of each posture at the nominal stiffness, best first.",
+            words=list(reasons(ranked)),
             tables=[TableOfNumbers("By rank", heads, cells)],
         ),
         Section("The posture", arms=[arm]),

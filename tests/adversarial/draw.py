@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from softimpact.codegen.closed_samples import closed_configurations
+from softimpact.codegen.inputs.closed_samples import closed_configurations
 from softimpact.symbolic import REGIONS
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 from softimpact.symbolic.robot.rigid import Array

@@ -15,7 +15,7 @@ from compiled_packages import Generated, run, tool
 from numpy.typing import NDArray
 from sharing import once
 
-from softimpact.codegen.inputs import is_elastic
+from softimpact.codegen.inputs.parameters import is_elastic
 from softimpact.symbolic import Drives, closed_chain, contact_point_jacobian, impact_model
 from softimpact.symbolic.robot.rigid import Array
 

@@ -9,7 +9,7 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
-from softimpact.codegen.law_points import law_points
+from softimpact.codegen.inputs.law_points import law_points
 from softimpact.symbolic import Curve, InvalidValue, Law, PowerLaw, in_series
 from softimpact.symbolic.body.contact import HERTZ_STIFFNESS
 from softimpact.symbolic.body.pads import PADS

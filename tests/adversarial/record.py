@@ -12,7 +12,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from softimpact.codegen.searched import ASKED, RECORD, Searched, Sum, searched_table, sources_digest
+from softimpact.codegen.record.searched import (
+    ASKED,
+    RECORD,
+    Searched,
+    Sum,
+    searched_table,
+    sources_digest,
+)
 
 from .search import Found
 

@@ -13,8 +13,8 @@ from compiled_packages import Generated, Library, mostly_slow, run, tool
 from package_oracle import OK, SINGULAR, assert_agrees
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.inputs import SCALARS, parameters_of
-from softimpact.codegen.samples import Sample, draw_samples
+from softimpact.codegen.inputs.parameters import SCALARS, parameters_of
+from softimpact.codegen.inputs.samples import Sample, draw_samples
 from softimpact.symbolic.robot.rigid import Array
 
 ROBOTS = ["panda", "rr", "ur5e", "ur5", "baxter", "gantry", "rmin"]

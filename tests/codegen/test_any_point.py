@@ -26,7 +26,7 @@ from compiled_impacts import (
 from compiled_packages import KINDS, Generated
 from impact_models import model_of
 
-from softimpact.codegen.impacts import draw_impacts
+from softimpact.codegen.verification.impacts import draw_impacts
 from softimpact.simulate import Approach
 from softimpact.simulate.many import many_peaks
 from softimpact.symbolic import Contact, ImpactModel, Motors, body_region

@@ -23,8 +23,8 @@ from compiled_impacts import (
 )
 from compiled_packages import Generated
 
-from softimpact.codegen.inputs import parameters_of
-from softimpact.codegen.samples import Sample
+from softimpact.codegen.inputs.parameters import parameters_of
+from softimpact.codegen.inputs.samples import Sample
 
 
 @pytest.mark.parametrize("robot", ["panda", "rmin"])

@@ -16,8 +16,8 @@ from catkin_pkg.package import parse_package
 from compiled_packages import COMMITTED, WARNINGS, missing, run, tool
 
 from softimpact import batch
-from softimpact.codegen.bindings import bindings
-from softimpact.codegen.interface import interface_of
+from softimpact.codegen.bindings.interface import interface_of
+from softimpact.codegen.bindings.languages import bindings
 
 ROOT = Path(__file__).parents[2]
 PANDA, EXAMPLES = ROOT / "generated/panda", ROOT / "examples"

@@ -15,8 +15,8 @@ from compiled_packages import KINDS, Generated, Library, mostly_slow
 from mechanisms import FIVE_BAR, SIX_BAR, SPATIAL, four_bar, robot_of
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.inputs import parameters_of
-from softimpact.codegen.samples import draw_samples
+from softimpact.codegen.inputs.parameters import parameters_of
+from softimpact.codegen.inputs.samples import draw_samples
 from softimpact.symbolic import (
     NoEquilibrium,
     Robot,

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The search for rest in C and its mirror in Python, which measures its errors, part nowhere.
 
-``codegen/configuration.py`` repeats the C function over many samples. Both are asked on rays of
-motor angles from home to where the chain comes apart, beside the edge, and far beyond it.
+``codegen/verification/configuration.py`` repeats the C function over many samples. Both are asked
+on rays of motor angles from home to where the chain comes apart, beside the edge, and far beyond.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from compiled_packages import Generated
 
-from softimpact.codegen.configuration import (
+from softimpact.codegen.verification.configuration import (
     LONGEST_MOVE,
     MOST_MOVES,
     Configuration,

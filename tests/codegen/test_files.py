@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from softimpact.codegen import FolderNotWritable, ForeignFolder
-from softimpact.codegen.files import replace_package, require_place, sha256
-from softimpact.codegen.manifest import GENERATOR
+from softimpact.codegen.package.files import replace_package, require_place, sha256
+from softimpact.codegen.record.manifest import GENERATOR
 
 
 def package(content: str) -> dict[str, str]:

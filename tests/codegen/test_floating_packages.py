@@ -13,7 +13,7 @@ from oracles import example_urdf
 from package_oracle import OK, assert_agrees
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.samples import draw_samples
+from softimpact.codegen.inputs.samples import draw_samples
 from softimpact.symbolic import InvalidValue, MasslessBase, Robot, load_robot
 
 LEG = """

@@ -31,7 +31,7 @@ from compiled_impacts import (
 )
 from compiled_packages import KINDS, Generated
 
-from softimpact.codegen.inputs import parameters_of
+from softimpact.codegen.inputs.parameters import parameters_of
 from softimpact.symbolic import REGIONS, Contact, body_region
 from softimpact.symbolic.robot.rigid import Array
 

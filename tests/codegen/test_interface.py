@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from compiled_packages import COMMITTED, run, tool
 
+from softimpact.codegen.bindings.interface import Interface, interface_of, read_interface
 from softimpact.codegen.errors import UnknownDeclaration
-from softimpact.codegen.interface import Interface, interface_of, read_interface
 
 ROOT = Path(__file__).parents[2]
 

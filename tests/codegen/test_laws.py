@@ -33,7 +33,7 @@ from independent_impacts import arm_of, force_by_scipy
 from scipy.optimize import brentq
 
 from softimpact.codegen import region_parameters
-from softimpact.codegen.law_points import ABOVE, FAINT, MOST_POINTS, law_points
+from softimpact.codegen.inputs.law_points import ABOVE, FAINT, MOST_POINTS, law_points
 from softimpact.simulate import Approach, simulate_impact
 from softimpact.symbolic import (
     Contact,

@@ -10,9 +10,9 @@ import pytest
 from compiled_packages import COMMITTED, run, tool
 
 from softimpact.codegen import generate_package, package_of
-from softimpact.codegen.names import INNER, c_name
-from softimpact.codegen.render import Templates, render, sources
-from softimpact.codegen.replay import replay
+from softimpact.codegen.package.names import INNER, c_name
+from softimpact.codegen.package.render import Templates, render, sources
+from softimpact.codegen.verification.replay import replay
 from softimpact.symbolic import InvalidValue, load_robot
 
 ROOT = Path(__file__).parents[2]

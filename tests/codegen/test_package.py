@@ -17,9 +17,9 @@ import pytest
 from compiled_packages import COMMITTED, Generated, mostly_slow, run, tool
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.cost_digests import needed_sources
-from softimpact.codegen.inputs import parameters_of
-from softimpact.codegen.samples import draw_samples
+from softimpact.codegen.inputs.parameters import parameters_of
+from softimpact.codegen.inputs.samples import draw_samples
+from softimpact.codegen.record.cost_digests import needed_sources
 from softimpact.symbolic import (
     FrameNotFound,
     ImpactModel,
@@ -37,6 +37,7 @@ FLOAT_CALLS = {
     "sqrtf",
     "fmaxf",
     "powf",
+    "cbrtf",
     "logf",
     "memcpy",
     "memset",

@@ -13,8 +13,8 @@ from compiled_packages import Generated, run, tool
 from package_oracle import assert_agrees
 
 from softimpact.codegen import Payload, generate_package
-from softimpact.codegen.inputs import parameters_of
-from softimpact.codegen.samples import draw_samples
+from softimpact.codegen.inputs.parameters import parameters_of
+from softimpact.codegen.inputs.samples import draw_samples
 from softimpact.symbolic import InvalidValue, Robot, UnknownName, drives, load_robot
 
 LOAD = Payload(1.5, (0.125, -0.0625, 0.25))

@@ -13,7 +13,7 @@ import pytest
 from compiled_packages import Generated
 
 from softimpact.codegen import generate_package
-from softimpact.codegen.impacts import draw_impacts
+from softimpact.codegen.verification.impacts import draw_impacts
 from softimpact.symbolic import REGIONS, load_robot
 
 OK, OUT_OF_RANGE = 0, 4

@@ -24,7 +24,7 @@ from compiled_impacts import (
 from compiled_packages import KINDS, Generated
 from impact_models import model_of
 
-from softimpact.codegen.samples import Sample
+from softimpact.codegen.inputs.samples import Sample
 from softimpact.simulate import Approach
 from softimpact.simulate.many import many_peaks
 from softimpact.simulate.stepping import ManyPeaks

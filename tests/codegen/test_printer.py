@@ -14,9 +14,9 @@ import pytest
 from compiled_packages import WARNINGS, run, tool
 
 from softimpact.codegen import UnsupportedOperation
-from softimpact.codegen.evaluate import evaluate_exactly, evaluate_rounded
-from softimpact.codegen.graph import graph_of
-from softimpact.codegen.printer import LINE, print_graph
+from softimpact.codegen.expressions.evaluate import evaluate_exactly, evaluate_rounded
+from softimpact.codegen.expressions.graph import graph_of
+from softimpact.codegen.expressions.printer import LINE, print_graph
 from softimpact.symbolic.robot.rigid import Array
 
 HEAD = """

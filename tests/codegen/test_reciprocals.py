@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from compiled_packages import Generated
 
-from softimpact.codegen.evaluate import evaluate_exactly
-from softimpact.codegen.graph import graph_of
-from softimpact.codegen.reciprocals import with_reciprocals
+from softimpact.codegen.expressions.evaluate import evaluate_exactly
+from softimpact.codegen.expressions.graph import graph_of
+from softimpact.codegen.expressions.reciprocals import with_reciprocals
 
 X = ca.SX.sym("x", 3)
 A, B, C = X[0], X[1], X[2]

@@ -13,8 +13,8 @@ from command_line import run
 from robot_files import many_joints
 
 from softimpact.codegen import FailedOwnTest, generate_package, package_of
-from softimpact.codegen.render import render
-from softimpact.codegen.replay import replay, works
+from softimpact.codegen.package.render import render
+from softimpact.codegen.verification.replay import replay, works
 from softimpact.symbolic import load_robot
 from softimpact.toolchain import c_compiler
 
@@ -56,7 +56,7 @@ def test_nothing_is_written_of_a_package_that_fails(
     def fail(*arguments: object) -> None:
         raise FailedOwnTest("FAILED rr_chain: error within its bound")
 
-    monkeypatch.setattr("softimpact.codegen.package.replay", fail)
+    monkeypatch.setattr("softimpact.codegen.package.generate.replay", fail)
     outcome = run("generate", "rr", "--out", tmp_path / "c")
     assert outcome.code == 3
     assert "not written: FAILED rr_chain" in outcome.err

@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from softimpact.codegen.defaults import Payload
-from softimpact.codegen.evaluate import evaluate_rounded
-from softimpact.codegen.graph import Graph, graph_of
-from softimpact.codegen.package import package_of
-from softimpact.codegen.printer import Call, print_graph
-from softimpact.codegen.render import Package
-from softimpact.codegen.samples import as_columns, draw_samples
-from softimpact.codegen.shared_stage import SharedStage
-from softimpact.codegen.sharing import Split, split_all
-from softimpact.codegen.source import CSource
-from softimpact.codegen.values import Value, Values
+from softimpact.codegen.expressions.evaluate import evaluate_rounded
+from softimpact.codegen.expressions.graph import Graph, graph_of
+from softimpact.codegen.expressions.printer import Call, print_graph
+from softimpact.codegen.inputs.defaults import Payload
+from softimpact.codegen.inputs.samples import as_columns, draw_samples
+from softimpact.codegen.package.generate import package_of
+from softimpact.codegen.package.render import Package
+from softimpact.codegen.sharing.split import Split, split_all
+from softimpact.codegen.sharing.stage import SharedStage
+from softimpact.codegen.sharing.values import Value, Values
+from softimpact.codegen.sources.function import CSource
 from softimpact.symbolic import load_robot
 
 X = ca.SX.sym("x", 3)

@@ -12,8 +12,8 @@ import pytest
 from compiled_packages import Generated
 from numpy.typing import NDArray
 
-from softimpact.codegen import wide_sine
-from softimpact.codegen.sine import ERROR, LIMIT, sine_and_cosine
+from softimpact.codegen.expressions import wide_sine
+from softimpact.codegen.expressions.sine import ERROR, LIMIT, sine_and_cosine
 
 Angles = NDArray[np.float32]
 

@@ -16,8 +16,8 @@ from sharing import once
 
 from softimpact.codegen import wasm
 from softimpact.codegen.errors import NoCrossCompiler, UnknownDeclaration
-from softimpact.codegen.inputs import SCALARS
-from softimpact.codegen.samples import Sample, draw_samples
+from softimpact.codegen.inputs.parameters import SCALARS
+from softimpact.codegen.inputs.samples import Sample, draw_samples
 
 ASK = """
 import {{ readFileSync }} from "node:fs";

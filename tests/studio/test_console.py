@@ -21,6 +21,9 @@ COMMANDS = {
     "robots": ("robots",),
     "analyze": ("analyze", *Q, "--joint-stiffness", "1e4"),
     "factors": ("factors", *Q),
+    "dashes": ("factors", "rr", "--q", "0.3,0.2,0.1,0.2", "--direction", "1,0,0"),
+    "init": ("init", "ur5e"),
+    "check": ("check", "mårvin→θ̇.toml"),
     "help": ("simulate", "--help"),
     "refusal": ("analyze", "mårvin→θ̇", *Q[1:]),
 }

@@ -15,7 +15,7 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from softimpact.codegen.manifest import Real
+from softimpact.codegen.record.manifest import Real
 from softimpact.symbolic import Drives, InvalidValue, Robot, chain_to, load_robot
 from softimpact.symbolic.impact.drives import PerJoint
 from softimpact.symbolic.impact.drives import drives as drives_with

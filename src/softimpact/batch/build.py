@@ -26,8 +26,8 @@ from softimpact.symbolic.dynamics.equations_of_motion import FixedGravity
 from softimpact.symbolic import Drives, Robot, SoftImpactError
 
 if TYPE_CHECKING:
-    from softimpact.codegen.interface import Interface
-    from softimpact.codegen.manifest import Real
+    from softimpact.codegen.bindings.interface import Interface
+    from softimpact.codegen.record.manifest import Real
 
 PREFIX = "batched"
 """Of all C names, whatever the robot is called: the same C serves robots that are alike."""
@@ -79,7 +79,7 @@ class Sources:
 
     def interface(self) -> Interface:
         """Return what its header declares."""
-        from softimpact.codegen.interface import read_interface
+        from softimpact.codegen.bindings.interface import read_interface
 
         return read_interface(self.folder)
 
@@ -101,7 +101,7 @@ class Sources:
         return ctypes.CDLL(str(library))
 
     def _needed(self, path: str) -> list[str]:
-        from softimpact.codegen.cost_digests import needed_sources
+        from softimpact.codegen.record.cost_digests import needed_sources
 
         own, name = self.folder / path, Path(path).stem
         texts = {f"src/{p.name}": p.read_text("utf-8") for p in self.folder.glob("src/*")}
@@ -196,9 +196,9 @@ def _generate(
     gravity: FixedGravity | None,
 ) -> None:
     """Write a package's sources; whoever comes first wins."""
-    from softimpact.codegen.batch_source import batch_sources
-    from softimpact.codegen.package import package_of
-    from softimpact.codegen.render import Templates, sources
+    from softimpact.codegen.package.batch import batch_sources
+    from softimpact.codegen.package.generate import package_of
+    from softimpact.codegen.package.render import Templates, sources
 
     package = package_of(
         robot,

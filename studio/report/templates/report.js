@@ -27,6 +27,16 @@ function drawArm(svg) {
     const [x, y] = flat(p);
     return `<circle cx="${x}" cy="${y}" r="${radius}" fill="${colour}"/>`;
   }
+  function arrow(a, b, colour) { /* into a dot at b */
+    const [[x1, y1], [x2, y2]] = [flat(a), flat(b)];
+    const length = Math.hypot(x2 - x1, y2 - y1);
+    if (length < 0.15) return line(a, b, colour, 0.022); /* seen from behind */
+    const [u, v] = [(x2 - x1) / length, (y2 - y1) / length];
+    const [x, y] = [x2 - 0.05 * u, y2 - 0.05 * v];
+    const side = (k) => `${x - 0.1 * u - 0.045 * k * v},${y - 0.1 * v + 0.045 * k * u}`;
+    return `<line x1="${x1}" y1="${y1}" x2="${x - 0.08 * u}" y2="${y - 0.08 * v}" stroke="${colour}" ` +
+      `stroke-width="0.022"/><polygon points="${x},${y} ${side(1)} ${side(-1)}" fill="${colour}"/>`;
+  }
   function chain(places, colour, width) {
     return places.slice(1).map((p, i) => line(places[i], p, colour, width)).join("");
   }
@@ -34,9 +44,8 @@ function drawArm(svg) {
     const colour = hit.share > 1 ? "#d55e00" : hit.share > 0.5 ? "#009e73" : "#0072b2";
     const [x, y] = flat(hit.place);
     const back = hit.direction && hit.direction.map((d, k) => hit.place[k] - 0.45 * reach * d);
-    const arrow = back ? line(back, hit.place, colour, 0.022) : "";
     const [side, anchor] = x > 0.55 ? [-0.07, "end"] : [0.07, "start"];
-    return arrow + dot(hit.place, colour, 0.045) +
+    return (back ? arrow(back, hit.place, colour) : "") + dot(hit.place, colour, 0.045) +
       `<text x="${x + side}" y="${y - 0.05}" text-anchor="${anchor}" font-size="0.09" fill="#1a1a1a" stroke="#fff" ` +
       `stroke-width="0.025" paint-order="stroke">${Math.round(100 * hit.share)} %</text>`;
   }

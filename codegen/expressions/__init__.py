@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""CasADi expressions as lists of operations, and these as C."""
