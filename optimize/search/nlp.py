@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import casadi as ca
@@ -125,6 +126,7 @@ def _hardware(study: Study, v: Matrix) -> Hardware:
     )
 
 
+@lru_cache(maxsize=8)
 def task_function(study: Study) -> tuple[ca.Function, tuple[int, ...]]:
     """Return (x, b) -> (rows, their derivative by x), and how many rows each bound has.
 
