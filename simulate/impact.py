@@ -18,7 +18,7 @@ from .controlled import controlled, controlled_scene
 from .controller import Controller, check_controller
 from .events import Course, course_of, peaks_of
 from .full import full_scene
-from .history import HORIZON, PRESSED_UNTIL, Fidelity, ImpactHistory
+from .history import HORIZON, PRESSED_UNTIL, Fidelity, ImpactHistory, require_horizon
 from .linear_stages import linear_scene, one_mass_scene, two_mass_scene
 from .scene import Scene
 
@@ -67,8 +67,8 @@ def simulate_impact(
         raise UnknownName("fidelity", fidelity, get_args(Fidelity))
     if not 1e-14 <= tolerance <= 1e-2:
         raise InvalidValue("tolerance", f"must be from 1e-14 to 1e-2, not {tolerance:g}")
-    if horizon is not None and not 0 < horizon < np.inf:
-        raise InvalidValue("horizon", f"must be finite and greater than 0 s, not {horizon:g}")
+    if horizon is not None:
+        require_horizon(horizon)
     contact.check()
     arrival = arrival_of(model, approach)
     what = Motors("servo" if model.drives.has_gains else "free") if motors is None else motors
