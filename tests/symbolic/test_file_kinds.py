@@ -15,7 +15,9 @@ from oracles import Mujoco, assert_near
 from robot_files import URDF_LIMIT, Read, two_links, two_links_urdf, urdf_inertial
 
 from softimpact.symbolic import (
+    Coupling,
     InvalidInertia,
+    Loop,
     ModelFileError,
     Robot,
     UnsupportedModel,
@@ -133,6 +135,40 @@ def test_joints_that_follow_welded_ones_are_welded_where_these_put_them(read: Re
     assert welded.joint_names == ("a",)
     place = welded.frame("tool").placement.translation
     assert_near(place, [0.4 + 0.3 * np.cos(0.2), 0.3 * np.sin(0.2), 0.0])
+
+
+def test_a_joint_that_mimics_without_numbers_does_the_same(read: Read) -> None:
+    (coupling,) = read(two_links_urdf(on_j2='<mimic joint="j1"/>'), ".urdf").loops
+    assert isinstance(coupling, Coupling)
+    assert coupling.polynomial == (0.0, 1.0)
+
+
+def test_joints_may_follow_in_a_robot_with_loops(read: Read) -> None:
+    """Entries of q are those of joints that lead, whatever else ties the robot."""
+    tied = '<connect body1="fore" body2="world" anchor="0.3 0 0"/>'
+    follows = '<joint joint1="j2" joint2="j1" polycoef="0 -1 0 0 0"/>'
+    robot = read(two_links(after=f"<equality>{tied}{follows}</equality>"))
+    assert {loop.name for loop in robot.loops} == {"loop1", "coupling2"}
+    (pin,) = [loop for loop in robot.loops if isinstance(loop, Loop)]
+    assert (pin.first, pin.second) == ("fore@0.3,0,0", "world@0.7,0,0")
+    assert_near(whole_configuration(robot, [0.2]), [0.2, -0.2])
+
+
+def test_hinges_of_a_ball_have_its_numbers(read: Read) -> None:
+    ball = (
+        '<body name="bob"><joint name="b" type="ball" damping="0.2" armature="0.3"'
+        ' frictionloss="0.4"/><geom size=".1"/></body>'
+    )
+    joints = read(two_links(j1='damping="5" armature="6" frictionloss="7"', on_upper=ball)).joints
+    of_ball = [joint for joint in joints if joint.name.startswith("b_")]
+    found = [(joint.damping, joint.armature, joint.friction) for joint in of_ball]
+    assert found == [(0.2, 0.3, 0.4)] * 3
+
+
+def test_what_is_unread_several_times_is_counted(read: Read) -> None:
+    both = {"on_j1": "<dynamics spring='1'/>", "on_j2": "<dynamics spring='1'/>"}
+    robot = read(two_links_urdf(**both), ".urdf")
+    assert "'dynamics spring' is not read (2 times)" in robot.warnings
 
 
 def test_q_must_agree_with_a_coupling(read: Read) -> None:
