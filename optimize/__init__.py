@@ -1,14 +1,34 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Design problems: which joint stiffness and which posture hurt least."""
+"""Design problems: which joint stiffness and which posture hurt least.
 
-from .co_design import Design, Gains, PoseResult, design
-from .front.front import Front, ParetoPoint
-from .front.pareto import Pareto, pareto_fronts
-from .front.trade_off import TradeOff, TradePoint, trade_off_front
-from .search.failure import Infeasible, SolverFailure, Unavailable
-from .search.solve import Mode, Outcome
-from .study.poses import Candidate, candidates
-from .study.study import Pose, Study, load_study
+Names are imported when they are first used: who reads a study need not wait for the searches.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .co_design import Design, Gains, PoseResult, design
+    from .front.front import Front, ParetoPoint
+    from .front.pareto import Pareto, pareto_fronts
+    from .front.trade_off import TradeOff, TradePoint, trade_off_front
+    from .search.failure import Infeasible, SolverFailure, Unavailable
+    from .search.solve import Mode, Outcome
+    from .study.poses import Candidate, candidates
+    from .study.study import Pose, Study, load_study
+
+_HOMES = {
+    "co_design": ("Design", "Gains", "PoseResult", "design"),
+    "front.front": ("Front", "ParetoPoint"),
+    "front.pareto": ("Pareto", "pareto_fronts"),
+    "front.trade_off": ("TradeOff", "TradePoint", "trade_off_front"),
+    "search.failure": ("Infeasible", "SolverFailure", "Unavailable"),
+    "search.solve": ("Mode", "Outcome"),
+    "study.poses": ("Candidate", "candidates"),
+    "study.study": ("Pose", "Study", "load_study"),
+}
 
 __all__ = [
     "Candidate",
@@ -33,3 +53,14 @@ __all__ = [
     "pareto_fronts",
     "trade_off_front",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    for module, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{module}"), name)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]

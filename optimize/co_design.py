@@ -15,7 +15,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from .answers import Price
 from .evaluation import keeps_bounds, largest_deflection
-from .impact.timing import Timing
+from .impact.timing import Timing, study_impacts
 from .meaning import meaning
 from .running.workers import as_completed, awake, cores, workers, works_elsewhere
 from .search.accurate_springs import accurate_springs
@@ -23,7 +23,7 @@ from .search.branches import branches
 from .search.failure import SolverFailure
 from .search.ipopt import IN_TURN, Begin, Nlp, minimise
 from .search.optima import Optimum, distinct
-from .search.problem import Problem, felt_numbers, peak_force, prepare, study_impacts
+from .search.problem import Problem, felt_numbers, peak_force, prepare
 from .search.reach import infeasible, reach, reachable
 from .search.solve import Mode, Outcome, Start, better, solve
 from .study.poses import Candidate, candidates, leaves_a_choice

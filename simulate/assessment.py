@@ -156,7 +156,7 @@ def assess_impact(
         return _verdict(limits, history).share, history.peak
 
     if not_trusted(error, max(harm(history)[0] for history in found.values())):
-        warnings.append(f"the linear model may be off by {100 * error:.0f} %: {CHECKED}")
+        warnings.append(f"the linear model may be off by {100 * error:.1f} %: {CHECKED}")
         by_full = by_full_order(model, approach, contact, ends, horizon, tolerance)
         found = {k: max(h, by_full[k], key=harm) for k, h in found.items()}
     worst = max(found, key=lambda name: harm(found[name]))

@@ -24,8 +24,8 @@ TRUSTED = 0.1
 """Error that a linear force may have before the nonlinear robot is asked, too: what is not known of
 robots and people makes for more (see ``Tolerances``)."""
 
-EXACT = 0.01
-"""Error up to which a linear model's verdict or safe speed counts as exact."""
+NOTED = 1e-3
+"""Share of a safe speed that the nonlinear robot may take away without a line about it."""
 
 CHECKED = "the nonlinear robot was simulated, too, and the worse of both counts"
 
@@ -39,8 +39,7 @@ def not_trusted(error: float | None, share: float = 0.0) -> TypeGuard[float]:
     """
     if error is None:
         return False
-    may_flip = error > EXACT and share <= 1 < share * (1 + error) ** 2
-    return error > TRUSTED or may_flip
+    return error > TRUSTED or share <= 1 < share * (1 + error) ** 2
 
 
 def largest_linear_error(
@@ -98,8 +97,12 @@ def safe_speeds(
         speed = largest_safe_speed(model, approach, contact, allowed, motors=end, **run)
         at = replace(approach, speed=speed)
         speeds[name], error = nonlinear_safe_speed(model, at, contact, allowed, end, run)
-        if error is not None and not lines and (error > TRUSTED or speeds[name] < speed):
-            off = f"at the safe speed the linear model may be off by {100 * error:.0f} %"
+        if (
+            error is not None
+            and not lines
+            and (error > TRUSTED or speeds[name] < (1 - NOTED) * speed)
+        ):
+            off = f"at the safe speed the linear model may be off by {100 * error:.1f} %"
             lines.append(f"{off}: {CHECKED}")
     return speeds, lines
 
@@ -114,12 +117,11 @@ def nonlinear_safe_speed(
 ) -> tuple[float, float | None]:
     """Return the approach's speed if the nonlinear robot keeps its limits, else the largest it may.
 
-    It is not asked where the linear model's error, which is returned, too, counts as none, or is
-    not known.
+    It is not asked where the linear model's error, which is returned, too, is not known.
     """
     linear = simulate_impact(model, approach, contact, motors=end, **run)
     error = largest_linear_error(model, approach, {"": linear})
-    if error is None or error <= EXACT:
+    if error is None:
         return approach.speed, error
     full = {**run, "fidelity": "full"}
     history = simulate_impact(model, approach, contact, motors=end, **full)

@@ -219,7 +219,7 @@ class _Graph:
         for loop in _circles(nodes, self.after):
             before = {a for a in self.cost if a not in loop and self.after[a] & loop}
             doors = {to for a in before for to in self.after[a] & loop} | (entries & loop)
-            header = min(doors, key=lambda door: self._left(loop, door))
+            header = min(doors, key=lambda door: (self._left(loop, door), door))
             latches = {a for a in loop if header in self.after[a]}
             for a in latches:
                 self.after[a].discard(header)

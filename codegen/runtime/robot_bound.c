@@ -29,16 +29,19 @@ static robot_real while_driven(robot_real time, robot_real hold, robot_real damp
 
 robot_real robot_twice_energy(const robot_impact *impact)
 {
-    const robot_params *const p = impact->p;
-    const robot_arrival *const arrival = &impact->arrival;
 #if ROBOT_STRUCTURED
-    const robot_real together = robot_together(arrival, p);
+    const robot_real together = robot_together(&impact->arrival, impact->p);
     if (together > ROBOT_R(0.0)) {
         const robot_real body =
             impact->gives_way ? ROBOT_R(1.0)/impact->region->effective_mass : ROBOT_R(0.0);
         return ROBOT_R(1.0)/(together + body);
     }
 #endif
+    return robot_twice_energy_of_arrival(&impact->arrival, impact->p);
+}
+
+robot_real robot_twice_energy_of_arrival(const robot_arrival *arrival, const robot_params *p)
+{
     robot_real sum = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_N; ++i) {
         for (int j = 0; j < ROBOT_N; ++j) {
@@ -85,11 +88,11 @@ static bool is_held_by_nothing(const robot_impact *impact)
 
 robot_real robot_bound(const robot_impact *impact)
 {
-    if (!is_held_by_nothing(impact)) {
-        return ROBOT_R(0.0);
-    }
-    const robot_real hold = impact->hold;
-    const robot_real twice = robot_twice_energy(impact);
+    return is_held_by_nothing(impact) ? robot_bound_by(impact, impact->hold, robot_twice_energy(impact)) : ROBOT_R(0.0);
+}
+
+robot_real robot_bound_by(const robot_impact *impact, robot_real hold, robot_real twice)
+{
     const robot_real horizon = ROBOT_HORIZON(impact->p);
     const robot_real always = while_driven(horizon, hold, impact->region->damping);
     if (ROBOT_DAMPED) {

@@ -164,9 +164,13 @@ void robot_impact_let_go(robot_impact *impact);
  * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
  */
 robot_real robot_twice_energy(const robot_impact *impact);
+/* The first of these, r'(M + B)r. */
+robot_real robot_twice_energy_of_arrival(const robot_arrival *arrival, const robot_params *p);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 robot_real robot_bound(const robot_impact *impact);
+/* The same for a K and an energy of one's own, where there is a bound. */
+robot_real robot_bound_by(const robot_impact *impact, robot_real hold, robot_real twice);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void robot_kinds_of_motors(const robot_params *p, int *first, int *last);
@@ -243,7 +247,15 @@ bool robot_cholesky(int size, robot_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void robot_forward(int size, robot_matrix L, robot_real *x);
 void robot_backward(int size, robot_matrix L, robot_real *x);
-/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+/* Turns two vectors, a towards b, by an angle of such a cosine and sine, or of a tangent. */
+void robot_turn(int size, robot_real c, robot_real s, robot_real *a, robot_real *b);
+void robot_turn_by(int size, robot_real t, robot_real *a, robot_real *b);
+/*
+ * Tangent of the angle that leaves nothing of an entry `off` of a symmetric matrix (Jacobi): the later one of its
+ * entries on the diagonal, which is more by `apart`, turns towards the earlier one.
+ */
+robot_real robot_tangent(robot_real apart, robot_real off);
+/* Turns the rows of X, and A with them, until A = XKX' is diagonal (Jacobi); false if that does not end. */
 bool robot_diagonalise(int size, robot_matrix A, robot_matrix X);
 /*
  * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is

@@ -8,8 +8,12 @@
  */
 #include "robot_impact.h"
 
-/* Halvings of a force that is only a first guess. */
+/*
+ * Halvings of a force that is only a first guess; and trials under Hertz's law, where the speed grows like the
+ * force to the power of 5/6 to 1, so that each leaves a sixth of how far the last was off, in powers.
+ */
 #define FORCE_HALVINGS 16
+#define FORCE_TRIALS 6
 
 /* What a sum of depth and force, each times a number, does from a point of a law to the next. */
 typedef struct {
@@ -69,7 +73,8 @@ robot_real robot_law_press(const robot_region *region, robot_real hold, robot_re
 robot_real robot_law_depth(const robot_region *region, robot_real force)
 {
     if (region->law == NULL) {
-        return ROBOT_POW(force/region->hertz_stiffness, ROBOT_R(2.0)/ROBOT_R(3.0));
+        const robot_real root = ROBOT_CBRT(force/region->hertz_stiffness);
+        return root*root;
     }
     robot_real depth;
     (void)robot_law_press(region, ROBOT_R(0.0), ROBOT_R(1.0), force, &depth);
@@ -105,9 +110,8 @@ robot_real robot_law_twice_work(const robot_region *region, robot_real force)
 robot_real robot_law_stiffness(const robot_region *region, robot_real force)
 {
     if (region->law == NULL) {
-        const robot_real third = ROBOT_R(1.0)/ROBOT_R(3.0);
         const robot_real hertz = region->hertz_stiffness;
-        return ROBOT_R(1.5)*ROBOT_POW(hertz*hertz*force, third);
+        return ROBOT_R(1.5)*ROBOT_CBRT(hertz*hertz*force);
     }
     robot_real most = ROBOT_R(0.0);
     for (int i = 0; i < region->law_points && region->law[i].force <= force; ++i) {
@@ -157,9 +161,11 @@ robot_real robot_two_body_force(const robot_region *region, robot_real mobility,
 {
     const robot_real spring = speed*ROBOT_SQRT(region->stiffness/mobility);
     if (region->law == NULL) {
-        const robot_real energy = ROBOT_R(1.25)*speed*speed/mobility;
-        const robot_real skin = ROBOT_POW(energy, ROBOT_R(0.6))*ROBOT_POW(region->hertz_stiffness, ROBOT_R(0.4));
-        return ROBOT_R(1.0)/(ROBOT_R(1.0)/spring + ROBOT_R(1.0)/skin);
+        robot_real force = spring;
+        for (int k = 0; k < FORCE_TRIALS; ++k) {
+            force *= speed/robot_two_body_speed(region, mobility, force);
+        }
+        return force;
     }
     robot_real low = ROBOT_R(0.0);
     robot_real high = spring;

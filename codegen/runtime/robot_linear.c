@@ -48,6 +48,29 @@ void robot_backward(int size, robot_matrix L, robot_real *x)
     }
 }
 
+void robot_turn(int size, robot_real c, robot_real s, robot_real *a, robot_real *b)
+{
+    for (int k = 0; k < size; ++k) {
+        const robot_real x = a[k];
+        const robot_real y = b[k];
+        a[k] = c*x + s*y;
+        b[k] = c*y - s*x;
+    }
+}
+
+void robot_turn_by(int size, robot_real t, robot_real *a, robot_real *b)
+{
+    const robot_real c = ROBOT_R(1.0)/ROBOT_SQRT(t*t + ROBOT_R(1.0));
+    robot_turn(size, c, t*c, a, b);
+}
+
+robot_real robot_tangent(robot_real apart, robot_real off)
+{
+    const robot_real half = apart/(off + off);
+    const robot_real length = ROBOT_FABS(half) + ROBOT_SQRT(half*half + ROBOT_R(1.0));
+    return (half < ROBOT_R(0.0) ? ROBOT_R(-1.0) : ROBOT_R(1.0))/length;
+}
+
 #if !ROBOT_STRUCTURED
 /*
  * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
@@ -58,41 +81,23 @@ void robot_backward(int size, robot_matrix L, robot_real *x)
 /* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
 #define SWEEPS 16
 
-/* Turns columns i and j of a matrix by an angle. */
-static void turn_columns(int size, robot_matrix X, int i, int j, robot_real c, robot_real s)
-{
-    for (int k = 0; k < size; ++k) {
-        const robot_real a = X[k][i];
-        const robot_real b = X[k][j];
-        X[k][i] = c*a - s*b;
-        X[k][j] = s*a + c*b;
-    }
-}
-
 /* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
 static void rotate(int size, robot_matrix A, robot_matrix X, int i, int j)
 {
     const robot_real off = A[i][j];
-    const robot_real half = (A[j][j] - A[i][i])/(off + off);
-    const robot_real length = ROBOT_FABS(half) + ROBOT_SQRT(half*half + ROBOT_R(1.0));
-    const robot_real t = (half < ROBOT_R(0.0) ? ROBOT_R(-1.0) : ROBOT_R(1.0))/length;
-    const robot_real c = ROBOT_R(1.0)/ROBOT_SQRT(t*t + ROBOT_R(1.0));
-    const robot_real s = t*c;
-    A[i][i] -= t*off;
-    A[j][j] += t*off;
+    const robot_real first = A[i][i];
+    const robot_real second = A[j][j];
+    const robot_real t = robot_tangent(second - first, off);
+    robot_turn_by(size, t, A[j], A[i]);
+    for (int k = 0; k < size; ++k) {
+        A[k][i] = A[i][k];
+        A[k][j] = A[j][k];
+    }
+    A[i][i] = first - t*off;
+    A[j][j] = second + t*off;
     A[i][j] = ROBOT_R(0.0);
     A[j][i] = ROBOT_R(0.0);
-    for (int k = 0; k < size; ++k) {
-        if (k != i && k != j) {
-            const robot_real a = A[i][k];
-            const robot_real b = A[j][k];
-            A[i][k] = c*a - s*b;
-            A[j][k] = s*a + c*b;
-            A[k][i] = A[i][k];
-            A[k][j] = A[j][k];
-        }
-    }
-    turn_columns(size, X, i, j, c, s);
+    robot_turn_by(size, t, X[j], X[i]);
 }
 
 bool robot_diagonalise(int size, robot_matrix A, robot_matrix X)

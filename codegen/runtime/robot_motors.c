@@ -8,26 +8,22 @@
  */
 #include "robot_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
+/* X = L^-1 of a mass matrix M = L L': its rows are motions of unit mass, with nothing behind its diagonal. */
 static bool unit_motions(int size, robot_matrix mass, robot_matrix X)
 {
     if (!robot_cholesky(size, mass)) {
         return false;
     }
     for (int j = 0; j < size; ++j) {
-        robot_real column[ROBOT_SYSTEM];
         for (int i = 0; i < size; ++i) {
-            column[i] = i == j ? ROBOT_R(1.0) : ROBOT_R(0.0);
+            X[j][i] = i == j ? ROBOT_R(1.0) : ROBOT_R(0.0);
         }
-        robot_backward(j + 1, mass, column);
-        for (int i = 0; i < size; ++i) {
-            X[i][j] = column[i];
-        }
+        robot_backward(j + 1, mass, X[j]);
     }
     return true;
 }
 
-/* A = X'KX of such an X. */
+/* A = XKX' of such an X. */
 static void congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
 {
     for (int i = 0; i < size; ++i) {
@@ -35,13 +31,13 @@ static void congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
         for (int l = 0; l <= i; ++l) {
             pulled[l] = ROBOT_R(0.0);
             for (int m = 0; m <= i; ++m) {
-                pulled[l] += K[l][m]*X[m][i];
+                pulled[l] += K[l][m]*X[i][m];
             }
         }
         for (int j = 0; j <= i; ++j) {
             robot_real sum = ROBOT_R(0.0);
             for (int l = 0; l <= j; ++l) {
-                sum += pulled[l]*X[l][j];
+                sum += pulled[l]*X[j][l];
             }
             A[i][j] = sum;
             A[j][i] = sum;
@@ -51,7 +47,7 @@ static void congruent(int size, robot_matrix K, robot_matrix X, robot_matrix A)
 
 #if !ROBOT_STRUCTURED
 /*
- * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * Modes: the eigenvectors of A = XKX' in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
  * squared sum of these roots' shares in it. False if eigenvectors are not found.
  */
@@ -68,7 +64,7 @@ static bool find_modes(int size, const int *places, robot_matrix L, robot_matrix
         for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
             robot_real share = ROBOT_R(0.0);
             for (int m = l; m < size; ++m) {
-                share += L[m][l]*X[m][i];
+                share += L[m][l]*X[i][m];
             }
             held += roots[l]*ROBOT_FABS(share);
         }
@@ -77,8 +73,8 @@ static bool find_modes(int size, const int *places, robot_matrix L, robot_matrix
         }
         robot_real sum = ROBOT_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[i][places[j]] = X[j][i];
-            sum += row[j]*X[j][i];
+            modes->shape[i][places[j]] = X[i][j];
+            sum += row[j]*X[i][j];
         }
         modes->noise[i] = ROBOT_EPSILON*held*held;
         modes->squared[i] = A[i][i];
@@ -214,17 +210,6 @@ static robot_real product_of(const robot_real a[ROBOT_SYSTEM], const robot_real 
     return sum;
 }
 
-/* Turns two rows by an angle of tangent t. */
-static void turn_both(robot_real t, robot_real a[ROBOT_SYSTEM], robot_real b[ROBOT_SYSTEM])
-{
-    const robot_real c = ROBOT_R(1.0)/ROBOT_SQRT(ROBOT_R(1.0) + t*t);
-    for (int k = 0; k < ROBOT_SYSTEM; ++k) {
-        const robot_real x = a[k];
-        a[k] = c*(x - t*b[k]);
-        b[k] = c*(b[k] + t*x);
-    }
-}
-
 /*
  * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
  * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
@@ -259,11 +244,9 @@ static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes
                 const robot_real off = product_of(bent[i], bent[j]);
                 if (off*off > ROBOT_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
-                    const robot_real half = ROBOT_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
-                    const robot_real length = ROBOT_FABS(half) + ROBOT_SQRT(half*half + ROBOT_R(1.0));
-                    const robot_real t = (half < ROBOT_R(0.0) ? ROBOT_R(-1.0) : ROBOT_R(1.0))/length;
-                    turn_both(t, bent[i], bent[j]);
-                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    const robot_real t = robot_tangent(modes->squared[j] - modes->squared[i], off);
+                    robot_turn_by(ROBOT_SYSTEM, t, bent[j], bent[i]);
+                    robot_turn_by(ROBOT_SYSTEM, t, modes->shape[j], modes->shape[i]);
                     modes->squared[i] = product_of(bent[i], bent[i]);
                     modes->squared[j] = product_of(bent[j], bent[j]);
                 }
@@ -279,7 +262,7 @@ static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes
 int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real *drift)
 {
-    robot_matrix mass; /* and then X'KX */
+    robot_matrix mass; /* and then XKX' */
     robot_matrix X;
     robot_real (*const K)[ROBOT_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
@@ -302,8 +285,8 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
     for (int i = 0; i < ROBOT_SYSTEM; ++i) {
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
             robot_real shape = ROBOT_R(0.0);
-            for (int k = j; k < ROBOT_SYSTEM; ++k) { /* X has nothing below its diagonal */
-                shape += X[j][k]*K[i][k];
+            for (int k = j; k < ROBOT_SYSTEM; ++k) { /* X has nothing behind its diagonal */
+                shape += X[k][j]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
         }

@@ -72,7 +72,8 @@ static int modes_of(robot_impact *impact, int which)
 /*
  * What rounding may change of an approach within a time, as a share of it. An entry of a stiffness over modes i and
  * j errs by about sqrt(n_i n_j) for the noise n of their squared frequencies; it takes start_i t of one motion to
- * row_j t^2 of the other, or less where one of them swings. What is led starts by what the contact moves.
+ * row_j t^2 of the other, or less where one of them swings. Before motors are let go no mode starts off the motion
+ * before: its start is what a pull that grows with time leads it to, of which it takes no more than it has turned.
  */
 static robot_real blur_of(const robot_impact *impact, const robot_phase *phase, robot_real time)
 {

@@ -96,17 +96,6 @@ static void reflect(int size, robot_matrix A, robot_real *d, robot_real *e, robo
     }
 }
 
-/* Turns two rows of Q by an angle. */
-static void turn_rows(int size, robot_real c, robot_real s, robot_real *upper, robot_real *lower)
-{
-    for (int j = 0; j < size; ++j) {
-        const robot_real x = upper[j];
-        const robot_real y = lower[j];
-        upper[j] = c*x + s*y;
-        lower[j] = c*y - s*x;
-    }
-}
-
 /* One QR step on rows first to last; turns the rows of Q, too. */
 static void chase(int first, int last, int size, robot_real *d, robot_real *e, robot_matrix Q)
 {
@@ -133,7 +122,7 @@ static void chase(int first, int last, int size, robot_real *d, robot_real *e, r
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        turn_rows(size, c, s, Q[k], Q[k + 1]);
+        robot_turn(size, c, s, Q[k], Q[k + 1]);
     }
 }
 

@@ -39,6 +39,9 @@ typedef struct {
     robot_real swings; /* most that modes that stand add to the force as they swing, N */
 } robot_state;
 
+/* Until when forces of a contact count that began before 0.5 s; later ones count until they end, s. */
+#define ROBOT_COUNTS_UNTIL ROBOT_R(0.6)
+
 /* What is looked for in the steps of an impact that goes on after its peak. */
 struct robot_watch {
     robot_real matters; /* force that may still come, N */

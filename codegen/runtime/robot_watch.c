@@ -9,8 +9,6 @@
  * 1.8 times at a twentieth of the speed (Hertz's contact lasts as v^-1/5), and oscillate with other phases.
  */
 #define AGAIN ROBOT_R(0.25)
-/* Until when forces of a contact count that began before it was late. */
-#define COUNTS_UNTIL ROBOT_R(0.6)
 /* Steps after which it is looked whether the rest matters. */
 #define LOOKS_LATE 2
 
@@ -18,7 +16,7 @@ bool robot_pass(const robot_state *s, robot_watch *watch)
 {
     watch->apart = s->touching ? watch->apart : s->time;
     const robot_real from = watch->slower && watch->apart > ROBOT_R(0.0) ? AGAIN : LATE;
-    const robot_real until = watch->apart > LATE ? s->time : ROBOT_FMIN(COUNTS_UNTIL, s->time);
+    const robot_real until = watch->apart > LATE ? s->time : ROBOT_FMIN(ROBOT_COUNTS_UNTIL, s->time);
     if (s->time >= from && until > s->time - s->h) {
         const robot_real share = ROBOT_FMIN((s->time - from)/s->h, ROBOT_R(1.0));
         const robot_real then = share*watch->last + (ROBOT_R(1.0) - share)*s->f;

@@ -25,7 +25,7 @@ typedef struct {
     robot_real n[3]; /* the worst so far */
     robot_real force;
     robot_real tried; /* force of the last direction that was tried */
-    bool bounded, unknown;
+    bool bounded, unknown; /* some direction */
     bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
@@ -45,13 +45,13 @@ static bool try_direction(const robot_region *region, const robot_params *p, con
     if (status == ROBOT_OK) {
         status = robot_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->bounded = w->bounded || status == ROBOT_BOUNDED;
     w->lost = w->lost || status == ROBOT_SINGULAR;
     w->unknown = w->unknown || (status != ROBOT_OK && status != ROBOT_BOUNDED && status != ROBOT_SINGULAR);
     w->tried = found.force;
     const bool worse = (status == ROBOT_OK || status == ROBOT_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
-        w->bounded = status == ROBOT_BOUNDED;
         for (int k = 0; k < 3; ++k) {
             w->n[k] = along[k];
         }
@@ -149,7 +149,6 @@ static void look_elsewhere(const robot_region *region, const robot_params *p, in
     for (int start = 0; start < STARTS; ++start) {
         const robot_real n[3] = {w->n[0], w->n[1], w->n[2]};
         const robot_real force = w->force;
-        const bool bounded = w->bounded;
         int best = 0;
         for (int k = 1; k < count; ++k) {
             best = forces[k] > forces[best] ? k : best;
@@ -168,12 +167,59 @@ static void look_elsewhere(const robot_region *region, const robot_params *p, in
         look_around(region, p, w);
         if (!(w->force > force)) {
             w->force = force;
-            w->bounded = bounded;
             for (int k = 0; k < 3; ++k) {
                 w->n[k] = n[k];
             }
         }
     }
+}
+
+/*
+ * A force that no impact in any direction exceeds, by motors of one kind; 0 where none is known.
+ *
+ * What robot_bound takes of a direction is its K = k + c^2 mobility and its energy, and the bound grows with both.
+ * Over directions n of unit length the robot's mobility is a quadratic form, n'An, and so is r'(M + B)r for joint
+ * velocities r that are linear in n: none exceeds the sum of its values along directions at right angles, which is
+ * the form's trace. Links and rotors as one weigh no more than r'(M + B)r at a contact point, so with a body of
+ * mass m, and nothing but joints' springs, the energy is at most that of two masses, 1/(1/trace + 1/m). What pulls
+ * on none of the r of these directions pulls on no sum of them.
+ */
+static robot_real bound_all(const robot_region *region, const robot_params *p, int motors, hardest *w)
+{
+    robot_impact *const impact = &w->impact;
+    const robot_real body = region->clamped == 0 ? ROBOT_R(1.0)/region->effective_mass : ROBOT_R(0.0);
+    robot_real mobility = body;
+    robot_real twice = ROBOT_R(0.0);
+    for (int k = 0; k < ROBOT_REACH; ++k) {
+        const int status = robot_arrive(robot_directions[k], w->point, &impact->arrival);
+        robot_impact_forget(impact);
+        if (status != ROBOT_OK || robot_impact_prepare(region, p, motors, -w->speed, impact) != ROBOT_OK
+            || !(robot_bound(impact) > ROBOT_R(0.0))) {
+            return ROBOT_R(0.0);
+        }
+        mobility += impact->mobility - body;
+        twice += robot_twice_energy_of_arrival(&impact->arrival, p);
+    }
+    twice = ROBOT_STRUCTURED ? twice/(ROBOT_R(1.0) + twice*body) : twice;
+    return w->speed*robot_bound_by(impact, region->stiffness + region->damping*region->damping*mobility, twice);
+}
+
+/* What to say where impacts of some directions cannot be followed to their end: what holds for all. */
+static int say_bound(const robot_region *region, const robot_params *p, hardest *w, robot_worst_direction_t *out)
+{
+    int first;
+    int last;
+    robot_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last; ++motors) {
+        const robot_real bound = bound_all(region, p, motors, w);
+        if (!(bound > ROBOT_R(0.0) && bound <= ROBOT_REAL_MAX)) {
+            return ROBOT_UNRESOLVED;
+        }
+        w->force = ROBOT_FMAX(w->force, bound);
+    }
+    out->force = w->force;
+    out->error = ROBOT_R(0.0);
+    return ROBOT_BOUNDED;
 }
 
 /* Looks everywhere. */
@@ -203,8 +249,10 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
         return ROBOT_SINGULAR;
     }
     const robot_real seen = w->force;
-    look_around(region, p, w);
-    look_elsewhere(region, p, count, forces, w);
+    if (!w->bounded) {
+        look_around(region, p, w);
+        look_elsewhere(region, p, count, forces, w);
+    }
     if (w->unknown) { /* so may be the hardest */
         return ROBOT_UNRESOLVED;
     }
@@ -214,9 +262,12 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
             out->n[k] += w->n[l]*robot_directions[l][k];
         }
     }
+    if (w->bounded) {
+        return say_bound(region, p, w, out);
+    }
     out->force = w->force;
     out->error = w->force/seen - ROBOT_R(1.0) + OF_FORCES;
-    return w->bounded ? ROBOT_BOUNDED : ROBOT_OK;
+    return ROBOT_OK;
 }
 
 int robot_worst_direction_at(const robot_real q[ROBOT_JOINTS], int point, robot_real speed,

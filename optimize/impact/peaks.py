@@ -88,8 +88,10 @@ def tops(forces: Array) -> list[tuple[NDArray[np.int64], Array]]:
     heights = forces + (after - before) ** 2 / (8 * curvature)
     at_top = (forces >= before) & (forces >= after) & (forces > 0)
     at_top[~at_top.any(axis=1), 0] = True
-    nodes = [np.flatnonzero(row) for row in at_top]
-    return [(each, row[each]) for each, row in zip(nodes, heights, strict=True)]
+    rows, nodes = np.nonzero(at_top)
+    ends = np.cumsum(np.bincount(rows, minlength=len(forces)))[:-1]
+    pairs = zip(np.split(nodes, ends), np.split(heights[at_top], ends), strict=True)
+    return list(pairs)
 
 
 def top_weights(forces: Array, node: int) -> Array:

@@ -212,11 +212,20 @@ def _largest_frequency(
     return float(np.sqrt(np.abs(squares).max()))
 
 
+def study_impacts(study: Study, step: float) -> Array:
+    """Return the numbers of a study's own impact, a row for each end of what motors may do."""
+    return np.array(
+        [
+            impact_numbers(study.direction, study.speed, study.contact, motors, step)
+            for motors in study.motors
+        ]
+    )
+
+
 def _latest_peak(study: Study, forces: ca.Function, q: Array, timing: Timing) -> float:
     """Return when the contact that holds the largest force ends, the latest of all trials [s]."""
     latest = 0.0
-    for motors in study.motors:
-        row = impact_numbers(study.direction, study.speed, study.contact, motors, timing.step)
+    for row in study_impacts(study, timing.step):
         for springs in _tried(study):
             x = np.concatenate([q, np.log10(springs)])
             latest = max(latest, _end_of_peak(np.array(forces(x, row)), timing))

@@ -36,9 +36,6 @@ SAMPLED, AT_ONCE = 6, 2
 """Searches that begin with what looks best, at most, and how many of them at once, so that the
 answer does not hang on the number of cores. They end with one that finds what is known."""
 
-HOPS = 3
-"""How often it is looked elsewhere where nothing is to be exchanged any more."""
-
 ALIKE = 1e-3
 """Share of the cost within which optima over the first scenarios count as one."""
 
@@ -122,8 +119,7 @@ def exchange(
     else:
         begun = [Begin(postures, *each) for each in starts]
         found = _apart(_searched(setting, instance, poses, begun, free))
-    hops, left = HOPS if thorough else 0, np.inf
-    effort = ROUGH if thorough else WHOLE
+    hopped, effort = False, ROUGH if thorough else WHOLE
     for rounds in range(1, ROUNDS + 1):
         settled = _settled(setting, found, active, instance, poses, unit, free, effort)
         best, found, instance, poses = settled
@@ -140,11 +136,10 @@ def exchange(
             poses = _poses(setting, poses, active)
             instance = _instance(setting, active, poses, unit)
             continue
-        if hops and best.found.cost < left * (1 - ALIKE):
-            left, hops = best.found.cost, hops - 1
-            found = [*found, *_hops(setting, instance, poses, best)]
+        if thorough and not hopped:  # once: a second look never gained more than 0.01 %
+            found, hopped = [*found, *_hops(setting, instance, poses, best)], True
         least = min(found, key=lambda each: each.found.cost)
-        if least.rough and least.found.cost > left * (1 - ALIKE):
+        if least.rough:
             more = _searched(setting, instance, poses, [_again(least)], free)
             found = [*more, *(each for each in found if each is not least)]
         elif least.found.cost >= best.found.cost * (1 - FEASIBLE):

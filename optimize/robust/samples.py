@@ -18,9 +18,6 @@ SAMPLES = 128
 """Hardware that is looked at. Optima of springs are many; the worst force of a sample tells which
 of them a search from it ends in far better than how stiff or soft it is."""
 
-SCALED = 2
-"""How often samples are scaled to what the bounds allow."""
-
 MOST_BENT = 10
 """Postures, the first of those that are held, in which bounds tell how good a sample is."""
 
@@ -58,12 +55,9 @@ def promising(
     """
     random, bounds = np.random.default_rng(SEED), nlp.bounds
     v = random.uniform(bounds.lower, bounds.upper, (SAMPLES, bounds.lower.size))
-    for _ in range(SCALED):
-        missed = _missed(nlp, postures, v)
-        # a deflection over its limit is in proportion to 1/k_s, and its row has the square
-        v[:, : bounds.springs] += 0.5 * np.log10(1 + missed)[:, None]
-        v = np.clip(v, bounds.lower, bounds.upper)
-    v = np.vstack([*known, v])
+    # a deflection over its limit is in proportion to 1/k_s, and its row has the square
+    v[:, : bounds.springs] += 0.5 * np.log10(1 + _missed(nlp, postures, v))[:, None]
+    v = np.vstack([*known, np.clip(v, bounds.lower, bounds.upper)])
     best = _best(nlp, postures, v, count, range(len(nlp.instance.impacts)))
     return [bounds.parted(each.v) for each in best]
 
@@ -153,7 +147,7 @@ def _missed(nlp: Nlp, postures: Array, v: Array) -> Array:
 def _worst(nlp: Nlp, postures: Array, v: Array, which: Sequence[int] | Indices) -> Array:
     """Return the largest share of each sample in some impacts; zero without any."""
     instance = nlp.instance
-    y = np.array([felt(nlp.program, each) for each in v])
+    y = felt(nlp.program, v)
     shares = np.zeros((len(v), len(which)))
     points = np.array([instance.shape.impacts[i][1] for i in which])
     for point in np.unique(points):

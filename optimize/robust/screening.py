@@ -10,13 +10,8 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array, Indices
 
 from ..search.nlp import Program
+from ..search.rows import by_rows
 from ..study.scenarios import Scenario, Scenarios
-
-IMPACTS_IN_A_CALL = 128
-"""Most impacts simulated in one call."""
-
-TOGETHER = 8
-"""Impacts come in multiples, so that few maps are made."""
 
 SCENARIOS_IN_A_JOB = 1000
 """Scenarios in one job."""
@@ -107,14 +102,6 @@ def largest_forces(program: Program, point: int, x: Array, numbers: Array) -> Ar
         x: posture, and log10 of what impacts feel of the hardware, a row each.
         numbers: of the impacts, m×``NUMBERS``.
     """
-    found, begin = [], 0
-    while begin < len(x):
-        left = len(x) - begin
-        chunk = min(IMPACTS_IN_A_CALL, -(-left // TOGETHER) * TOGETHER)
-        some = np.arange(begin, begin + chunk).clip(max=len(x) - 1)
-        peaks = program.impacts[point]["peaks"].map(chunk)
-        forces = np.array(peaks(x[some].T, numbers[some].T, np.zeros((1, chunk))))
-        found.append(forces.max(axis=0)[:left])
-        begin += chunk
-    forces = np.concatenate(found)
+    peaks = by_rows(program.impacts[point]["peaks"], x, numbers, np.zeros((len(x), 1)))[0]
+    forces = peaks.max(axis=1)
     return np.where(np.isnan(forces), np.inf, forces)  # else sorting would take it for the least

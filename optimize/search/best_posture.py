@@ -14,14 +14,14 @@ from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
 from ..impact.impact_program import impact_program
-from ..impact.timing import impact_timing
+from ..impact.timing import impact_timing, study_impacts
 from ..machine.coordinates import posture_limits
 from ..posture.tip_pose import posture_error, tip_pose
 from ..solver_options import quiet
 from ..study.study import Study
 from .ipopt import Instance, Nlp, VariableBounds, one_posture
 from .nlp import task_numbers
-from .problem import study_impacts, study_program
+from .problem import study_program
 from .solve import Start, solve
 
 

@@ -12,12 +12,13 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
+from ..impact.timing import study_impacts
 from ..machine.coordinates import is_plain
 from ..posture.self_motion import SelfMotion, self_motion
 from ..posture.tip_pose import POSE, tip_pose, tip_pose_error
 from ..study.study import Study
 from .accurate_springs import accurate_springs
-from .problem import Problem, felt_numbers, study_impacts
+from .problem import Problem, felt_numbers
 
 SEEDS = 200
 """Random postures from which branches are sought; one that a hundredth of them leads to is missed

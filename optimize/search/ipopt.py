@@ -20,6 +20,7 @@ from ..objectives import Objective, WorstForce
 from ..solver_options import FEASIBLE, quiet
 from ..study.study import Study
 from .nlp import SPEED, NlpShape, Program, nlp_solver, peak_rows
+from .rows import by_rows, loaded
 
 CURVATURE = 0.05
 """Of a share of the force over decades of stiffness and radians, where nothing is known yet: a
@@ -276,13 +277,9 @@ def impact_forces(
 
 
 def felt(program: Program, v: Array) -> Array:
-    """Return log10 of what impacts feel of the hardware."""
-    return np.array(_loaded(program.hardware)(v)[0]).ravel()
-
-
-@lru_cache(maxsize=16)
-def _loaded(serialised: str) -> ca.Function:
-    return ca.Function.deserialize(serialised)
+    """Return log10 of what impacts feel of the hardware; of each row of several."""
+    found = by_rows(loaded(program.hardware), np.atleast_2d(v))[0]
+    return found if v.ndim > 1 else found[0]
 
 
 def _round(nlp: Nlp, postures: Array, v: Array, free: bool) -> tuple[Found, list[int]]:
@@ -355,7 +352,7 @@ def assembled_alike(program: Program, before: Array, after: Array) -> bool:
     """Return whether loops are assembled the same way in postures, K×n each."""
     if not program.side:
         return True
-    side = _loaded(program.side)
+    side = loaded(program.side)
     pairs = zip(before, after, strict=True)
     return all(float(side(first)) * float(side(last)) > 0 for first, last in pairs)
 

@@ -12,10 +12,9 @@ from softimpact.symbolic.robot.rigid import Array
 
 from ..impact.impact_program import forces_alone
 from ..impact.peaks import peaks_in_windows
-from ..impact.timing import impact_timing
+from ..impact.timing import impact_timing, study_impacts
 from ..running.workers import cores
 from ..study.study import Study
-from .problem import study_impacts
 
 IMPACTS_IN_A_CALL = 200
 """Impacts simulated in one call."""
@@ -25,9 +24,9 @@ TRIALS = 24
 
 
 def peaks_of_postures(study: Study, postures: Array) -> Array:
-    """Return the largest peak of each posture with the nominal springs, m [N].
+    """Return the largest peak of each posture with the nominal springs [N].
 
-    Of what the motors may do the worst counts. Forces are those that a design sees: the linear
+    A row for each of ``study.motors``, m columns. Forces are those that a design sees: the linear
     model, to 0.1 %.
 
     Args:
@@ -45,9 +44,9 @@ def peaks_of_postures(study: Study, postures: Array) -> Array:
     springs = np.tile(np.log10(study.nominal), (IMPACTS_IN_A_CALL, 1))
     peaks = ca.Function("peak", [x, p], [peak]).map(IMPACTS_IN_A_CALL, "thread", cores())
     rows = study_impacts(study, timing.step)
-    found = []
+    found: list[list[Array]] = []
     for begin in range(0, count + padding, IMPACTS_IN_A_CALL):
         at = np.column_stack([padded[begin : begin + IMPACTS_IN_A_CALL], springs]).T
         rows_of = (np.tile(row[:, None], IMPACTS_IN_A_CALL) for row in rows)
-        found.append(np.max([np.array(peaks(at, each)) for each in rows_of], axis=0).ravel())
-    return np.concatenate(found)[:count]
+        found.append([peaks(at, each).full().ravel() for each in rows_of])
+    return np.concatenate(found, axis=1)[:, :count]

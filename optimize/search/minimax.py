@@ -26,6 +26,7 @@ from ..solver_options import FEASIBLE
 from .ipopt import Begin, Found, Nlp, VariableBounds
 from .minimax_point import Held, Point
 from .nlp import peak_rows
+from .rows import by_rows
 
 STEPS = 100
 """Most steps."""
@@ -281,18 +282,20 @@ def _solved(search: _Search, model: _Model, room: Array) -> _Step:
     V, count = v.size, len(room)
     rows = -(-count // BLOCK) * BLOCK
     a, upper = np.zeros((rows, V + 2)), np.full(rows, np.inf)
-    a[:count], upper[:count] = model.rows, room
-    h = np.diag(np.full(V + 2, PLAIN))
-    h[:V, :V] = search.curvature
+    a[:count], upper[:count], lower = model.rows, room, np.full(rows, -np.inf)
+    curvature = np.diag(np.full(V + 2, PLAIN))
+    curvature[:V, :V] = search.curvature
     least, most, gradient = np.full(V + 2, -np.inf), np.full(V + 2, np.inf), np.zeros(V + 2)
     down, up = np.maximum(bounds.lower - v, -trust), np.minimum(bounds.upper - v, trust)
     ends = search.step_of(down), search.step_of(up)
     least[:V], most[:V], least[-1] = np.minimum(*ends), np.maximum(*ends), 0.0
     gradient[V:] = 1.0, search.penalty
-    solution = _quadratic(V + 2, rows)(h=h, g=gradient, a=a, uba=upper, lbx=least, ubx=most)
-    x, multipliers = np.array(solution["x"]).ravel(), np.array(solution["lam_a"]).ravel()
-    ranges = np.array(solution["lam_x"]).ravel()[:V]
-    return _Step(x[:V], float(x[V]), max(float(x[V + 1]), 0.0), multipliers[:count], ranges)
+    of_problem = (curvature.T.ravel(), gradient, a.T.ravel(), lower, upper, least, most)
+    solver = _quadratic(V + 2, rows)
+    x, _, multipliers, ranges = (
+        each[0] for each in by_rows(solver, *(each[None] for each in of_problem))
+    )
+    return _Step(x[:V], float(x[V]), max(float(x[V + 1]), 0.0), multipliers[:count], ranges[:V])
 
 
 @lru_cache(maxsize=64)

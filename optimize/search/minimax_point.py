@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
@@ -17,9 +17,7 @@ from ..impact.impact_program import ImpactProgram
 from ..impact.peaks import top_weights, tops
 from .ipopt import Nlp
 from .nlp import Program
-
-TOGETHER = 4
-"""Derivatives come in multiples, so that few maps are made."""
+from .rows import by_rows, loaded
 
 LEAST_SQUARE = 1e-12
 """Square of the share of a limit below which a figure counts as this, for the slope of its root."""
@@ -61,7 +59,7 @@ class Held:
     def at(self, v: Array) -> Point:
         """Evaluate forces and bounds."""
         program, instance, K = self.nlp.program, self.nlp.instance, len(self.postures)
-        y, by_v = (np.array(a) for a in _loaded(program.hardware)(v))
+        y, by_v = by_rows(loaded(program.hardware), v[None])
         rows, slopes = bound_rows(program, self.postures, np.tile(v, (K, 1)), instance.tasks)
         squares = np.array(program.squares)
         share = np.sqrt(np.maximum(1 + rows[:, squares], LEAST_SQUARE))
@@ -70,7 +68,7 @@ class Held:
         felt = np.column_stack(
             [
                 self.postures[[k for k, _ in instance.shape.impacts]],
-                np.tile(y.T, (len(instance.impacts), 1)),
+                np.tile(y, (len(instance.impacts), 1)),
             ]
         )
         forces = self._forces(felt)
@@ -80,7 +78,7 @@ class Held:
             rows=rows,
             slopes=slopes * self.decades,
             felt=felt,
-            by_step=by_v * self.decades,
+            by_step=by_v.reshape(v.size, -1).T * self.decades,
             forces=forces,
             tops=tops(forces),
         )
@@ -92,8 +90,8 @@ class Held:
         found = np.empty((len(points), program.impacts[0].nodes))
         for point in np.unique(points):
             at = np.flatnonzero(points == point)
-            forces = _mapped(program.impacts[point], "forces", at.size)
-            found[at] = np.array(forces(felt[at].T, instance.impacts[at].T)).T
+            forces = program.impacts[point]["forces"]
+            found[at] = by_rows(forces, felt[at], instance.impacts[at])[0]
         return found / instance.units[:, None]
 
 
@@ -123,17 +121,17 @@ class Point:
     tops: list[tuple[NDArray[np.int64], Array]]
     _known: dict[tuple[int, int], Array] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def shares(self) -> Array:
         """The largest peak of each impact."""
         return np.array([heights.max() for _, heights in self.tops])
 
-    @property
+    @cached_property
     def worst(self) -> float:
         """The largest peak of all."""
         return float(self.shares.max())
 
-    @property
+    @cached_property
     def violation(self) -> float:
         """By how much the bounds are missed."""
         return float(self.rows.max(initial=0.0))
@@ -157,19 +155,10 @@ class Point:
     def _slopes(self, program: ImpactProgram, tops: Sequence[tuple[int, int]]) -> Array:
         which = [impact for impact, _ in tops]
         weights = np.array([top_weights(self.forces[i], node) for i, node in tops])
-        padded = np.resize(np.arange(len(tops)), -(-len(tops) // TOGETHER) * TOGETHER)
-        which_padded = np.array(which)[padded]
-        slope = _mapped(program, "slope", padded.size)
-        by_x = np.array(
-            slope(
-                self.felt[which_padded].T,
-                self.held.nlp.instance.impacts[which_padded].T,
-                weights[padded].T,
-            )
-        ).reshape(padded.size, -1)[: len(tops)]
-        n = self.held.nlp.program.n
+        instance, n = self.held.nlp.instance, self.held.nlp.program.n
+        by_x = by_rows(program["slope"], self.felt[which], instance.impacts[which], weights)[0]
         by_felt = by_x[:, n : n + len(self.by_step)]
-        return np.asarray(by_felt @ self.by_step / self.held.nlp.instance.units[which][:, None])
+        return np.asarray(by_felt @ self.by_step / instance.units[which][:, None])
 
     def same_top(self, impact: int, node: int) -> tuple[int, float] | None:
         """Return node and share of the peak that was at some node in another iterate."""
@@ -190,32 +179,21 @@ def bound_rows(program: Program, postures: Array, v: Array, tasks: Array) -> tup
         tasks: numbers of each posture's task, m×size.
     """
     bounds = _bounds(program.task, program.held, program.n)
-    found = bounds(np.column_stack([postures, v]).T, tasks.T)
-    rows, by_v = (np.array(each) for each in found)
-    return rows.T, by_v.reshape(len(rows), len(postures), -1).transpose(1, 0, 2)
+    rows, by_v = by_rows(bounds, np.column_stack([postures, v]), tasks)
+    return rows, by_v.reshape(*v.shape, -1).transpose(0, 2, 1)
 
 
 def values_of_bounds(program: Program, postures: Array, v: Array, tasks: Array) -> Array:
     """Return the rows of the bounds alone, m×R; arguments as ``bound_rows``."""
     bounds = _bounds(program.task, program.held, None)
-    return np.array(bounds(np.column_stack([postures, v]).T, tasks.T)).T
+    return by_rows(bounds, np.column_stack([postures, v]), tasks)[0]
 
 
 @lru_cache(maxsize=32)
 def _bounds(serialised: str, held: int, n: int | None) -> ca.Function:
     """Return (x, b) -> the bounds' rows and, behind n joints, their derivative by v."""
-    task = _loaded(serialised)
+    task = loaded(serialised)
     x, b = task.sx_in()
     rows, by_x = task(x, b)
     found = [rows[held:, :]] if n is None else [rows[held:, :], by_x[held:, n:]]
     return ca.Function("bounds", [x, b], found)
-
-
-@lru_cache(maxsize=16)
-def _loaded(serialised: str) -> ca.Function:
-    return ca.Function.deserialize(serialised)
-
-
-@lru_cache(maxsize=64)
-def _mapped(program: ImpactProgram, name: str, count: int) -> ca.Function:
-    return program[name].map(count)

@@ -12,8 +12,8 @@ from softimpact.symbolic import InvalidValue, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
 from ..evaluation import equipped
-from ..impact.impact_program import PARTS, ImpactProgram, Parts, impact_numbers, impact_program
-from ..impact.timing import Timing, impact_timing
+from ..impact.impact_program import PARTS, ImpactProgram, Parts, impact_program
+from ..impact.timing import Timing, impact_timing, study_impacts
 from ..machine.coordinates import side_function
 from ..objectives import WorstForce
 from ..posture.tip_pose import posture_equations, tip_pose
@@ -127,16 +127,6 @@ def study_program(study: Study, impacts: tuple[ImpactProgram, ...]) -> Program:
     )
     return Program(
         impacts, *serialised, study.robot.n, variables, each, squares, rows, size, held, of_loops
-    )
-
-
-def study_impacts(study: Study, step: float) -> Array:
-    """Return the numbers of a study's own impact, a row for each end of what motors may do."""
-    return np.array(
-        [
-            impact_numbers(study.direction, study.speed, study.contact, motors, step)
-            for motors in study.motors
-        ]
     )
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from softimpact.optimize import Outcome, Study
+from softimpact.optimize import Study
 from softimpact.simulate import (
     Approach,
     Fidelity,
@@ -20,6 +21,9 @@ from softimpact.simulate.band import Band, impact_band
 from softimpact.symbolic import Motors
 from softimpact.symbolic.body.verdict import limits_of
 from softimpact.symbolic.robot.rigid import Array
+
+if TYPE_CHECKING:
+    from softimpact.optimize import Outcome
 
 AGREED = 0.01
 """Share by which an independent simulation may exceed an optimum's force unsaid."""

@@ -56,6 +56,11 @@ class Rules:
             float(compiler.settotalmass),
         )
 
+    @property
+    def bounds(self) -> bool:
+        """Whether every body gets some mass or inertia."""
+        return self.least_mass > 0 or self.least_moment > 0
+
     def counts(self, geom: mujoco.MjsGeom) -> bool:
         """Whether a geom gives its body mass, where geoms do."""
         if not self.groups[0] <= int(geom.group) <= self.groups[1]:
@@ -95,6 +100,8 @@ def body_inertias(
             from_geoms.add(place)
         elif explicit:
             stated[place] = _tensor(body)
+        elif rules.bounds:
+            stated[place] = np.zeros(10)  # what MuJoCo raises to the bounds, where it puts it
         _stand_in(body, place in stated)
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
     spec.compiler.boundmass = spec.compiler.boundinertia = 0.0

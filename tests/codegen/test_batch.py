@@ -120,6 +120,22 @@ def test_a_watched_elbow_can_bind(rr: batch.CompiledPackage) -> None:
     assert ((found["factor"] > 0) & (found["factor"] <= 1)).all()
 
 
+@pytest.mark.slow
+def test_what_no_row_can_do_without_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOFTIMPACT_CACHE", str(tmp_path))
+    arm = batch.compiled("gen3")
+    q, n = np.full(7, 0.4), [1.0, 0.0, 0.0]
+    with pytest.raises(InvalidValue, match="joint_stiffness: is not known of this robot"):
+        arm.peak_force(q, n, 0.5)
+    with pytest.raises(InvalidValue, match="rotor_inertia: is not known of this robot"):
+        arm.peak_force(q, n, 0.5, joint_stiffness=3e3)
+    known = {"joint_stiffness": 3e3, "rotor_inertia": 0.5}
+    assert arm.peak_force(q, n, 0.5, horizon=0.01, **known)["status"] in (0, 9)
+    assert arm.peak_force(q, n, -0.5, **known)["status"] == 4  # not a matter of what is unknown
+
+
 def test_wrong_rows_and_names_are_said(rr: batch.CompiledPackage) -> None:
     with pytest.raises(InvalidValue, match="rows of 4 numbers"):
         rr.reflected_mass(np.zeros((2, 3)), [1, 0, 0])

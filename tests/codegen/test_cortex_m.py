@@ -17,7 +17,8 @@ SOFT_FLOAT = ("__aeabi_d", "__aeabi_f2d", "__aeabi_i2d", "__aeabi_ui2d", "__aeab
 """What double operations become on a core that has none."""
 
 FLOAT_CALLS = {
-    *("sinf", "cosf", "sqrtf", "fmaxf", "fminf", "powf", "logf", "expf", "memset", "memcpy"),
+    *("sinf", "cosf", "sqrtf", "fmaxf", "fminf", "cbrtf", "powf", "logf", "expf"),
+    *("memset", "memcpy"),
 }
 
 

@@ -87,10 +87,6 @@ def test_code_is_as_small_as_the_design_asks(package: Callable[[str], Generated]
 
 
 @pytest.mark.embedded
-@pytest.mark.xfail(
-    strict=True,
-    reason="30.8 kB, of which 6.6 are the C library's: sines of large angles, powers",
-)
 def test_a_safe_speed_alone_is_small(package: Callable[[str], Generated], tmp_path: Path) -> None:
     """With all that it calls, of the C library too, beyond what an empty program has."""
     tool(GCC)

@@ -37,6 +37,7 @@ FLOAT_CALLS = {
     "sqrtf",
     "fmaxf",
     "powf",
+    "cbrtf",
     "logf",
     "memcpy",
     "memset",

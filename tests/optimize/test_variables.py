@@ -21,11 +21,11 @@ from softimpact.optimize.evaluation import (
     largest_share,
 )
 from softimpact.optimize.impact.impact_program import PARTS, impact_program
-from softimpact.optimize.impact.timing import impact_timing, scenario_timing
+from softimpact.optimize.impact.timing import impact_timing, scenario_timing, study_impacts
 from softimpact.optimize.machine.hardware import built
 from softimpact.optimize.members import kinds_in
 from softimpact.optimize.robust.robust import RobustDesign, robust_design
-from softimpact.optimize.search.problem import felt_numbers, sought_parts, study_impacts
+from softimpact.optimize.search.problem import felt_numbers, sought_parts
 from softimpact.optimize.study.study_scenarios import scenarios_of
 from softimpact.optimize.variables import Variable
 from softimpact.simulate import Approach, simulate_impact

@@ -12,9 +12,15 @@ from impact_cases import ALONG_Y, CHEST, FREE_HEAD, POSE
 from mechanisms import FIVE_BAR, robot_of
 from oracles import Pinocchio, configurations
 
-from softimpact.simulate import Approach, assess_impact, simulate_impact
+from softimpact.simulate import (
+    Approach,
+    ForceLimits,
+    assess_impact,
+    largest_safe_speed,
+    simulate_impact,
+)
 from softimpact.simulate.linear_error import UNSEEN, linear_error
-from softimpact.simulate.trust import TRUSTED, not_trusted
+from softimpact.simulate.trust import TRUSTED, nonlinear_safe_speed, not_trusted
 from softimpact.symbolic import (
     Contact,
     InvalidValue,
@@ -107,6 +113,21 @@ def test_safe_speeds_are_asked_of_the_nonlinear_robot_too(panda: Robot) -> None:
     assert any(line.startswith("at the safe speed the linear model") for line in slow.warnings)
 
 
+def test_small_errors_do_not_make_a_safe_speed_too_high(panda: Robot) -> None:
+    model = impact_model(panda, drives=drives(panda, 3e3, 0.3))
+    n, contact = unit_direction([-0.002, 0.689, 0.725]), Contact(body_region("hand"), clamped=False)
+    q, limits = np.array([-1.02, 0.54, -1.15, -0.84, -1.75, 2.65, -1.34]), ForceLimits(40.0)
+    free = Motors("free")
+    linear = largest_safe_speed(model, Approach(q, n, 0.3), contact, limits, motors=free)
+    at = Approach(q, n, linear)
+    speed, error = nonlinear_safe_speed(model, at, contact, limits, free, {})
+    assert error is not None
+    assert error < 0.01
+    assert 0.995 * linear < speed < linear
+    true = simulate_impact(model, replace(at, speed=speed), contact, "full", motors=free)
+    assert true.peak == pytest.approx(40.0, rel=1e-6)
+
+
 @pytest.mark.parametrize("duration", [-1e-9, np.nan, np.inf])
 def test_bad_durations_are_refused(panda: Robot, duration: float) -> None:
     with pytest.raises(InvalidValue, match="duration"):
@@ -124,5 +145,5 @@ def test_a_verdict_that_may_flip_is_asked_of_the_nonlinear_robot_too() -> None:
     assert not not_trusted(0.05, 0.5)
     assert not_trusted(0.05, 0.96)
     assert not not_trusted(0.05, 1.2)  # it is exceeded anyway
-    assert not not_trusted(0.005, 0.999)
+    assert not_trusted(0.005, 0.999)
     assert not not_trusted(None, 0.999)

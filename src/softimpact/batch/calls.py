@@ -41,6 +41,10 @@ IMPACT = "region"
 """Argument of functions that integrate in time, and its type."""
 
 
+SPRUNG = ("joint_stiffness", "rotor_inertia")
+"""Parameters that stand at zero where a robot's file does not tell them, and must be greater."""
+
+
 @dataclass(frozen=True, eq=False)
 class CompiledPackage:
     """A package's functions over arrays; each is a method by its C name without the prefix.
@@ -121,6 +125,7 @@ class CompiledPackage:
         return self._call(self.interface.entries[JUDGED[entry.name]], **known, **options)
 
     def _call(self, entry: Entry, *given: Any, **options: Any) -> Arrays:
+        named = set(options)
         inputs = self._inputs(entry, given, options)
         count = max(len(rows) for rows in inputs)
         for rows in inputs:
@@ -131,7 +136,16 @@ class CompiledPackage:
         status = np.empty(count, dtype=np.int32)
         impact = any(a.name == IMPACT for a in entry.arguments)
         self._run(self._rows_of(entry.name), inputs, out, status, 1 if impact else CHUNK)
+        if (status == self.interface.enums["status"]["OUT_OF_RANGE"]).all():
+            self._name_unknown(named)
         return {**found, "status": status}
+
+    def _name_unknown(self, given: set[str]) -> None:
+        """Raise an error for a parameter that no row can do without and nobody has given."""
+        fields = self._defaults.dtype.names or ()
+        for name in SPRUNG:
+            if name in fields and name not in given and not (self._defaults[name] > 0).all():
+                raise InvalidValue(name, "is not known of this robot; give one value, or one a joint")
 
     def _inputs(
         self, entry: Entry, given: tuple[Any, ...], options: dict[str, Any]
