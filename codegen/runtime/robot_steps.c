@@ -167,7 +167,7 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
-    const robot_real end = ROBOT_R(1.0)/time;
+    const robot_real end = ROBOT_R(1.0)/ROBOT_HORIZON(impact->p);
     let_stand(impact, ROBOT_FMAX(contact, end*end), released, phase);
     robot_real moving = ROBOT_R(0.0);
     robot_real rate2 = ROBOT_R(0.0);
@@ -180,7 +180,7 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
     const robot_real jump = region->damping*impact->mobility;
     const robot_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : ROBOT_R(0.0);
-    const robot_real slowest = ROBOT_FMAX(end, rise);
+    const robot_real slowest = ROBOT_FMAX(ROBOT_R(1.0)/time, rise);
     const robot_real rate = ROBOT_FMAX(slowest, ROBOT_FMAX(ROBOT_SQRT(rate2), robot_damping_rate(phase)/SERVO_STEP));
     const robot_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
