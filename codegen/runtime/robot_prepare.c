@@ -4,6 +4,11 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS ROBOT_R(1.6e-2)
+/*
+ * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
+ * inputs, 4.6 % with this, errors as before).
+ */
+#define LEAST_SMOOTH ROBOT_R(0.05)
 
 void robot_impact_forget(robot_impact *impact)
 {
@@ -180,7 +185,7 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
     impact->scale = ROBOT_R(0.5)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
-    impact->smooth = ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped);
+    impact->smooth = ROBOT_FMAX(ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped), LEAST_SMOOTH);
     impact->skin_rate = robot_law_stiffness(region, size)*impact->mobility;
     const robot_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!robot_all_finite(numbers, 3) || robot_check_positive(numbers, 3) != ROBOT_OK) {

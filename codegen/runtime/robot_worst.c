@@ -7,14 +7,17 @@
 #define OVER_A_CIRCLE 32
 #define TURN ROBOT_R(2.399963229728653) /* of one from the one before: pi (3 - sqrt(5)) */
 #define HALF_A_TURN ROBOT_R(3.141592653589793)
-/* How far around the best is looked, as a share of a unit vector, first and last. */
+/*
+ * How far around the best is looked, as a share of a unit vector, first and last; and last where motors hardly move
+ * the point one way, so that directions in which they can lie within a slice.
+ */
 #define WIDE ROBOT_R(0.2)
-#define NARROW ROBOT_R(0.01)
-#define AROUND 6
-#define MOST_ROUNDS 16
+#define NARROW ROBOT_R(2e-3)
+#define SLICE ROBOT_R(1e-5)
+#define MOST_ROUNDS 20
 /* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
 #define STARTS 3
-#define ALIKE ROBOT_R(0.94)
+#define ALIKE (ROBOT_REACH > 2 ? ROBOT_R(0.94) : ROBOT_R(0.98))
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (ROBOT_R(1.0) - ROBOT_KEPT)
 
@@ -25,6 +28,8 @@ typedef struct {
     robot_real n[3]; /* the worst so far */
     robot_real force;
     robot_real tried; /* force of the last direction that was tried */
+    robot_matrix axes; /* of the ellipsoid of what motors move, a row each */
+    int least; /* of these, the shortest */
     bool bounded, unknown; /* some direction */
     bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
@@ -71,16 +76,12 @@ static void direction_of(int k, robot_real along[3])
 }
 
 #if ROBOT_REACH > 1
-/*
- * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
- * one dimension less, and hardly any of the directions over a ball is within the others.
- */
-static void try_across(const robot_region *region, const robot_params *p, hardest *w)
+/* Finds the axes along which motors move the point most to least, whatever joints do at a given rate. */
+static void find_axes(hardest *w)
 {
     const robot_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     robot_matrix square;
-    robot_matrix vectors;
     robot_real values[ROBOT_SYSTEM];
     for (int k = 0; k < ROBOT_REACH; ++k) {
         for (int l = 0; l < ROBOT_REACH; ++l) {
@@ -94,16 +95,24 @@ static void try_across(const robot_region *region, const robot_params *p, hardes
             }
         }
     }
-    if (!robot_spectrum(ROBOT_REACH, ROBOT_EPSILON*ROBOT_EPSILON, square, values, vectors)) {
+    if (!robot_spectrum(ROBOT_REACH, ROBOT_EPSILON*ROBOT_EPSILON, square, values, w->axes)) {
         w->unknown = true;
         return;
     }
-    int least = 0;
+    w->least = 0;
     for (int k = 1; k < ROBOT_REACH; ++k) {
-        least = values[k] < values[least] ? k : least;
+        w->least = values[k] < values[w->least] ? k : w->least;
     }
-    const robot_real *const a = vectors[(least + 1) % ROBOT_REACH];
-    const robot_real *const b = vectors[(least + 2) % ROBOT_REACH];
+}
+
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const robot_region *region, const robot_params *p, hardest *w)
+{
+    const robot_real *const a = w->axes[(w->least + 1) % ROBOT_REACH];
+    const robot_real *const b = w->axes[(w->least + 2) % ROBOT_REACH];
     for (int k = 0; k < (ROBOT_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
         const robot_real turn = HALF_A_TURN*(robot_real)k/(robot_real)OVER_A_CIRCLE;
         robot_real along[3] = {ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
@@ -113,33 +122,34 @@ static void try_across(const robot_region *region, const robot_params *p, hardes
         (void)try_direction(region, p, along, w);
     }
 }
-#endif
 
-/* Looks around the worst, wider where that helps. */
+/*
+ * Looks around the worst, along each of the axes as far as that helps: where motors move the point much more one
+ * way than others, hard directions lie on a narrow ridge.
+ */
 static void look_around(const robot_region *region, const robot_params *p, hardest *w)
 {
-    robot_real wide = WIDE;
-    for (int round = 0; round < MOST_ROUNDS && wide > NARROW && ROBOT_REACH > 1; ++round) {
-        const robot_real *const n = w->n;
-        const robot_real side = ROBOT_FABS(n[2]) < ROBOT_R(0.9) ? ROBOT_SQRT(n[0]*n[0] + n[1]*n[1])
-            : ROBOT_SQRT(n[1]*n[1] + n[2]*n[2]);
-        const robot_real a[3] = {ROBOT_FABS(n[2]) < ROBOT_R(0.9) ? n[1]/side : ROBOT_R(0.0),
-            ROBOT_FABS(n[2]) < ROBOT_R(0.9) ? -n[0]/side : n[2]/side,
-            ROBOT_FABS(n[2]) < ROBOT_R(0.9) ? ROBOT_R(0.0) : -n[1]/side};
-        const robot_real b[3] = {n[1]*a[2] - n[2]*a[1], n[2]*a[0] - n[0]*a[2], n[0]*a[1] - n[1]*a[0]};
-        const robot_real centre[3] = {n[0], n[1], n[2]};
-        bool better = false;
-        for (int k = 0; k < AROUND; ++k) {
-            const robot_real turn = ROBOT_R(2.0)*HALF_A_TURN*(robot_real)k/(robot_real)AROUND;
-            const robot_real s = wide*ROBOT_SIN(turn);
-            const robot_real c = wide*ROBOT_COS(turn);
-            const robot_real aside[3] = {centre[0] + c*a[0] + s*b[0], centre[1] + c*a[1] + s*b[1],
-                ROBOT_REACH > 2 ? centre[2] + c*a[2] + s*b[2] : ROBOT_R(0.0)};
-            const robot_real size = ROBOT_SQRT(aside[0]*aside[0] + aside[1]*aside[1] + aside[2]*aside[2]);
-            const robot_real along[3] = {aside[0]/size, aside[1]/size, aside[2]/size};
-            better = try_direction(region, p, along, w) || better;
+    const robot_real narrow = w->lost ? SLICE : NARROW;
+    robot_real wide[3] = {WIDE, WIDE, WIDE};
+    for (int round = 0; round < MOST_ROUNDS; ++round) {
+        for (int k = 0; k < ROBOT_REACH; ++k) {
+            bool better = false;
+            for (int side = 0; side < 2 && !better && wide[k] > narrow; ++side) {
+                const robot_real by = side == 0 ? wide[k] : -wide[k];
+                robot_real along[3] = {ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
+                robot_real size = ROBOT_R(0.0);
+                for (int l = 0; l < ROBOT_REACH; ++l) {
+                    along[l] = w->n[l] + by*w->axes[k][l];
+                    size += along[l]*along[l];
+                }
+                size = ROBOT_SQRT(size);
+                for (int l = 0; l < ROBOT_REACH && size > ROBOT_R(0.0); ++l) {
+                    along[l] /= size;
+                }
+                better = try_direction(region, p, along, w);
+            }
+            wide[k] *= better ? ROBOT_R(1.5) : ROBOT_R(0.5);
         }
-        wide = better ? wide : ROBOT_R(0.5)*wide;
     }
 }
 
@@ -173,6 +183,7 @@ static void look_elsewhere(const robot_region *region, const robot_params *p, in
         }
     }
 }
+#endif
 
 /*
  * A force that no impact in any direction exceeds, by motors of one kind; 0 where none is known.
@@ -204,8 +215,8 @@ static robot_real bound_all(const robot_region *region, const robot_params *p, i
     return w->speed*robot_bound_by(impact, region->stiffness + region->damping*region->damping*mobility, twice);
 }
 
-/* What to say where impacts of some directions cannot be followed to their end: what holds for all. */
-static int say_bound(const robot_region *region, const robot_params *p, hardest *w, robot_worst_direction_t *out)
+/* Where some impacts cannot be followed to their end: takes the bound of all directions; false if none is known. */
+static bool raise_to_bound(const robot_region *region, const robot_params *p, hardest *w)
 {
     int first;
     int last;
@@ -213,13 +224,11 @@ static int say_bound(const robot_region *region, const robot_params *p, hardest 
     for (int motors = first; motors <= last; ++motors) {
         const robot_real bound = bound_all(region, p, motors, w);
         if (!(bound > ROBOT_R(0.0) && bound <= ROBOT_REAL_MAX)) {
-            return ROBOT_UNRESOLVED;
+            return false;
         }
         w->force = ROBOT_FMAX(w->force, bound);
     }
-    out->force = w->force;
-    out->error = ROBOT_R(0.0);
-    return ROBOT_BOUNDED;
+    return true;
 }
 
 /* Looks everywhere. */
@@ -238,6 +247,7 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
         forces[k] = w->tried;
     }
 #if ROBOT_REACH > 1
+    find_axes(w);
     if (w->lost) {
         try_across(region, p, w);
     }
@@ -249,11 +259,16 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
         return ROBOT_SINGULAR;
     }
     const robot_real seen = w->force;
+#if ROBOT_REACH > 1
     if (!w->bounded) {
         look_around(region, p, w);
         look_elsewhere(region, p, count, forces, w);
     }
+#endif
     if (w->unknown) { /* so may be the hardest */
+        return ROBOT_UNRESOLVED;
+    }
+    if (w->bounded && !raise_to_bound(region, p, w)) {
         return ROBOT_UNRESOLVED;
     }
     for (int k = 0; k < 3; ++k) {
@@ -262,12 +277,9 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
             out->n[k] += w->n[l]*robot_directions[l][k];
         }
     }
-    if (w->bounded) {
-        return say_bound(region, p, w, out);
-    }
     out->force = w->force;
-    out->error = w->force/seen - ROBOT_R(1.0) + OF_FORCES;
-    return ROBOT_OK;
+    out->error = w->bounded ? ROBOT_R(0.0) : w->force/seen - ROBOT_R(1.0) + OF_FORCES;
+    return w->bounded ? ROBOT_BOUNDED : ROBOT_OK;
 }
 
 int robot_worst_direction_at(const robot_real q[ROBOT_JOINTS], int point, robot_real speed,

@@ -10,7 +10,7 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from softimpact.optimize.machine.coordinates import sprung
+from softimpact.optimize.machine.springs import sprung
 from softimpact.studio.front.trade_off_report import TradeOffReport
 from softimpact.symbolic import JointKind
 
