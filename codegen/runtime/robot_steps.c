@@ -13,9 +13,11 @@
 #define SERVO_STEP ROBOT_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
- * displacement, in a contact as fast as `contact`, or as the time there is.
+ * displacement, in a contact as fast as `contact`, or as the time there is; that only up to its root of what is
+ * known of frequencies, so that modes that are not stand as before.
  */
 #define STANDS ROBOT_R(1e-5)
+#define ROOT ROBOT_R(3e-3)
 /*
  * Nor may the damper's jump at first touch, c v of a force of about v sqrt(k m), be felt in its motion
  * through the damper, by more than this share of the force.
@@ -168,7 +170,8 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
     }
     phase->has_body = impact->gives_way;
     const robot_real end = ROBOT_R(1.0)/time;
-    let_stand(impact, ROBOT_FMAX(contact, end*end), released, phase);
+    const robot_real brief = ROBOT_FMIN(end*end, ROOT*modes->fastest);
+    let_stand(impact, ROBOT_FMAX(contact, brief), released, phase);
     robot_real moving = ROBOT_R(0.0);
     robot_real rate2 = ROBOT_R(0.0);
     for (int i = 0; i < phase->active; ++i) {

@@ -215,22 +215,21 @@ static robot_real bound_all(const robot_region *region, const robot_params *p, i
     return w->speed*robot_bound_by(impact, region->stiffness + region->damping*region->damping*mobility, twice);
 }
 
-/* What to say where impacts of some directions cannot be followed to their end: what holds for all. */
-static int say_bound(const robot_region *region, const robot_params *p, hardest *w, robot_worst_direction_t *out)
+/* The same by any of the motors that p stands for. */
+static robot_real bound_any(const robot_region *region, const robot_params *p, hardest *w)
 {
     int first;
     int last;
     robot_kinds_of_motors(p, &first, &last);
+    robot_real most = w->force;
     for (int motors = first; motors <= last; ++motors) {
         const robot_real bound = bound_all(region, p, motors, w);
         if (!(bound > ROBOT_R(0.0) && bound <= ROBOT_REAL_MAX)) {
-            return ROBOT_UNRESOLVED;
+            return ROBOT_R(0.0);
         }
-        w->force = ROBOT_FMAX(w->force, bound);
+        most = ROBOT_FMAX(most, bound);
     }
-    out->force = w->force;
-    out->error = ROBOT_R(0.0);
-    return ROBOT_BOUNDED;
+    return most;
 }
 
 /* Looks everywhere. */
@@ -270,18 +269,23 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
     if (w->unknown) { /* so may be the hardest */
         return ROBOT_UNRESOLVED;
     }
+    robot_real error = w->force/seen - ROBOT_R(1.0) + OF_FORCES;
+    if (w->bounded) {
+        w->force = bound_any(region, p, w);
+        error = ROBOT_R(0.0);
+    }
+    if (!(w->force > ROBOT_R(0.0))) {
+        return ROBOT_UNRESOLVED;
+    }
     for (int k = 0; k < 3; ++k) {
         out->n[k] = ROBOT_R(0.0);
         for (int l = 0; l < ROBOT_REACH; ++l) {
             out->n[k] += w->n[l]*robot_directions[l][k];
         }
     }
-    if (w->bounded) {
-        return say_bound(region, p, w, out);
-    }
     out->force = w->force;
-    out->error = w->force/seen - ROBOT_R(1.0) + OF_FORCES;
-    return ROBOT_OK;
+    out->error = error;
+    return w->bounded ? ROBOT_BOUNDED : ROBOT_OK;
 }
 
 int robot_worst_direction_at(const robot_real q[ROBOT_JOINTS], int point, robot_real speed,
