@@ -14,20 +14,26 @@ if TYPE_CHECKING:
     from .front.front import Front, ParetoPoint
     from .front.pareto import Pareto, pareto_fronts
     from .front.trade_off import TradeOff, TradePoint, trade_off_front
+    from .robust.robust import RobustDesign, robust_design
     from .search.failure import Infeasible, SolverFailure, Unavailable
     from .search.solve import Mode, Outcome
     from .study.poses import Candidate, candidates
+    from .study.scenarios import Scenarios
     from .study.study import Pose, Study, load_study
+    from .study.study_scenarios import scenarios_of
 
 _HOMES = {
     "co_design": ("Design", "Gains", "PoseResult", "design"),
     "front.front": ("Front", "ParetoPoint"),
     "front.pareto": ("Pareto", "pareto_fronts"),
     "front.trade_off": ("TradeOff", "TradePoint", "trade_off_front"),
+    "robust.robust": ("RobustDesign", "robust_design"),
     "search.failure": ("Infeasible", "SolverFailure", "Unavailable"),
     "search.solve": ("Mode", "Outcome"),
     "study.poses": ("Candidate", "candidates"),
+    "study.scenarios": ("Scenarios",),
     "study.study": ("Pose", "Study", "load_study"),
+    "study.study_scenarios": ("scenarios_of",),
 }
 
 __all__ = [
@@ -42,6 +48,8 @@ __all__ = [
     "ParetoPoint",
     "Pose",
     "PoseResult",
+    "RobustDesign",
+    "Scenarios",
     "SolverFailure",
     "Study",
     "TradeOff",
@@ -51,6 +59,8 @@ __all__ = [
     "design",
     "load_study",
     "pareto_fronts",
+    "robust_design",
+    "scenarios_of",
     "trade_off_front",
 ]
 

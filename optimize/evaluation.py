@@ -14,8 +14,9 @@ from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.robot.rigid import Array
 
 from .bounds import Bound
-from .machine.coordinates import sprung
-from .machine.hardware import Hardware, Machine, TaskMotion
+from .machine.hardware import Hardware
+from .machine.machine import Machine, TaskMotion
+from .machine.springs import sprung
 from .solver_options import FEASIBLE
 from .study.study import Study
 from .variables import Variable

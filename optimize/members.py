@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from softimpact.symbolic import InvalidValue, UnknownName
+from softimpact.symbolic.file_section import why_wrong
 
 
 def kinds_in(package: ModuleType, base: type) -> dict[str, type]:
@@ -52,9 +53,8 @@ def built(kinds: dict[str, type], what: str, kind: str, fields: Any) -> Any:
     except ValidationError as error:
         first = error.errors()[0]
         path = [part for part in first["loc"] if part in known or isinstance(part, int)]
-        reason = "is missing" if first["type"] == "missing" else first["msg"]
         place = ".".join([kind, *(str(part) for part in path)])
-        raise InvalidValue(place, reason.removeprefix("Value error, ")) from None
+        raise InvalidValue(place, why_wrong(first)) from None
 
 
 @lru_cache(maxsize=64)

@@ -8,7 +8,7 @@ from .bracket import bracket
 from .controller import Controller, ControllerReference
 from .decoupling import Decoupling, decoupling_stiffness, is_isolated, scaled_springs
 from .history import HORIZON, Fidelity, ImpactHistory, PeakDefinition
-from .impact import simulate_impact
+from .impact import simulate_impact, simulate_masses
 from .many import many_peaks
 from .safe_speed import ForceLimits, largest_safe_speed
 from .simulator import SimulationFailed
@@ -37,4 +37,5 @@ __all__ = [
     "many_peaks",
     "scaled_springs",
     "simulate_impact",
+    "simulate_masses",
 ]

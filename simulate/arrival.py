@@ -18,6 +18,8 @@ from softimpact.symbolic import (
 from softimpact.symbolic.impact.approach import REACHED
 from softimpact.symbolic.robot.rigid import Array
 
+from .history import require_speed
+
 
 @dataclass(frozen=True, eq=False)
 class Approach:
@@ -72,8 +74,7 @@ def arrival_of(model: ImpactModel, approach: Approach) -> Arrival:
     q = _finite("q", model.robot.vector("q", approach.q))
     require_closed_at(model.robot, q)
     n = unit_direction(approach.direction)
-    if not 0 < approach.speed < np.inf:
-        raise InvalidValue("speed", f"must be finite and greater than 0 m/s, not {approach.speed}")
+    require_speed(approach.speed)
     if approach.link_velocity is None:
         velocity = approach_velocity(model, q, n)
     else:

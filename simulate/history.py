@@ -20,8 +20,28 @@ PeakDefinition = Literal["peak", "first_contact", "first_peak"]
 HORIZON = QUASI_STATIC_FROM
 """How long forces count by default: as long as the transient limit does [s]."""
 
+LONGEST_HORIZON = 10.0
+"""How long forces may count at most [s]: all of an impact is over by then, and steps are finite."""
+
+FASTEST = 1e3
+"""Largest speed of an impact [m/s]: no robot comes near, and integrators lose their way beyond."""
+
 PRESSED_UNTIL = 0.6
 """Until when the force is followed that a clamped body still bears after ``HORIZON`` [s]."""
+
+
+def require_horizon(horizon: float) -> None:
+    """Raise InvalidValue unless forces can count for so long [s]."""
+    if not 0 < horizon <= LONGEST_HORIZON:
+        reason = f"must be greater than 0 and at most {LONGEST_HORIZON:g} s, not {horizon:g}"
+        raise InvalidValue("horizon", reason)
+
+
+def require_speed(speed: float) -> None:
+    """Raise InvalidValue unless an impact can be so fast [m/s]."""
+    if not 0 < speed <= FASTEST:
+        reason = f"must be greater than 0 and at most {FASTEST:g} m/s, not {speed:g}"
+        raise InvalidValue("speed", reason)
 
 
 @dataclass(frozen=True, eq=False)

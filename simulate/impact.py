@@ -7,6 +7,7 @@ import logging
 from typing import get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softimpact.symbolic import Contact, ImpactModel, InvalidValue, Motors, UnknownName
 from softimpact.symbolic.impact.chain import ChainEnd
@@ -18,8 +19,8 @@ from .controlled import controlled, controlled_scene
 from .controller import Controller, check_controller
 from .events import Course, course_of, peaks_of
 from .full import full_scene
-from .history import HORIZON, PRESSED_UNTIL, Fidelity, ImpactHistory
-from .linear_stages import linear_scene, one_mass_scene, two_mass_scene
+from .history import HORIZON, PRESSED_UNTIL, Fidelity, ImpactHistory, require_horizon, require_speed
+from .linear_stages import linear_scene, masses_scene, one_mass_scene, two_mass_scene
 from .scene import Scene
 
 LOGGER = logging.getLogger(__name__)
@@ -65,22 +66,72 @@ def simulate_impact(
     """
     if fidelity not in get_args(Fidelity):
         raise UnknownName("fidelity", fidelity, get_args(Fidelity))
-    if not 1e-14 <= tolerance <= 1e-2:
-        raise InvalidValue("tolerance", f"must be from 1e-14 to 1e-2, not {tolerance:g}")
-    if horizon is not None and not 0 < horizon < np.inf:
-        raise InvalidValue("horizon", f"must be finite and greater than 0 s, not {horizon:g}")
-    contact.check()
+    _check(contact, horizon, tolerance)
     arrival = arrival_of(model, approach)
     what = Motors("servo" if model.drives.has_gains else "free") if motors is None else motors
     kind = what.kind if isinstance(what, Motors) else "of the papers' controller"
     LOGGER.info("simulate at %g m/s, model %s, motors %s", arrival.speed, fidelity, kind)
     scene = _scene(model, arrival, contact, fidelity, what, order, end, tolerance)
+    did = what if isinstance(what, Motors) and not _is_lumped(fidelity) else None
+    return _history(scene, fidelity, did, horizon, pressing)
+
+
+def simulate_masses(
+    mass: ArrayLike,
+    springs: ArrayLike,
+    speed: float,
+    contact: Contact,
+    *,
+    horizon: float | None = HORIZON,
+    pressing: bool = True,
+    tolerance: float = 1e-10,
+) -> ImpactHistory:
+    """Simulate masses in a row that hit a body region: any reduced model of a robot.
+
+    Args:
+        mass: of each [kg], length r; the first is hit, and all arrive together.
+        springs: behind each [N/m], length r; the last one leads to a ground that moves on, as
+            motors do that keep their speed. 0 is no spring.
+        speed: of the approach [m/s].
+        contact: what they hit.
+        horizon: see ``simulate_impact``, as the next two.
+        pressing: whether to follow a clamped body further.
+        tolerance: of the integrator.
+
+    Raises:
+        InvalidValue: a number outside what it means, or lists of different lengths.
+        SimulationFailed: the integrator gave up.
+    """
+    _check(contact, horizon, tolerance)
+    require_speed(speed)
+    m, k = (np.atleast_1d(np.asarray(values, dtype=float)) for values in (mass, springs))
+    if m.ndim != 1 or not m.size or not (np.isfinite(m) & (m > 0)).all():
+        raise InvalidValue("mass", "needs a list of finite masses greater than 0 kg")
+    if k.shape != m.shape or not (np.isfinite(k) & (k >= 0)).all():
+        raise InvalidValue("springs", f"needs {m.size} finite numbers ≥ 0, one behind each mass")
+    scene = masses_scene(m, k, speed, contact, tolerance)
+    return _history(scene, "chain", None, horizon, pressing)
+
+
+def _check(contact: Contact, horizon: float | None, tolerance: float) -> None:
+    if not 1e-14 <= tolerance <= 1e-2:
+        raise InvalidValue("tolerance", f"must be from 1e-14 to 1e-2, not {tolerance:g}")
+    if horizon is not None:
+        require_horizon(horizon)
+    contact.check()
+
+
+def _history(
+    scene: Scene, fidelity: Fidelity, did: Motors | None, horizon: float | None, pressing: bool
+) -> ImpactHistory:
+    """Return what happens in a scene; ``did`` is what the motors did."""
+    contact = scene.contact
     follows = contact.clamped and horizon is not None and pressing
     course = course_of(scene, max(horizon, PRESSED_UNTIL) if follows and horizon else horizon)
     found, run = peaks_of(course, horizon), course.run
     return ImpactHistory(
         fidelity=fidelity,
-        motors=what if isinstance(what, Motors) and not _is_lumped(fidelity) else None,
+        motors=did,
         time=run.time,
         force=run.force,
         reading=run.reading,

@@ -129,7 +129,7 @@ def one_mass_scene(
 ) -> Scene:
     """Return the scene of m_c alone (MSM Eq. 36)."""
     m_c = float(model.reflected_mass(arrival.q, arrival.direction))
-    return _masses(np.array([m_c]), np.zeros((1, 1)), arrival, contact, tolerance)
+    return masses_scene(np.array([m_c]), np.zeros(1), arrival.speed, contact, tolerance)
 
 
 def two_mass_scene(
@@ -144,19 +144,29 @@ def two_mass_scene(
             f"two_mass needs a spring between motors and contact point, but m_a is {m_a:g} kg; "
             "give a joint stiffness or use another model",
         )
-    K = k_r * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    return _masses(np.array([m_c, m_a]), K, arrival, contact, tolerance)
+    masses, springs = np.array([m_c, m_a]), np.array([k_r, 0.0])
+    return masses_scene(masses, springs, arrival.speed, contact, tolerance)
 
 
-def _masses(
-    mass: Array, stiffness: Array, arrival: Arrival, contact: Contact, tolerance: float
+def masses_scene(
+    mass: Array, springs: Array, speed: float, contact: Contact, tolerance: float
 ) -> Scene:
-    """Masses in a row that arrive together; the first is hit."""
+    """Return the scene of masses in a row that arrive together; the first is hit.
+
+    Args:
+        mass: of each [kg].
+        springs: behind each [N/m]; the last one leads to a ground that moves on.
+        speed: of all [m/s].
+        contact: with the body.
+        tolerance: of the integrator.
+    """
     root = np.sqrt(mass)
+    stiffness = np.diag(springs) + np.diag([0.0, *springs[:-1]])
+    stiffness -= np.diag(springs[:-1], 1) + np.diag(springs[:-1], -1)
     squared, vectors = np.linalg.eigh(stiffness / np.outer(root, root))
     size = len(mass)
     simulator = modal_simulator(size, BodyKind.of(contact), False, tolerance)
     given = [np.zeros(3 * size), [0.0, 1.0, 0.0]]
-    parameters = np.concatenate([[arrival.speed], squared, vectors[0] / root[0], *given])
+    parameters = np.concatenate([[speed], squared, vectors[0] / root[0], *given])
     stages, still = one_stage(simulator, parameters, np.zeros(size), memory=1)
-    return Scene(stages, still, arrival.speed, contact)
+    return Scene(stages, still, speed, contact)

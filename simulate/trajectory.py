@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
+from .history import FASTEST
+
 CORNER = 0.5
 """A sample is a corner where the speeds before and after differ by more than this share of the
 larger: there each side counts for itself, since their mean may be slow or point elsewhere."""
@@ -40,13 +42,13 @@ def trajectory(time: ArrayLike, q: ArrayLike, first: int = 0) -> Trajectory:
 
     Raises:
         InvalidValue: fewer than two samples, times that do not rise, numbers that are not finite,
-            or shapes that do not fit.
+            joints faster than any, or shapes that do not fit.
     """
     t, angles = np.asarray(time, dtype=float), np.asarray(q, dtype=float)
     if t.ndim != 1 or angles.ndim != 2 or len(t) != len(angles):
         raise InvalidValue("motion", "needs one row of joint angles for each time")
     if len(t) < 2:
-        raise InvalidValue("motion", f"has {len(t)} samples, but speeds need two at least")
+        raise InvalidValue("motion", f"speeds need two samples at least, not {len(t)}")
     bad = ~np.isfinite(t) | ~np.isfinite(angles).all(axis=1)
     if bad.any():
         raise InvalidValue(
@@ -57,6 +59,14 @@ def trajectory(time: ArrayLike, q: ArrayLike, first: int = 0) -> Trajectory:
         k = int(back[0])
         raise InvalidValue(
             "t", f"must rise, but goes from {t[k]:g} to {t[k + 1]:g} s at sample {first + k + 2}"
+        )
+    far = abs(np.diff(angles, axis=0)).max(axis=1, initial=0.0)
+    fast = np.flatnonzero(far > FASTEST * np.diff(t))
+    if fast.size:
+        raise InvalidValue(
+            "motion",
+            f"a joint moves faster than {FASTEST:g} rad/s or m/s to sample {first + fast[0] + 2}: "
+            "times are to be in seconds",
         )
     return Trajectory(t, angles)
 

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from random import Random
 from typing import Protocol
 
-from softimpact.symbolic import Robot
+from softimpact.symbolic import Robot, arm_of, impact_model, whole_configuration
 
 
 class Read(Protocol):
@@ -151,3 +152,14 @@ def many_joints(count: int) -> str:
         f'<parent link="l{count}"/><child link="tool"/></joint></robot>'
     )
     return "\n".join(parts)
+
+
+def felt(
+    robot: Robot,
+    q: Sequence[float] = (0.3, 1.2),
+    direction: Sequence[float] = (1.0, 0.0, 0.0),
+    tip: str = "tool",
+) -> float:
+    """Mass felt at a frame with rigid joints [kg]."""
+    arm = arm_of(robot, tip).robot
+    return float(impact_model(arm).reflected_mass(whole_configuration(arm, q), direction))

@@ -13,11 +13,9 @@
 #define SERVO_STEP ROBOT_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
- * displacement, in a contact as fast as `contact`, or as the time there is; that only up to its root of what is
- * known of frequencies, so that modes that are not stand as before.
+ * displacement, in a contact as fast as `contact`, or as the time there is.
  */
 #define STANDS ROBOT_R(1e-5)
-#define ROOT ROBOT_R(3e-3)
 /*
  * Nor may the damper's jump at first touch, c v of a force of about v sqrt(k m), be felt in its motion
  * through the damper, by more than this share of the force.
@@ -169,9 +167,8 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
-    const robot_real end = ROBOT_R(1.0)/time;
-    const robot_real brief = ROBOT_FMIN(end*end, ROOT*modes->fastest);
-    let_stand(impact, ROBOT_FMAX(contact, brief), released, phase);
+    const robot_real end = ROBOT_R(1.0)/ROBOT_HORIZON(impact->p);
+    let_stand(impact, ROBOT_FMAX(contact, end*end), released, phase);
     robot_real moving = ROBOT_R(0.0);
     robot_real rate2 = ROBOT_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
@@ -183,7 +180,7 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
     const robot_real jump = region->damping*impact->mobility;
     const robot_real rise = jump*region->damping > JUMPS*region->stiffness
         ? impact->skin_rate/(JUMP_STEP*jump) : ROBOT_R(0.0);
-    const robot_real slowest = ROBOT_FMAX(end, rise);
+    const robot_real slowest = ROBOT_FMAX(ROBOT_R(1.0)/time, rise);
     const robot_real rate = ROBOT_FMAX(slowest, ROBOT_FMAX(ROBOT_SQRT(rate2), robot_damping_rate(phase)/SERVO_STEP));
     const robot_real wanted = time*rate;
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;

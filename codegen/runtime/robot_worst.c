@@ -215,21 +215,20 @@ static robot_real bound_all(const robot_region *region, const robot_params *p, i
     return w->speed*robot_bound_by(impact, region->stiffness + region->damping*region->damping*mobility, twice);
 }
 
-/* The same by any of the motors that p stands for. */
-static robot_real bound_any(const robot_region *region, const robot_params *p, hardest *w)
+/* Where some impacts cannot be followed to their end: takes the bound of all directions; false if none is known. */
+static bool raise_to_bound(const robot_region *region, const robot_params *p, hardest *w)
 {
     int first;
     int last;
     robot_kinds_of_motors(p, &first, &last);
-    robot_real most = w->force;
     for (int motors = first; motors <= last; ++motors) {
         const robot_real bound = bound_all(region, p, motors, w);
         if (!(bound > ROBOT_R(0.0) && bound <= ROBOT_REAL_MAX)) {
-            return ROBOT_R(0.0);
+            return false;
         }
-        most = ROBOT_FMAX(most, bound);
+        w->force = ROBOT_FMAX(w->force, bound);
     }
-    return most;
+    return true;
 }
 
 /* Looks everywhere. */
@@ -269,12 +268,7 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
     if (w->unknown) { /* so may be the hardest */
         return ROBOT_UNRESOLVED;
     }
-    robot_real error = w->force/seen - ROBOT_R(1.0) + OF_FORCES;
-    if (w->bounded) {
-        w->force = bound_any(region, p, w);
-        error = ROBOT_R(0.0);
-    }
-    if (!(w->force > ROBOT_R(0.0))) {
+    if (w->bounded && !raise_to_bound(region, p, w)) {
         return ROBOT_UNRESOLVED;
     }
     for (int k = 0; k < 3; ++k) {
@@ -284,7 +278,7 @@ static int find_hardest(const robot_region *region, const robot_params *p, harde
         }
     }
     out->force = w->force;
-    out->error = error;
+    out->error = w->bounded ? ROBOT_R(0.0) : w->force/seen - ROBOT_R(1.0) + OF_FORCES;
     return w->bounded ? ROBOT_BOUNDED : ROBOT_OK;
 }
 

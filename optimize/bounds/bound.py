@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal, Protocol, Self
 
 from softimpact.symbolic import Matrix
 
-from ..machine.hardware import Machine
+from ..machine.machine import Machine
 
 
 class Bound(Protocol):

@@ -11,7 +11,7 @@ import casadi as ca
 from softimpact.symbolic import STANDARD_GRAVITY, Matrix, frame_jacobian
 
 from ..machine.coordinates import onto
-from ..machine.hardware import Machine
+from ..machine.machine import Machine
 from .bound import AtMost
 
 ROUNDED = 1e-30

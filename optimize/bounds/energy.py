@@ -10,7 +10,7 @@ import casadi as ca
 
 from softimpact.symbolic import Matrix
 
-from ..machine.hardware import Machine
+from ..machine.machine import Machine
 from .bound import AtMost
 
 

@@ -16,7 +16,7 @@ from softimpact.symbolic import (
     unit_direction,
 )
 
-from ..machine.hardware import Machine
+from ..machine.machine import Machine
 from .bound import AtLeast
 
 

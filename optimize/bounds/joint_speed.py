@@ -11,7 +11,7 @@ import numpy as np
 
 from softimpact.symbolic import Matrix
 
-from ..machine.hardware import Machine
+from ..machine.machine import Machine
 from .bound import AtMost
 
 

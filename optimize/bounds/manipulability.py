@@ -9,7 +9,7 @@ from typing import ClassVar
 from softimpact.symbolic import Matrix, manipulability
 
 from ..machine.coordinates import moved_by_motors
-from ..machine.hardware import Machine
+from ..machine.machine import Machine
 from .bound import AtLeast
 
 

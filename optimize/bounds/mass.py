@@ -10,7 +10,8 @@ import casadi as ca
 
 from softimpact.symbolic import Matrix
 
-from ..machine.hardware import Machine, link_masses
+from ..machine.hardware import link_masses
+from ..machine.machine import Machine
 from .bound import AtMost
 
 

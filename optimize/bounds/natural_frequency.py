@@ -12,8 +12,9 @@ import casadi as ca
 from softimpact.symbolic import ImpactModel, Matrix
 from softimpact.symbolic.matrices import Factorisation
 
-from ..machine.coordinates import loose, sprung
-from ..machine.hardware import Machine
+from ..machine.coordinates import loose
+from ..machine.machine import Machine
+from ..machine.springs import sprung
 from .bound import AtLeast
 from .eigenvalue import largest_eigenvalue
 

@@ -12,7 +12,7 @@ import numpy as np
 from softimpact.symbolic import STANDARD_GRAVITY, Matrix
 
 from ..machine.coordinates import at_coordinates
-from ..machine.hardware import Machine
+from ..machine.machine import Machine
 from .bound import AtMost
 
 

@@ -26,16 +26,10 @@ from softimpact.symbolic.matrices import Factorisation, MatrixExpression
 from softimpact.symbolic.robot.rigid import Array
 from softimpact.toolchain import c_compiler, cache_folder
 
-from ..machine.coordinates import (
-    at_coordinates,
-    is_plain,
-    of_springs,
-    rigid,
-    sprung,
-    without_beside,
-    without_sought,
-)
-from ..machine.hardware import Hardware, Machine, least_motion
+from ..machine.coordinates import at_coordinates, is_plain, least_motion, rigid
+from ..machine.hardware import Hardware
+from ..machine.machine import Machine
+from ..machine.springs import of_springs, sprung, without_beside, without_sought
 from .compiled import compiled_functions
 from .impact_forces import FEW_DIRECTIONS, ContactParameters, ImpactDynamics, contact_forces
 from .motor_laws import MotorLaws

@@ -13,8 +13,8 @@ from softimpact.symbolic import ImpactModel, InvalidValue
 from softimpact.symbolic.robot.rigid import Array
 
 from ..evaluation import equipped
-from ..machine.coordinates import sprung, with_springs
 from ..machine.hardware import built
+from ..machine.springs import sprung, with_springs
 from ..study.scenarios import Scenarios
 from ..study.study import Study
 from .impact_program import forces_alone, impact_numbers, known_rotors

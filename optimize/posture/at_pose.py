@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from softimpact.symbolic import ImpactModel
 from softimpact.symbolic.robot.rigid import Array
 
-from ..machine.coordinates import freedom, posture_limits
+from ..machine.postures import freedom, posture_limits
 from ..solver_options import quiet
 from .tip_pose import POSE, posture_error
 

@@ -11,7 +11,7 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, Matrix, frame_pose
 from softimpact.symbolic.robot.rigid import Array
 
-from ..machine.coordinates import closure, equations
+from ..machine.postures import closure, equations
 
 HALF_TURN = 1e-12
 """Keeps the pose error of a tip turned by exactly half a turn finite, and from vanishing there."""

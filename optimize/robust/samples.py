@@ -21,7 +21,7 @@ of them a search from it ends in far better than how stiff or soft it is."""
 MOST_BENT = 10
 """Postures, the first of those that are held, in which bounds tell how good a sample is."""
 
-PLACES, FAR = 5, 0.25
+PLACES, FAR = 5, 0.2
 """Places in the range of each value that are tried when the others are known, and the share of the
 range that is far enough from where it is: a search that begins nearer comes back."""
 

@@ -89,12 +89,15 @@ def cluster(address: str) -> Iterator[Cluster]:
     """
     try:
         from distributed import Client  # noqa: PLC0415 - an extra
+        from distributed.comm.addressing import get_address_host_port  # noqa: PLC0415
     except ImportError:
         raise InvalidValue("--dask", "needs 'pip install softimpact[cluster]'") from None
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        get_address_host_port(address)  # a client of none would complain of its own end
     except ValueError as error:
         raise InvalidValue("--dask", f"'{address}' is no address of a scheduler: {error}") from None
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, TimeoutError):
         raise ClusterSilent(
             f"no Dask scheduler answers at '{address}'; start one there, or leave --dask out"

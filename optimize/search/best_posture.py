@@ -15,7 +15,7 @@ from softimpact.symbolic.robot.rigid import Array
 
 from ..impact.impact_program import impact_program
 from ..impact.timing import impact_timing, study_impacts
-from ..machine.coordinates import posture_limits
+from ..machine.postures import posture_limits
 from ..posture.tip_pose import posture_error, tip_pose
 from ..solver_options import quiet
 from ..study.study import Study

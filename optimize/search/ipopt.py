@@ -15,7 +15,7 @@ import numpy as np
 from softimpact.symbolic.robot.rigid import Array
 
 from ..impact.peaks import NEARLY_AS_LARGE, WINDOWS, hides_a_peak, valley
-from ..machine.coordinates import posture_limits
+from ..machine.postures import posture_limits
 from ..objectives import Objective, WorstForce
 from ..solver_options import FEASIBLE, quiet
 from ..study.study import Study

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import casadi as ca
@@ -26,7 +27,8 @@ from ..bounds import row
 from ..evaluation import equipped
 from ..impact.impact_program import NUMBERS, SIZES, ImpactProgram, Parts
 from ..impact.peaks import WINDOWS
-from ..machine.hardware import Hardware, Machine
+from ..machine.hardware import Hardware
+from ..machine.machine import Machine
 from ..objectives import Objective, WorstForce
 from ..posture.tip_pose import posture_error
 from ..study.study import Study
@@ -124,6 +126,7 @@ def _hardware(study: Study, v: Matrix) -> Hardware:
     )
 
 
+@lru_cache(maxsize=8)
 def task_function(study: Study) -> tuple[ca.Function, tuple[int, ...]]:
     """Return (x, b) -> (rows, their derivative by x), and how many rows each bound has.
 

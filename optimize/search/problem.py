@@ -14,7 +14,7 @@ from softimpact.symbolic.robot.rigid import Array
 from ..evaluation import equipped
 from ..impact.impact_program import PARTS, ImpactProgram, Parts, impact_program
 from ..impact.timing import Timing, impact_timing, study_impacts
-from ..machine.coordinates import side_function
+from ..machine.postures import side_function
 from ..objectives import WorstForce
 from ..posture.tip_pose import posture_equations, tip_pose
 from ..study.poses import Candidate, candidates, leaves_a_choice

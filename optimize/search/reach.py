@@ -7,11 +7,13 @@ All of that needs no impact, so that it is told before any search.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, TypeVar
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from softimpact.symbolic.robot.rigid import Array
 
@@ -65,33 +67,19 @@ def reach(
         sought: those of them whose excess is made small, the others are kept; default all.
         free: whether the postures may move along their self-motion.
     """
-    # of the study's own bounds there are no others, so that none counts twice
-    asked = replace(study, other_bounds=tuple(b for b in bounds if b != study.deflection))
-    with_deflection = any(b == study.deflection for b in bounds)
-    task, rows = task_function(asked)
-    limits, rows_held = VariableBounds.of(study), posture_equations(study.model)
-    n, V, K = study.robot.n, limits.lower.size, len(postures)
-    chosen = [with_deflection, *(True for _ in asked.other_bounds)]
-    soft = [sought is None or bound in sought for bound in asked.bounds]
-    x, t = ca.MX.sym("x", V + K * n), ca.MX.sym("t")
-    v, *qs = ca.vertsplit(x, [0, *(V + n * k for k in range(K + 1))])
-    held, poses = [], []
-    for q, given in zip(qs, postures, strict=True):
-        found = task(ca.vertcat(q, v), task_numbers(asked, *tip_pose(study.model, given)))[0]
-        poses.append(found[:rows_held])
-        pieces = ca.vertsplit(found[rows_held:], np.cumsum([0, *rows]).tolist())
-        for piece, is_chosen, is_soft in zip(pieces, chosen, soft, strict=True):
-            if is_chosen:
-                held.append(piece - t if is_soft else piece)
-    g_poses, g_held = ca.vertcat(*poses), ca.vertcat(*held)
-    problem: dict[str, Any] = {
-        "x": ca.vertcat(x, t),
-        "f": t,
-        "g": ca.vertcat(g_poses, g_held),
-    }
-    solver = ca.nlpsol("reach", "ipopt", problem, quiet(IPOPT))
+    solver = _solver(study, len(postures))
+    limits, n, V, K = VariableBounds.of(study), study.robot.n, study.range.lower.size, len(postures)
+    rows = task_function(study)[1]
+    poses = posture_equations(study.model) * K
+
+    def of_rows(chosen: Sequence[bool]) -> NDArray[np.bool_]:
+        return np.tile(np.repeat(chosen, rows), K)
+
+    soft = of_rows([sought is None or bound in sought for bound in study.bounds])
+    ignored = ~of_rows([bound in bounds for bound in study.bounds])
     loose = 0.0 if free else np.inf
     flat = np.concatenate(list(postures))
+    tasks = [task_numbers(study, *tip_pose(study.model, given)) for given in postures]
     lower, upper = limits.q_lower, limits.q_upper
     least = np.concatenate([limits.lower, np.tile(lower, K) if free else flat, [-np.inf]])
     most = np.concatenate([limits.upper, np.tile(upper, K) if free else flat, [np.inf]])
@@ -99,23 +87,58 @@ def reach(
     for start in (limits.upper, limits.start):
         solution = solver(
             x0=np.concatenate([start, flat, [1.0]]),
+            p=np.concatenate([*tasks, soft]),
             lbx=least,
             ubx=most,
-            lbg=np.concatenate(
-                [np.full(g_poses.numel(), -loose), np.full(g_held.numel(), -np.inf)]
-            ),
-            ubg=np.concatenate([np.full(g_poses.numel(), loose), np.zeros(g_held.numel())]),
+            lbg=np.concatenate([np.full(poses, -loose), np.full(soft.size, -np.inf)]),
+            ubg=np.concatenate([np.full(poses, loose), np.where(ignored, np.inf, 0.0)]),
         )
-        end = np.clip(np.array(solution["x"]).ravel(), least, most)
-        missed = np.array(solution["g"]).ravel()
-        off = abs(missed[: g_poses.numel()]).max() if free else 0.0
-        excess = float(end[-1] + max(missed[g_poses.numel() :].max(), 0.0))
+        end = np.clip(solution["x"].full().ravel(), least, most)
+        missed = solution["g"].full().ravel()
+        off = abs(missed[:poses]).max() if free else 0.0
+        excess = float(end[-1] + max(missed[poses:][~ignored].max(), 0.0))
         if off < 1e-6 and (best is None or excess < best.excess):
-            holding = np.array(solution["lam_x"]).ravel()[:-1]
+            holding = solution["lam_x"].full().ravel()[:-1]
             best = Reach(excess, end[:V], end[V:-1].reshape(K, n), holding)
         if best is not None and best.excess <= FEASIBLE:
             break
     return best or Reach(np.inf, limits.upper, np.array(postures), np.zeros(V + K * n))
+
+
+@lru_cache(maxsize=4)
+def _solver(study: Study, postures: int) -> ca.Function:
+    """Return Ipopt on x = [v, postures, t], with p = [what each must do, which rows are less t].
+
+    The constraints are the postures' equations, then the rows of all bounds in each of them.
+    """
+    task = task_function(study)[0]
+    n, V, K, size = study.robot.n, study.range.lower.size, postures, task.numel_in(1)
+    equations, count = posture_equations(study.model), task.numel_out(0)
+    x = ca.MX.sym("x", V + K * n + 1)
+    p = ca.MX.sym("p", K * size + K * (count - equations))
+    v, *qs, t = ca.vertsplit(x, [0, *(V + n * k for k in range(K + 1)), V + K * n + 1])
+    *given, soft = ca.vertsplit(p, [*(size * k for k in range(K + 1)), p.numel()])
+    values, slopes = [], []
+    for k, (q, b) in enumerate(zip(qs, given, strict=True)):
+        value, by_x = task(ca.vertcat(q, v), b)
+        values.append(value)
+        before, after = ca.DM(count, n * k), ca.DM(count, n * (K - 1 - k))
+        slopes.append(ca.horzcat(by_x[:, n:], before, by_x[:, :n], after))
+    both = [ca.vertcat(*values), ca.vertcat(*slopes)]
+    held = [k * count + i for k in range(K) for i in range(equations)]
+    kept = [k * count + i for k in range(K) for i in range(equations, count)]
+    g = ca.vertcat(both[0][held], both[0][kept] - soft * t)
+    J = ca.vertcat(
+        ca.horzcat(both[1][held, :], ca.DM(len(held), 1)), ca.horzcat(both[1][kept, :], -soft)
+    )
+    own: dict[str, Any] = {
+        "grad_f": ca.Function("grad_f", [x, p], [t, ca.densify(ca.jacobian(t, x)).T]),
+        "jac_g": ca.Function("jac_g", [x, p], [g, J], ["x", "p"], ["g", "jac_g_x"]),
+        "no_nlp_grad": True,
+        "calc_lam_p": False,
+    }
+    problem: dict[str, Any] = {"x": x, "p": p, "f": t, "g": g}
+    return ca.nlpsol("reach", "ipopt", problem, {**quiet(IPOPT), **own})
 
 
 def reachable(study: Study, q: Array, *, free: bool) -> bool:

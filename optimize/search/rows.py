@@ -43,9 +43,10 @@ def by_rows(function: ca.Function, *arguments: Array) -> list[Array]:
     many = rows - rows % AT_ONCE
     for begin in range(0, many, AT_ONCE):
         some = slice(begin, begin + AT_ONCE)
-        together = function.map(AT_ONCE).call([each[some].T for each in given])
-        for each, own in zip(found, together, strict=True):
-            each[some] = own.full().T.reshape(AT_ONCE, -1)
+        columns = zip(function.name_in(), (each[some].T for each in given), strict=False)
+        together = function.map(AT_ONCE)(**dict(columns))
+        for each, name in zip(found, function.name_out(), strict=True):
+            each[some] = together[name].full().T.reshape(AT_ONCE, -1)
     buffer: Any  # CasADi's stubs want what its Python does not take
     buffer, evaluate = function.buffer()
     row = [np.empty(each.shape[1]) for each in given]

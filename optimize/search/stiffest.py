@@ -15,8 +15,10 @@ from softimpact.symbolic.robot.rigid import Array
 
 from ..bounds import Deflection
 from ..evaluation import largest_deflection
-from ..machine.coordinates import posture_limits, sprung
-from ..machine.hardware import Hardware, Machine
+from ..machine.hardware import Hardware
+from ..machine.machine import Machine
+from ..machine.postures import posture_limits
+from ..machine.springs import sprung
 from ..posture.tip_pose import posture_equations, posture_error, tip_pose
 from ..solver_options import quiet
 from ..study.study import Study

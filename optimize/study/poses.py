@@ -11,7 +11,7 @@ import numpy as np
 from softimpact.symbolic import InvalidValue, Joint, JointKind
 from softimpact.symbolic.robot.rigid import Array
 
-from ..machine.coordinates import freedom, held, turns_with_first
+from ..machine.postures import freedom, held, turns_with_first
 from ..posture.at_pose import held_elsewhere, nearest_at_pose, posture_at_pose
 from ..posture.tip_pose import POSE, posture_error, tip_pose, tip_poses
 from .study import Pose, Study

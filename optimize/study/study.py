@@ -29,8 +29,8 @@ from softimpact.symbolic.impact.approach import singular_postures
 from softimpact.symbolic.robot.rigid import Array
 
 from ..bounds import Bound, Deflection
-from ..machine.coordinates import spring_names, with_springs
-from ..machine.hardware import TaskMotion
+from ..machine.machine import TaskMotion
+from ..machine.springs import spring_names, with_springs
 from ..objectives import Objective, WorstForce
 from ..variables import JointStiffness, Range, Variable, joint_groups, require_common_stiffness
 from .study_file import (

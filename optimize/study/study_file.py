@@ -16,7 +16,15 @@ from softimpact.robots import built_in_robots, built_in_studies
 from softimpact.symbolic import InvalidValue
 from softimpact.symbolic.body.verdict import QUASI_STATIC_FROM
 from softimpact.symbolic.errors import did_you_mean
-from softimpact.symbolic.file_section import FileSection, Finite, NotNegative, Positive, Vector3
+from softimpact.symbolic.file_section import (
+    FileSection,
+    Finite,
+    NotNegative,
+    Positive,
+    Vector3,
+    why_unreadable,
+    why_wrong,
+)
 from softimpact.symbolic.impact.motors import REACTION_TIME, STOPPING_TIME, MotorKind, Reaction
 
 
@@ -205,10 +213,8 @@ def read_toml(source: Path) -> dict[str, Any]:
         if name in built_in_robots():
             reason = f"is a robot, not a study; softimpact init {name} > study.toml begins one"
         raise InvalidValue(str(source), reason) from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidValue(str(source), f"cannot be read: {error}") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InvalidValue(str(source), f"not valid TOML: {error}") from None
+    except (OSError, ValueError) as error:
+        raise InvalidValue(str(source), why_unreadable(error)) from None
 
 
 def _first_problem(source: Path, error: ValidationError) -> InvalidValue:
@@ -257,19 +263,14 @@ def _place_of(parts: Sequence[str | int]) -> tuple[str | int, ...]:
 def fault_in_words(fault: Mapping[str, Any]) -> Fault:
     """Words for a field of the wrong form, with the name that may have been meant."""
     place = _place_of(fault["loc"])
-    reason = str(fault["msg"]).removeprefix("Value error, ")
+    reason = why_wrong(fault)
     if not place:  # a check of the whole, which names its field itself
         field, _, words = reason.partition(": ")
         return tuple(field.split(".")), words
     if fault["type"] == "extra_forbidden":
         reason = f"unknown{did_you_mean(str(place[-1]), _fields_of(place[:-1]))}"
-    elif fault["type"] == "missing":
-        reason = "is missing"
-    elif fault["type"] == "too_short":
-        least, found = fault["ctx"]["min_length"], fault["ctx"]["actual_length"]
-        reason = f"needs {least}, not {found}"
-        if not found:
-            reason = "is empty; name one at least, or leave the field out"
+    elif fault["type"] == "too_short" and not fault["ctx"]["actual_length"]:
+        reason = "is empty; name one at least, or leave the field out"
     return place, reason
 
 

@@ -33,7 +33,7 @@ from softimpact.symbolic.robot.arm import held_base
 from softimpact.symbolic.robot.rigid import Array
 from softimpact.symbolic.robot.robot import vector_of
 
-from ..machine.coordinates import with_springs
+from ..machine.springs import with_springs
 from .study_file import RobotSection, StudyFile
 
 

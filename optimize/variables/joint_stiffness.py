@@ -12,8 +12,8 @@ import numpy as np
 from softimpact.symbolic import ImpactModel, InvalidValue, Matrix, UnknownName
 from softimpact.symbolic.robot.rigid import Array
 
-from ..machine.coordinates import spring_names
 from ..machine.hardware import Hardware
+from ..machine.springs import spring_names
 from .variable import Range, Variable
 
 Grouping = Literal["each", "equal"] | Sequence[Sequence[str]]

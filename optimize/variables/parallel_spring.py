@@ -8,8 +8,8 @@ from typing import ClassVar
 
 from softimpact.symbolic import ImpactModel, Matrix
 
-from ..machine.coordinates import beside_motors
 from ..machine.hardware import Hardware
+from ..machine.springs import beside_motors
 from .variable import OneOrEach, Range, Variable, joint_range
 
 

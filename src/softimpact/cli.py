@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
+from itertools import pairwise
 from typing import Annotated
 
 import typer
@@ -83,6 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     accept_any_console()
     try:
+        _refuse_empty(words)
         _refuse_repeated(words)
         with interruptible():
             code = app(args=words, prog_name="softimpact", standalone_mode=False)
@@ -97,6 +99,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if code == INTERRUPTED:  # newer typer returns it
         report()
     return code if isinstance(code, int) else 0
+
+
+def _refuse_empty(words: Sequence[str]) -> None:
+    """Raise a usage error for an option without a value, such as a shell's ``"$UNSET"``."""
+    for option, value in pairwise([*words, "end"]):
+        name, is_given, typed = option.partition("=")
+        if name.startswith("--") and (value == "" if not is_given else typed == ""):
+            raise typer.BadParameter("is empty; give a value, or leave it out", param_hint=name)
 
 
 def _refuse_repeated(words: Sequence[str]) -> None:

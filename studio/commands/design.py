@@ -48,7 +48,8 @@ def design(
     from softimpact.symbolic import InvalidValue
 
     from ..design.report import GENERATOR, design_record, design_report
-    from ..output.printed import failures_as_json, print_json, print_warnings
+    from ..design.tables import print_design
+    from ..output.printed import failures_as_json, print_json, print_warnings, say
     from ..output.results_folder import (
         replaced_folder,
         require_folder_of,
@@ -75,18 +76,20 @@ def design(
         found = _search(problem, modes, pool)
         made = problem.with_springs(found.winner.springs)
         with replaced_folder(folder, GENERATOR) as fresh, _package_beside(made, fresh):
-            report = design_report(found)
+            report = design_report(found, pool)
             record = design_record(report)
+            print_warnings(record["warnings"])
+            if not json:  # figures and the package take as long again
+                print_design(report)
             _write(report, record, fresh)
     if page is not None:
         from ..report.design_pages import write_design_report
 
         write_design_report(report, page)
-    print_warnings(record["warnings"])
     if json:
         print_json({"out": folder, **record})
     else:
-        _print(report, folder)
+        say(f"\n{_written('figures', folder)}: {folder}")
 
 
 def _robust(study: Study, folder: Path, page: Path | None, how: Execution, json: bool) -> None:
@@ -197,11 +200,3 @@ def _write_package(model: ImpactModel, folder: Path) -> None:
 def _written(figures: str, folder: Path) -> str:
     package = (folder / "c").exists()
     return f"Results, {figures} and the C package" if package else f"Results and {figures}"
-
-
-def _print(report: DesignReport, folder: Path) -> None:
-    from ..design.tables import print_design
-    from ..output.printed import say
-
-    print_design(report)
-    say(f"\n{_written('figures', folder)}: {folder}")

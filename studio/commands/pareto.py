@@ -103,7 +103,7 @@ def _trade_off(study: Study, pool: Executor, advance: Progress) -> _Found:
     """Find a front over objectives of a machine for scenarios."""
     from softimpact.optimize.front.trade_off import trade_off_front
 
-    from ..figures.trade_off import draw_trade_off_figures
+    from ..figures.trade_off_hardware import draw_trade_off_figures
     from ..front.trade_off_record import trade_off_record, write_points
     from ..front.trade_off_report import trade_off_report
     from ..front.trade_off_words import front_words

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from typing import Any, Literal
@@ -15,6 +16,7 @@ import numpy as np
 from softimpact.optimize import Design, Gains, Outcome, PoseResult, Study
 from softimpact.optimize.answers import by_name
 from softimpact.optimize.evaluation import kept
+from softimpact.optimize.running.workers import as_completed
 from softimpact.optimize.search.solve import preference
 from softimpact.simulate import ImpactHistory
 from softimpact.simulate.band import Band
@@ -96,9 +98,17 @@ def best_outcome(result: PoseResult) -> Outcome:
     return min(found, key=preference)
 
 
-def design_report(design: Design) -> DesignReport:
-    """Rank the poses, simulate the winner and find the speeds that meet the limit."""
+def design_report(design: Design, executor: Executor | None = None) -> DesignReport:
+    """Rank the poses, simulate the winner and find the speeds that meet the limit.
+
+    Args:
+        design: what was found.
+        executor: where speeds are sought, while the rest is done here; default here, too.
+    """
     study, winner = design.study, design.winner
+    task, before = task_result(design), design.answers.reference.springs
+    sought = (study, task.candidate.q, before), (study, winner.q, winner.springs)
+    jobs = [executor.submit(safe_speed, *each) for each in sought] if executor else []
     ordered = sorted(design.poses, key=lambda pose: preference(best_outcome(pose)))
     poses = tuple(
         RankedPose(i + 1, pose, analyse(study.model, pose.candidate.q, study.direction))
@@ -107,19 +117,24 @@ def design_report(design: Design) -> DesignReport:
     worst = max(design.poses, key=lambda pose: pose.force_before)
     history = simulated(study, winner.q, winner.springs)
     full = simulated(study, winner.q, winner.springs, "full")
-    task, before = task_result(design), design.answers.reference.springs
+    reactions = [_reactions(*each) for each in sought]
+    band = peak_band(study, winner.q, winner.springs)
+    worst_history = simulated(study, worst.candidate.q, study.nominal)
+    for _ in as_completed(jobs):
+        continue
+    speeds = [job.result() for job in jobs] or [safe_speed(*each) for each in sought]
     return DesignReport(
         design=design,
         poses=poses,
         worst=worst,
         check=Check(winner.force, history.peak, full.peak),
         winner_history=history,
-        worst_history=simulated(study, worst.candidate.q, study.nominal),
-        speed_before=safe_speed(study, task.candidate.q, before),
-        speed_after=safe_speed(study, winner.q, winner.springs),
-        reactions_before=_reactions(study, task.candidate.q, before),
-        reactions_after=_reactions(study, winner.q, winner.springs),
-        band=peak_band(study, winner.q, winner.springs),
+        worst_history=worst_history,
+        speed_before=speeds[0],
+        speed_after=speeds[1],
+        reactions_before=reactions[0],
+        reactions_after=reactions[1],
+        band=band,
     )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from softimpact.optimize.machine.coordinates import sprung
+from softimpact.optimize.machine.springs import sprung
 from softimpact.studio.front.pareto_report import ParetoReport
 from softimpact.symbolic import JointKind
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from softimpact.optimize import Outcome
-from softimpact.optimize.machine.coordinates import sprung
+from softimpact.optimize.machine.springs import sprung
 from softimpact.studio.design.report import DesignReport
 from softimpact.symbolic import JointKind
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,20 +15,13 @@ from softimpact.optimize.units import ratio_in_words
 from softimpact.studio.front.trade_off_report import TradeOffReport, View, broken_before
 from softimpact.studio.front.trade_off_words import best_and_loosest
 
-from .style import BEFORE, BLACK, BOTH, LIMIT, SMALL, TEXT, legend_below, new_figure, save, tidy
-from .trade_off_hardware import figure_of_hardware
+from .style import BEFORE, BLACK, BOTH, LIMIT, SMALL, TEXT, legend_below, new_figure, tidy
 
 COLOURS = "cividis"
 """A map that the colour-blind read as others do; dark is low."""
 
 WIDE = 3.0
 """Ratio of an axis' ends from which it is logarithmic."""
-
-
-def draw_trade_off_figures(report: TradeOffReport, folder: Path) -> list[Path]:
-    """Draw a front's figures as PNG files; return their paths."""
-    figures = {"front": figure_of_front(report), "hardware": figure_of_hardware(report)}
-    return [save(figure, folder / f"{name}.png") for name, figure in figures.items()]
 
 
 def figure_of_front(report: TradeOffReport) -> Figure:

@@ -1,28 +1,34 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The hardware along a front over objectives, and how much of it matters."""
+"""The hardware along a front over objectives, how much of it matters, and both figures."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from softimpact.optimize.machine.coordinates import sprung
+from softimpact.optimize.machine.springs import sprung
 from softimpact.studio.front.trade_off_report import TradeOffReport
 from softimpact.symbolic import JointKind
 
-from .style import BLACK, BOTH, TEXT, new_figure, tidy
+from .style import BLACK, BOTH, TEXT, new_figure, save, tidy
+from .trade_off import COLOURS, figure_of_front, shades, wide_as_logarithm
 
 PANELS = 4
 """Most panels beside each other."""
 
 
+def draw_trade_off_figures(report: TradeOffReport, folder: Path) -> list[Path]:
+    """Draw a front's figures as PNG files; return their paths."""
+    figures = {"front": figure_of_front(report), "hardware": figure_of_hardware(report)}
+    return [save(figure, folder / f"{name}.png") for name, figure in figures.items()]
+
+
 def figure_of_hardware(report: TradeOffReport) -> Figure:
     """Draw each value of the hardware along the front, and what of it costs less than 0.5 %."""
-    from .trade_off import COLOURS, shades, wide_as_logarithm
-
     study = report.study
     x, across = report.view_of(1)
     names, springs = study.range.names, max(study.groups) + 1

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from softimpact.optimize.posture.self_motion import self_motion
 from softimpact.optimize.posture.workspace import Hold, postures_in_plane
 from softimpact.simulate import HORIZON, bracket
+from softimpact.simulate.history import require_horizon, require_speed
 from softimpact.symbolic import (
     Contact,
     ImpactModel,
@@ -151,11 +152,9 @@ def safety_map(how: TypedMap, seen: Callable[[int], None] = lambda count: None) 
     motors, reaction = motors_meant(how.drives)
     if motors is not None:
         refuse_held(motors, "a map of safe speeds")
-    if not 0 < how.speed < np.inf:
-        raise InvalidValue("speed", f"must be finite and greater than 0 m/s, not {how.speed:g}")
+    require_speed(how.speed)
     horizon = HORIZON if how.horizon is None else how.horizon
-    if not 0 < horizon < np.inf:
-        raise InvalidValue("horizon", f"must be finite and greater than 0 s, not {horizon:g}")
+    require_horizon(horizon)
     arm = loaded_arm(how.arm)
     robot = arm.robot
     if robot.loops:

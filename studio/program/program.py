@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from softimpact.simulate import HORIZON, bracket
+from softimpact.simulate.history import require_horizon
 from softimpact.simulate.program import STILL
 from softimpact.simulate.zones import Somebody
 from softimpact.symbolic import (
@@ -90,8 +91,7 @@ def run_program(path: Path, how: TypedProgram) -> ProgramResult:
     found, assumed = bracket(model, motors, reaction)
     ends = {kind: end for kind, end in found.items() if isinstance(end, Motors)}
     horizon = HORIZON if how.horizon is None else how.horizon
-    if not 0 < horizon < np.inf:
-        raise InvalidValue("horizon", f"must be finite and greater than 0 s, not {horizon:g}")
+    require_horizon(horizon)
     points, seen = _watched(source, path, robot, how.points)
     question = Question(model, points, bodies, ends, horizon, arm.load)
     answer = slowed_program(source, seen, question, engine, how.band, _progress)

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import casadi as ca
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from softimpact.simulate.trajectory import Trajectory, trajectory
 from softimpact.symbolic import Robot, frame_pose
+from softimpact.symbolic.file_section import why_unreadable
 from softimpact.symbolic.robot.rigid import Array
 
 from .motion_file import MotionFileError
@@ -71,7 +72,7 @@ def read_waypoints(path: Path, robot: Robot) -> Trajectory:
     try:
         file = Waypoints.model_validate(json.loads(path.read_text(encoding="utf-8-sig")))
     except (ValueError, RecursionError) as error:
-        raise MotionFileError(path, _reason(error)) from None
+        raise MotionFileError(path, why_unreadable(error)) from None
     places = [_configuration(path, robot, i, point) for i, point in enumerate(file.waypoints)]
     time, q = [0.0], [places[0]]
     for i, point in enumerate(file.waypoints[1:], start=1):
@@ -94,14 +95,6 @@ def read_waypoints(path: Path, robot: Robot) -> Trajectory:
         time += (time[-1] + np.cumsum(taken[keeps])).tolist()
         q += list(steps[1:][keeps])
     return trajectory(time, np.array(q))
-
-
-def _reason(error: Exception) -> str:
-    if isinstance(error, ValidationError):
-        first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"]) or "waypoints"
-        return f"{place}: {first['msg']}"
-    return f"is no JSON ({error})"
 
 
 def _configuration(path: Path, robot: Robot, index: int, point: Waypoint) -> Array:

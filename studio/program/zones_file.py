@@ -7,13 +7,13 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from softimpact.simulate.zones import Somebody, Zone
 from softimpact.symbolic import Contact, InvalidValue, SoftImpactError, body_region
 from softimpact.symbolic.body.laws import Law
 from softimpact.symbolic.body.shapes import Shape, shape_from
-from softimpact.symbolic.file_section import Finite
+from softimpact.symbolic.file_section import Finite, why_unreadable
 
 Corner = tuple[Finite, Finite, Finite]
 
@@ -83,12 +83,8 @@ def read_zones(
     """
     try:
         file = ZonesFile.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"]) or "zones"
-        raise ZonesFileError(path, f"{place}: {first['msg']}") from None
     except ValueError as error:
-        raise ZonesFileError(path, f"is no TOML ({error})") from None
+        raise ZonesFileError(path, why_unreadable(error)) from None
     by_kind: dict[tuple[str, bool, str | None], list[Zone]] = {}
     for typed in file.zones:
         held = clamped if typed.clamped is None else typed.clamped

@@ -204,7 +204,7 @@ def _numbers(record: Mapping[str, Any]) -> TableOfNumbers:
     body, reaction = record["body"], record["reaction"]
     rows: list[tuple[str, float | str | None, str]] = [
         ("motors", KIND_WORDS[record["motors"]], ""),
-        ("reaction time", None if reaction is None else shown(reaction.reaction_time), "s"),
+        ("reaction time", "none" if reaction is None else shown(reaction.reaction_time), "s"),
         ("horizon", record["horizon"], "s"),
         ("payload", float(record["payload"]), "kg"),
         ("stiffness of the body", body.stiffness, "N/m"),

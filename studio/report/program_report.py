@@ -36,7 +36,7 @@ def write_program_report(found: ProgramResult, path: Path) -> Path:
                 figure=program_figure(table, record["robot"]),
                 caption="Factor on the program's speed over time, marked by what binds, and the "
                 "factor by the standard's two-body formula (dotted).",
-                tables=[_binding(found)],
+                tables=[_binding(found)] if record["slowed"] else [],
             ),
             Section("The worst moments", arms=list(_arms(found)), tables=[_moments(record)]),
             _trust(found),
@@ -187,7 +187,7 @@ def _bodies(found: ProgramResult) -> TableOfNumbers:
         late = None if pressing is None else _finite(pressing.force)
         rows.append((region.title, held, zones, limits.transient.quantity, transient, late))
     heads = ("body", "how", "where", "least limit of", "transient N", "quasi-static N")
-    return TableOfNumbers("Who may be met (limits as forces)", heads, rows)
+    return TableOfNumbers("Who may be met (limits as forces; – is none)", heads, rows)
 
 
 def _finite(force: float) -> float | None:

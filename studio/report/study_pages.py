@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from softimpact.optimize import Study
-from softimpact.optimize.machine.coordinates import sprung
+from softimpact.optimize.machine.springs import sprung
 from softimpact.optimize.study.study_scenarios import contacts_of
 from softimpact.symbolic.robot.rigid import Array
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from softimpact.robots import study_path
 from softimpact.symbolic import InvalidValue, Robot
+from softimpact.symbolic.file_section import why_unreadable
 
 
 def pose_table(path: Path, robot: Robot) -> dict[str, Sequence[float]]:
@@ -28,7 +29,7 @@ def pose_table(path: Path, robot: Robot) -> dict[str, Sequence[float]]:
     try:
         found = json.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError) as error:
-        raise InvalidValue("poses", f"cannot read {path}: {error}") from error
+        raise InvalidValue(f"poses: {path}", why_unreadable(error)) from None
     if isinstance(found, list):
         found = {f"pose {i}": q for i, q in enumerate(found)}
     if not isinstance(found, dict) or not all(_is_numbers(q) for q in found.values()):

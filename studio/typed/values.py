@@ -11,7 +11,11 @@ from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
 from softimpact.symbolic import InvalidValue, Robot, UnknownName
+from softimpact.symbolic.file_section import why_unreadable
 from softimpact.symbolic.impact.drives import PerJoint
+
+LARGEST = 1e30
+"""Typed numbers beyond this are slips; their powers would overflow."""
 
 
 def vector(field: str, text: str, length: int | None = None) -> list[float]:
@@ -60,15 +64,19 @@ def payload(text: str) -> Load:
     mass, at, place = text.partition("@")
     if not _is_number(mass):
         raise InvalidValue("payload", f"needs MASS or MASS@x,y,z (kg, m), not '{text}'")
-    return float(mass), vector("payload", place, 3) if at else [0.0, 0.0, 0.0], None
+    return (
+        _number("payload", float(mass), "the mass"),
+        vector("payload", place, 3) if at else [0.0, 0.0, 0.0],
+        None,
+    )
 
 
 def tool(path: str) -> Load:
     """Return a tool from a TOML file: ``mass``, ``com``, ``inertia``; raises InvalidValue."""
     try:
         entries = tomllib.loads(Path(path).read_text("utf-8-sig"))
-    except tomllib.TOMLDecodeError as error:
-        raise InvalidValue(f"tool: {path}", str(error)) from None
+    except (OSError, ValueError) as error:
+        raise InvalidValue(f"tool: {path}", why_unreadable(error)) from None
     unknown = sorted(set(entries) - {"mass", "com", "inertia"})
     if unknown:
         raise InvalidValue(f"tool: {path}: {unknown[0]}", "is unknown; mass, com, inertia are not")
@@ -137,7 +145,6 @@ def _number(field: str, value: object, which: str) -> float:
         return math.inf
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise InvalidValue(field, f"{which} is not a number: {json.dumps(value)}")
-    try:
-        return float(value)
-    except OverflowError:
-        raise InvalidValue(field, f"{which} is too large") from None
+    if LARGEST < abs(value) < math.inf:
+        raise InvalidValue(field, f"{which} is too large to compute with")
+    return float(value)

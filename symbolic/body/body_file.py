@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from ..errors import InvalidValue, UnknownName, did_you_mean
-from ..file_section import FileSection, NotNegative, Positive
+from ..file_section import FileSection, NotNegative, Positive, why_unreadable
 from .bodies import BODIES, body_region
 from .contact import naming
 from .laws import Law, in_series
@@ -174,11 +174,8 @@ def _read(path: Path, section: type[_AnySection]) -> _AnySection:
         return section.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
     except FileNotFoundError:
         raise InvalidValue(str(path), _missing(str(path), section)) from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidValue(str(path), f"cannot be read: {error}") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InvalidValue(str(path), f"not valid TOML: {error}") from None
     except ValidationError as error:
-        first = error.errors()[0]
-        field = ".".join(str(part) for part in first["loc"])
-        raise InvalidValue(f"{path}: {field}", first["msg"]) from None
+        field, _, reason = why_unreadable(error).partition(": ")
+        raise InvalidValue(f"{path}: {field}", reason) from None
+    except (OSError, ValueError) as error:
+        raise InvalidValue(str(path), why_unreadable(error)) from None

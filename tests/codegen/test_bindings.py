@@ -83,6 +83,7 @@ def test_words_of_the_language_are_no_names() -> None:
     seen: dict[str, Any] = {}
     bindings(interface, lambda template, **more: seen.setdefault(template, more) and "")
     assert seen["header.hpp"]["namespace"] == "class_"
+    assert seen["header.hpp"]["region"]  # and it has what makes a region
 
 
 @pytest.mark.slow

@@ -19,7 +19,7 @@ from softimpact.optimize.bounds.natural_frequency import NaturalFrequency
 from softimpact.optimize.evaluation import figures, largest_share
 from softimpact.optimize.impact.impact_program import _posture, _pulled_back, impact_program
 from softimpact.optimize.impact.timing import Timing
-from softimpact.optimize.machine.coordinates import closure, side_function
+from softimpact.optimize.machine.postures import closure, side_function
 from softimpact.optimize.search.problem import peak_force, prepare
 from softimpact.optimize.study.poses import leaves_a_choice
 from softimpact.simulate import Approach, many_peaks

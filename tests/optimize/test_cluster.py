@@ -111,8 +111,9 @@ def test_a_cluster_that_does_not_answer(tmp_path: Path, monkeypatch: pytest.Monk
         cluster("tcp://127.0.0.1:9"),
     ):
         pass
-    with pytest.raises(InvalidValue, match="is no address"), cluster("nonsense://"):
-        pass
+    for address in ("nonsense://", "nonsense"):
+        with pytest.raises(InvalidValue, match="is no address"), cluster(address):
+            pass
     small_study(tmp_path)
     command = ["design", tmp_path / "study.toml", "--dask", "tcp://127.0.0.1:9"]
     ended = run(*command, "--out", tmp_path / "out")

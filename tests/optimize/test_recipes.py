@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""CONTRIBUTING's recipes for bounds and variables, followed: a new one is a new file."""
+"""CONTRIBUTING's recipes for bounds, variables, objectives: a new one is a new file."""
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 from small_arm import small_study
 
-from softimpact.optimize import bounds, variables
+from softimpact.optimize import bounds, objectives, robust_design, scenarios_of, variables
 from softimpact.optimize.evaluation import equipped, kept
 
 BOUND = """
@@ -60,11 +61,33 @@ class Softening(Variable):
         return replace(hardware, springs=hardware.springs * values)
 """
 
+OBJECTIVE = """
+from dataclasses import dataclass
+from typing import ClassVar
+
+import casadi as ca
+
+from softimpact.optimize.objectives.mean_force import MeanForce
+
+
+@dataclass(frozen=True)
+class RootMeanSquare(MeanForce):
+    \"\"\"The root of the mean square of all forces over their limits.\"\"\"
+
+    kind: ClassVar[str] = "rms_force"
+
+    def value(self, own, scenarios, speeds):
+        return float((own**2).mean() ** 0.5)
+
+    def cost(self, own, scenarios, speeds):
+        return ca.sqrt(ca.sumsqr(own) / own.numel())
+"""
+
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder in which bounds and variables are looked for, too."""
-    for package in (bounds, variables):
+    """A folder in which bounds, variables and objectives are looked for, too."""
+    for package in (bounds, variables, objectives):
         place = tmp_path / package.__name__.rpartition(".")[2]
         place.mkdir()
         monkeypatch.setattr(package, "__path__", [*package.__path__, str(place)])
@@ -88,3 +111,21 @@ def test_a_variable_is_one_file(folder: Path) -> None:
     assert study.range.names[-1] == "softening of all springs"
     softer = equipped(study, study.nominal, np.array([0.6])).springs
     np.testing.assert_allclose(np.array(softer).ravel(), 0.6 * study.nominal)
+
+
+REGIONS = 'regions = ["chest", "hand", "thigh"]'
+
+
+@pytest.mark.slow
+def test_an_objective_is_one_file(folder: Path) -> None:
+    """A mean is no more than the root of the mean square, and that no more than the largest."""
+    (folder / "objectives/rms.py").write_text(OBJECTIVE, encoding="utf-8")
+    least = []
+    pool = ThreadPoolExecutor(1)  # other processes would not find the file
+    for kind in ("mean_force", "rms_force", "worst_force"):
+        tables = '[hardware]\njoint_stiffness = [["turn"], ["lift", "bend"]]\n[objective]\n'
+        study = small_study(folder, f"{tables}kind = '{kind}'", scenarios=REGIONS)
+        assert study.objective.kind == kind
+        least.append(robust_design(study, scenarios_of(study), pool).bound)
+    assert least == sorted(least)
+    assert len(set(least)) == 3

@@ -51,7 +51,8 @@ def test_slowing_down_takes_longer() -> None:
 @pytest.mark.parametrize(
     ("t", "q", "reason"),
     [
-        ([0.0], [[0.0]], "has 1 samples"),
+        ([0.0], [[0.0]], "two samples at least, not 1"),
+        ([0.0, 1e-300], [[0.0], [1.0]], "faster than 1000 rad/s or m/s to sample 2"),
         ([0, 1, 1], [[0.0]] * 3, "t: must rise, but goes from 1 to 1 s at sample 3"),
         ([0, 1], [[0.0], [np.nan]], "sample 2 holds no finite number"),
         ([0, 1], [[0.0]], "one row of joint angles for each time"),

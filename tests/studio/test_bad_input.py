@@ -213,7 +213,7 @@ def test_joints_of_another_branch_do_not_count() -> None:
         ("--q", "0, 1, 2", "q: has 3 values, but 7 are needed"),
         ("--q", "0, 1, a", "q: needs a number or a JSON list"),
         ("--q", "[0, 1", "q: needs a number or a JSON list"),
-        ("--q", "", "q: needs a number or a JSON list"),
+        ("--q", "", "Invalid value for --q: is empty"),
         ("--q", '[0, "a", 0, 0, 0, 0, 0]', "q: entry 2 is not a number"),
         ("--q", "[0, true, 0, 0, 0, 0, 0]", "q: entry 2 is not a number"),
         ("--q", "[[0, 1, 0, 0, 0, 0, 0]]", "q: entry 1 is not a number"),
@@ -286,6 +286,12 @@ def _along(angle: float) -> str:
         (["analyze"], "Missing argument"),
         (["analyze", *PANDA, "--stiffness", "1"], "No such option: --stiffness"),
         (["analyze", "panda", "--q", Q], "Missing option '--direction'"),
+        (["analyze", *PANDA, "--tip", ""], "Invalid value for --tip: is empty"),
+        (["analyze", *PANDA, "--tip="], "Invalid value for --tip: is empty"),
+        (
+            ["simulate", *PANDA, "--region", "chest", "--speed", "1", "--horizon", "1e4"],
+            "10 s",
+        ),
         (["reproduce", "--out", "x", "--paper", "mms"], "for '--paper': 'mms' is not one of"),
     ],
 )

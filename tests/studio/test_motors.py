@@ -149,7 +149,7 @@ def test_two_body_formula_stands_beside() -> None:
         (["--torque-limit", "0"], "torque_limit: must be greater than 0"),
         (["--reaction-time", "-0.1"], "reaction_time: must be ≥ 0 s"),
         (["--stopping-time", "0"], "stopping_time: must be finite and greater than 0 s"),
-        (["--horizon", "-1"], "horizon: must be finite and greater than 0 s"),
+        (["--horizon", "-1"], "horizon: must be greater than 0 and at most 10 s"),
         (["--payload", "0"], "payload: needs a mass greater than 0"),
         (["--payload", "heavy"], "payload: needs MASS or MASS@x,y,z"),
         (["--q", "[-70, 48, 41, -138, 45, 113, -117]"], "it takes radians"),

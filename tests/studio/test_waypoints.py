@@ -50,11 +50,11 @@ def test_joints_by_name_and_a_way_by_its_time(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ("{", "is no JSON"),
-        ([], "waypoints: "),
-        ({"waypoints": [{"q": A}]}, "waypoints: List should have at least 2 items"),
+        ("{", "not valid JSON"),
+        ([], "must be a table of fields"),
+        ({"waypoints": [{"q": A}]}, "waypoints: needs 2, not 1"),
         ({"waypoints": [{"q": A}, {"q": B}]}, "waypoint 2 has neither a speed nor a time"),
-        ({"waypoints": [{"q": A}, {"q": B, "speed": -1}]}, r"waypoints\.1\.speed: Input should be"),
+        ({"waypoints": [{"q": A}, {"q": B, "speed": -1}]}, r"waypoints\.1\.speed: must be"),
         ({"waypoints": [{"q": A}, {"q": B, "speed": 1, "time": 1}]}, "give either speed"),
         ({"waypoints": [{"q": B}, {"q": C, "speed": 1}]}, "the arm's end stays where it is"),
         ({"waypoints": [{"q": A}, {"q": B[:3], "speed": 1}]}, r"waypoints\.1\.q: has 3 values"),

@@ -239,3 +239,15 @@ def test_change_of_coordinates_moves_nothing() -> None:
         numbers(chain(transformed(model, T), 4)), numbers(chain(model, 4)), strict=True
     ):
         assert_near(ours, theirs, 1e-8)
+
+
+@pytest.mark.parametrize("unit", [1e-15, 1.0, 1e15])
+def test_where_a_chain_closes_does_not_depend_on_the_unit_of_mass(unit: float) -> None:
+    """Of eight coordinates the contact point sees five: the others stand apart."""
+    seen, apart = random_linear_model(3, 5), random_linear_model(4, 3)
+    M, K = (scipy.linalg.block_diag(dense(seen)[i], dense(apart)[i]) for i in range(2))
+    along = np.append(dense(seen)[2], np.zeros(3))
+    model = LinearModel(DenseMass(ca.DM(unit * M)), ca.DM(unit * K), ca.DM(along).T)
+    found = chain(model, 8, reorthogonalise=True)
+    assert len(found.mass) == 5
+    assert float(found.mass[0]) / unit == pytest.approx(float(chain(seen, 1).mass[0]))

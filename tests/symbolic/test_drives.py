@@ -128,3 +128,11 @@ def test_only_motors_that_are_not_driven_need_rotors(robot: Robot, law: MotorLaw
     with pytest.raises(InvalidValue, match="joint 'joint3' is elastic") as caught:
         model.linear(q, n, law)
     assert caught.value.field == "rotor_inertia"
+
+
+def test_a_servo_has_some_gain(robot: Robot) -> None:
+    assert not drives(robot).has_gains
+    assert not drives(robot, position_gain=0.0, damping_gain=0.0).has_gains
+    for given in ({"position_gain": 1.0}, {"damping_gain": 1.0}, {"computed_torque_gain": 1.0}):
+        assert drives(robot, **given).has_gains
+    assert not drives(robot, position_gain=1.0).without_gains().has_gains

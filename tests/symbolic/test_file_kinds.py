@@ -12,30 +12,20 @@ import mujoco
 import numpy as np
 import pytest
 from oracles import Mujoco, assert_near
-from robot_files import URDF_LIMIT, Read, two_links, two_links_urdf, urdf_inertial
+from robot_files import URDF_LIMIT, Read, felt, two_links, two_links_urdf, urdf_inertial
 
 from softimpact.symbolic import (
     InvalidInertia,
     ModelFileError,
-    Robot,
     UnsupportedModel,
     arm_of,
     chain_to,
     impact_model,
     load_robot,
     mass_matrix,
-    own_joints,
-    whole_configuration,
 )
 
 Q = [0.3, 1.2]
-X = [1.0, 0.0, 0.0]
-
-
-def felt(robot: Robot, q: list[float] = Q, direction: list[float] = X, tip: str = "tool") -> float:
-    """Mass felt at a frame with rigid joints [kg]."""
-    arm = arm_of(robot, tip).robot
-    return float(impact_model(arm).reflected_mass(whole_configuration(arm, q), direction))
 
 
 MOTORS = (
@@ -80,67 +70,21 @@ def test_a_motor_on_a_tendon_is_a_motor(read: Read) -> None:
     assert read(two_links(after=alone)).actuated == (True, False)
 
 
-OPPOSITE = '<equality><joint joint1="j2" joint2="j1" polycoef="0 -1 0 0 0"/></equality>'
-
-FOLLOWS = [
-    (two_links(after=OPPOSITE), ".xml"),
-    (
-        two_links(
-            after='<tendon><fixed name="a"><joint joint="j1" coef="1"/></fixed>'
-            '<fixed name="b"><joint joint="j2" coef="2"/></fixed></tendon>'
-            '<equality><tendon tendon1="b" tendon2="a" polycoef="0 -2 0 0 0"/></equality>'
-        ),
-        ".xml",
-    ),
-    (two_links_urdf(on_j2='<mimic joint="j1" multiplier="-1"/>',
-                    fore=urdf_inertial("1", "0.15", "0.005", "0.01", "0.01")), ".urdf"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("text", "suffix"), FOLLOWS)
-@pytest.mark.parametrize("q", [[0.6], [0.6, -0.6]])
-def test_a_joint_that_follows_is_no_coordinate(
-    read: Read, text: str, suffix: str, q: list[float]
-) -> None:
-    """One coordinate, G = [1, −1]: by hand from M of the arm."""
-    robot = read(text, suffix)
-    assert own_joints(arm_of(robot, "tool").robot) == ("j1",)
-    assert felt(robot, q, [0.0, 1.0, 0.0]) == pytest.approx(2.385570, abs=1e-6)
-
-
-def test_a_coupling_that_is_not_linear(read: Read) -> None:
-    text = two_links(
-        after='<equality><joint joint1="j2" joint2="j1" polycoef="0.1 0.5 0.3 0 0"/></equality>'
+def test_hinges_of_a_ball_have_its_numbers(read: Read) -> None:
+    ball = (
+        '<body name="bob"><joint name="b" type="ball" damping="0.2" armature="0.3"'
+        ' frictionloss="0.4"/><geom size=".1"/></body>'
     )
-    arm = arm_of(read(text), "tool").robot
-    q = whole_configuration(arm, [0.4])
-    assert_near(q, [0.4, 0.1 + 0.5 * 0.4 + 0.3 * 0.16])
-    model = impact_model(arm)
-    G = np.array([1.0, 0.5 + 2 * 0.3 * 0.4])
-    free = arm_of(read(two_links()), "tool").robot
-    whole = np.array(impact_model(free).mass_matrix(q))
-    assert_near(model.mass_matrix(q), [[G @ whole @ G]])
+    joints = read(two_links(j1='damping="5" armature="6" frictionloss="7"', on_upper=ball)).joints
+    of_ball = [joint for joint in joints if joint.name.startswith("b_")]
+    found = [(joint.damping, joint.armature, joint.friction) for joint in of_ball]
+    assert found == [(0.2, 0.3, 0.4)] * 3
 
 
-def test_joints_that_follow_welded_ones_are_welded_where_these_put_them(read: Read) -> None:
-    text = two_links_urdf(on_j2='<mimic joint="j1" multiplier="-1" offset="0.2"/>')
-    branch = (
-        '<link name="arm">' + urdf_inertial("1", "0.1") + '</link><joint name="a" type="revolute">'
-        f'<parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>{URDF_LIMIT}</joint></robot>'
-    )
-    robot = read(text.replace("</robot>", branch), ".urdf")
-    welded = chain_to(robot, "arm")
-    assert welded.joint_names == ("a",)
-    place = welded.frame("tool").placement.translation
-    assert_near(place, [0.4 + 0.3 * np.cos(0.2), 0.3 * np.sin(0.2), 0.0])
-
-
-def test_q_must_agree_with_a_coupling(read: Read) -> None:
-    from softimpact.symbolic import InvalidValue
-
-    robot = read(*FOLLOWS[2])
-    with pytest.raises(InvalidValue, match=r"'j2' follows 'j1' and is then at -0.6, not 0.5"):
-        felt(robot, [0.6, 0.5])
+def test_what_is_unread_several_times_is_counted(read: Read) -> None:
+    both = {"on_j1": "<dynamics spring='1'/>", "on_j2": "<dynamics spring='1'/>"}
+    robot = read(two_links_urdf(**both), ".urdf")
+    assert "'dynamics spring' is not read (2 times)" in robot.warnings
 
 
 CAMERA = (

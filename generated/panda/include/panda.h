@@ -492,8 +492,10 @@ typedef struct {
 
 /*
  * The direction in which a contact point (panda_point) hits hardest at a speed, among those in which the
- * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control loop. The
- * error is estimated by what looking closer brought, and held in tests against thousands of directions.
+ * robot can go at this pose: some 300 impacts, each with a budget of p->steps; not for a control loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of directions. Where the
+ * impacts of some direction cannot be followed to their end (PANDA_BOUNDED), the force is one that no direction
+ * exceeds, and n the hardest direction that was seen.
  */
 int panda_worst_direction_at(const panda_real q[PANDA_JOINTS], int point, panda_real speed,
     const panda_region *region, const panda_params *p, panda_worst_direction_t *out);

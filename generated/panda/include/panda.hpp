@@ -459,10 +459,13 @@ inline result<panda_safe_speed_t> safe_speed_on(
 
 /* The direction in which a contact point (panda_point) hits hardest at a speed, among those in
  * which the
- * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control
+ * robot can go at this pose: some 300 impacts, each with a budget of p->steps; not for a control
  * loop. The
  * error is estimated by what looking closer brought, and held in tests against thousands of
- * directions. */
+ * directions. Where the
+ * impacts of some direction cannot be followed to their end (PANDA_BOUNDED), the force is one that
+ * no direction
+ * exceeds, and n the hardest direction that was seen. */
 inline result<panda_worst_direction_t> worst_direction_at(
     const vector<7> &q,
     int point,

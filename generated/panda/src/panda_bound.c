@@ -29,16 +29,19 @@ static panda_real while_driven(panda_real time, panda_real hold, panda_real damp
 
 panda_real panda_twice_energy(const panda_impact *impact)
 {
-    const panda_params *const p = impact->p;
-    const panda_arrival *const arrival = &impact->arrival;
 #if PANDA_STRUCTURED
-    const panda_real together = panda_together(arrival, p);
+    const panda_real together = panda_together(&impact->arrival, impact->p);
     if (together > PANDA_R(0.0)) {
         const panda_real body =
             impact->gives_way ? PANDA_R(1.0)/impact->region->effective_mass : PANDA_R(0.0);
         return PANDA_R(1.0)/(together + body);
     }
 #endif
+    return panda_twice_energy_of_arrival(&impact->arrival, impact->p);
+}
+
+panda_real panda_twice_energy_of_arrival(const panda_arrival *arrival, const panda_params *p)
+{
     panda_real sum = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
         for (int j = 0; j < PANDA_N; ++j) {
@@ -85,11 +88,11 @@ static bool is_held_by_nothing(const panda_impact *impact)
 
 panda_real panda_bound(const panda_impact *impact)
 {
-    if (!is_held_by_nothing(impact)) {
-        return PANDA_R(0.0);
-    }
-    const panda_real hold = impact->hold;
-    const panda_real twice = panda_twice_energy(impact);
+    return is_held_by_nothing(impact) ? panda_bound_by(impact, impact->hold, panda_twice_energy(impact)) : PANDA_R(0.0);
+}
+
+panda_real panda_bound_by(const panda_impact *impact, panda_real hold, panda_real twice)
+{
     const panda_real horizon = PANDA_HORIZON(impact->p);
     const panda_real always = while_driven(horizon, hold, impact->region->damping);
     if (PANDA_DAMPED) {

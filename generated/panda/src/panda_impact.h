@@ -164,9 +164,13 @@ void panda_impact_let_go(panda_impact *impact);
  * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
  */
 panda_real panda_twice_energy(const panda_impact *impact);
+/* The first of these, r'(M + B)r. */
+panda_real panda_twice_energy_of_arrival(const panda_arrival *arrival, const panda_params *p);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 panda_real panda_bound(const panda_impact *impact);
+/* The same for a K and an energy of one's own, where there is a bound. */
+panda_real panda_bound_by(const panda_impact *impact, panda_real hold, panda_real twice);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void panda_kinds_of_motors(const panda_params *p, int *first, int *last);
@@ -243,7 +247,15 @@ bool panda_cholesky(int size, panda_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void panda_forward(int size, panda_matrix L, panda_real *x);
 void panda_backward(int size, panda_matrix L, panda_real *x);
-/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+/* Turns two vectors, a towards b, by an angle of such a cosine and sine, or of a tangent. */
+void panda_turn(int size, panda_real c, panda_real s, panda_real *a, panda_real *b);
+void panda_turn_by(int size, panda_real t, panda_real *a, panda_real *b);
+/*
+ * Tangent of the angle that leaves nothing of an entry `off` of a symmetric matrix (Jacobi): the later one of its
+ * entries on the diagonal, which is more by `apart`, turns towards the earlier one.
+ */
+panda_real panda_tangent(panda_real apart, panda_real off);
+/* Turns the rows of X, and A with them, until A = XKX' is diagonal (Jacobi); false if that does not end. */
 bool panda_diagonalise(int size, panda_matrix A, panda_matrix X);
 /*
  * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is

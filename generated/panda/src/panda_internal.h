@@ -35,6 +35,7 @@
 #define PANDA_FMIN(x, y) PANDA_F(fmin)(x, y)
 #define PANDA_FMAX(x, y) PANDA_F(fmax)(x, y)
 #define PANDA_COPYSIGN(x, y) PANDA_F(copysign)(x, y)
+#define PANDA_CBRT(x) PANDA_F(cbrt)(x)
 #define PANDA_POW(x, y) PANDA_F(pow)(x, y)
 
 /* Sines s and cosines c of finite angles x. */

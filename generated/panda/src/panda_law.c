@@ -8,8 +8,12 @@
  */
 #include "panda_impact.h"
 
-/* Halvings of a force that is only a first guess. */
+/*
+ * Halvings of a force that is only a first guess; and trials under Hertz's law, where the speed grows like the
+ * force to the power of 5/6 to 1, so that each leaves a sixth of how far the last was off, in powers.
+ */
 #define FORCE_HALVINGS 16
+#define FORCE_TRIALS 6
 
 /* What a sum of depth and force, each times a number, does from a point of a law to the next. */
 typedef struct {
@@ -69,7 +73,8 @@ panda_real panda_law_press(const panda_region *region, panda_real hold, panda_re
 panda_real panda_law_depth(const panda_region *region, panda_real force)
 {
     if (region->law == NULL) {
-        return PANDA_POW(force/region->hertz_stiffness, PANDA_R(2.0)/PANDA_R(3.0));
+        const panda_real root = PANDA_CBRT(force/region->hertz_stiffness);
+        return root*root;
     }
     panda_real depth;
     (void)panda_law_press(region, PANDA_R(0.0), PANDA_R(1.0), force, &depth);
@@ -105,9 +110,8 @@ panda_real panda_law_twice_work(const panda_region *region, panda_real force)
 panda_real panda_law_stiffness(const panda_region *region, panda_real force)
 {
     if (region->law == NULL) {
-        const panda_real third = PANDA_R(1.0)/PANDA_R(3.0);
         const panda_real hertz = region->hertz_stiffness;
-        return PANDA_R(1.5)*PANDA_POW(hertz*hertz*force, third);
+        return PANDA_R(1.5)*PANDA_CBRT(hertz*hertz*force);
     }
     panda_real most = PANDA_R(0.0);
     for (int i = 0; i < region->law_points && region->law[i].force <= force; ++i) {
@@ -157,9 +161,11 @@ panda_real panda_two_body_force(const panda_region *region, panda_real mobility,
 {
     const panda_real spring = speed*PANDA_SQRT(region->stiffness/mobility);
     if (region->law == NULL) {
-        const panda_real energy = PANDA_R(1.25)*speed*speed/mobility;
-        const panda_real skin = PANDA_POW(energy, PANDA_R(0.6))*PANDA_POW(region->hertz_stiffness, PANDA_R(0.4));
-        return PANDA_R(1.0)/(PANDA_R(1.0)/spring + PANDA_R(1.0)/skin);
+        panda_real force = spring;
+        for (int k = 0; k < FORCE_TRIALS; ++k) {
+            force *= speed/panda_two_body_speed(region, mobility, force);
+        }
+        return force;
     }
     panda_real low = PANDA_R(0.0);
     panda_real high = spring;

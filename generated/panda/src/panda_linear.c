@@ -48,6 +48,29 @@ void panda_backward(int size, panda_matrix L, panda_real *x)
     }
 }
 
+void panda_turn(int size, panda_real c, panda_real s, panda_real *a, panda_real *b)
+{
+    for (int k = 0; k < size; ++k) {
+        const panda_real x = a[k];
+        const panda_real y = b[k];
+        a[k] = c*x + s*y;
+        b[k] = c*y - s*x;
+    }
+}
+
+void panda_turn_by(int size, panda_real t, panda_real *a, panda_real *b)
+{
+    const panda_real c = PANDA_R(1.0)/PANDA_SQRT(t*t + PANDA_R(1.0));
+    panda_turn(size, c, t*c, a, b);
+}
+
+panda_real panda_tangent(panda_real apart, panda_real off)
+{
+    const panda_real half = apart/(off + off);
+    const panda_real length = PANDA_FABS(half) + PANDA_SQRT(half*half + PANDA_R(1.0));
+    return (half < PANDA_R(0.0) ? PANDA_R(-1.0) : PANDA_R(1.0))/length;
+}
+
 #if !PANDA_STRUCTURED
 /*
  * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
@@ -58,41 +81,23 @@ void panda_backward(int size, panda_matrix L, panda_real *x)
 /* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
 #define SWEEPS 16
 
-/* Turns columns i and j of a matrix by an angle. */
-static void turn_columns(int size, panda_matrix X, int i, int j, panda_real c, panda_real s)
-{
-    for (int k = 0; k < size; ++k) {
-        const panda_real a = X[k][i];
-        const panda_real b = X[k][j];
-        X[k][i] = c*a - s*b;
-        X[k][j] = s*a + c*b;
-    }
-}
-
 /* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
 static void rotate(int size, panda_matrix A, panda_matrix X, int i, int j)
 {
     const panda_real off = A[i][j];
-    const panda_real half = (A[j][j] - A[i][i])/(off + off);
-    const panda_real length = PANDA_FABS(half) + PANDA_SQRT(half*half + PANDA_R(1.0));
-    const panda_real t = (half < PANDA_R(0.0) ? PANDA_R(-1.0) : PANDA_R(1.0))/length;
-    const panda_real c = PANDA_R(1.0)/PANDA_SQRT(t*t + PANDA_R(1.0));
-    const panda_real s = t*c;
-    A[i][i] -= t*off;
-    A[j][j] += t*off;
+    const panda_real first = A[i][i];
+    const panda_real second = A[j][j];
+    const panda_real t = panda_tangent(second - first, off);
+    panda_turn_by(size, t, A[j], A[i]);
+    for (int k = 0; k < size; ++k) {
+        A[k][i] = A[i][k];
+        A[k][j] = A[j][k];
+    }
+    A[i][i] = first - t*off;
+    A[j][j] = second + t*off;
     A[i][j] = PANDA_R(0.0);
     A[j][i] = PANDA_R(0.0);
-    for (int k = 0; k < size; ++k) {
-        if (k != i && k != j) {
-            const panda_real a = A[i][k];
-            const panda_real b = A[j][k];
-            A[i][k] = c*a - s*b;
-            A[j][k] = s*a + c*b;
-            A[k][i] = A[i][k];
-            A[k][j] = A[j][k];
-        }
-    }
-    turn_columns(size, X, i, j, c, s);
+    panda_turn_by(size, t, X[j], X[i]);
 }
 
 bool panda_diagonalise(int size, panda_matrix A, panda_matrix X)

@@ -8,26 +8,22 @@
  */
 #include "panda_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
+/* X = L^-1 of a mass matrix M = L L': its rows are motions of unit mass, with nothing behind its diagonal. */
 static bool unit_motions(int size, panda_matrix mass, panda_matrix X)
 {
     if (!panda_cholesky(size, mass)) {
         return false;
     }
     for (int j = 0; j < size; ++j) {
-        panda_real column[PANDA_SYSTEM];
         for (int i = 0; i < size; ++i) {
-            column[i] = i == j ? PANDA_R(1.0) : PANDA_R(0.0);
+            X[j][i] = i == j ? PANDA_R(1.0) : PANDA_R(0.0);
         }
-        panda_backward(j + 1, mass, column);
-        for (int i = 0; i < size; ++i) {
-            X[i][j] = column[i];
-        }
+        panda_backward(j + 1, mass, X[j]);
     }
     return true;
 }
 
-/* A = X'KX of such an X. */
+/* A = XKX' of such an X. */
 static void congruent(int size, panda_matrix K, panda_matrix X, panda_matrix A)
 {
     for (int i = 0; i < size; ++i) {
@@ -35,13 +31,13 @@ static void congruent(int size, panda_matrix K, panda_matrix X, panda_matrix A)
         for (int l = 0; l <= i; ++l) {
             pulled[l] = PANDA_R(0.0);
             for (int m = 0; m <= i; ++m) {
-                pulled[l] += K[l][m]*X[m][i];
+                pulled[l] += K[l][m]*X[i][m];
             }
         }
         for (int j = 0; j <= i; ++j) {
             panda_real sum = PANDA_R(0.0);
             for (int l = 0; l <= j; ++l) {
-                sum += pulled[l]*X[l][j];
+                sum += pulled[l]*X[j][l];
             }
             A[i][j] = sum;
             A[j][i] = sum;
@@ -51,7 +47,7 @@ static void congruent(int size, panda_matrix K, panda_matrix X, panda_matrix A)
 
 #if !PANDA_STRUCTURED
 /*
- * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * Modes: the eigenvectors of A = XKX' in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
  * squared sum of these roots' shares in it. False if eigenvectors are not found.
  */
@@ -68,7 +64,7 @@ static bool find_modes(int size, const int *places, panda_matrix L, panda_matrix
         for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
             panda_real share = PANDA_R(0.0);
             for (int m = l; m < size; ++m) {
-                share += L[m][l]*X[m][i];
+                share += L[m][l]*X[i][m];
             }
             held += roots[l]*PANDA_FABS(share);
         }
@@ -77,8 +73,8 @@ static bool find_modes(int size, const int *places, panda_matrix L, panda_matrix
         }
         panda_real sum = PANDA_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[i][places[j]] = X[j][i];
-            sum += row[j]*X[j][i];
+            modes->shape[i][places[j]] = X[i][j];
+            sum += row[j]*X[i][j];
         }
         modes->noise[i] = PANDA_EPSILON*held*held;
         modes->squared[i] = A[i][i];
@@ -214,17 +210,6 @@ static panda_real product_of(const panda_real a[PANDA_SYSTEM], const panda_real 
     return sum;
 }
 
-/* Turns two rows by an angle of tangent t. */
-static void turn_both(panda_real t, panda_real a[PANDA_SYSTEM], panda_real b[PANDA_SYSTEM])
-{
-    const panda_real c = PANDA_R(1.0)/PANDA_SQRT(PANDA_R(1.0) + t*t);
-    for (int k = 0; k < PANDA_SYSTEM; ++k) {
-        const panda_real x = a[k];
-        a[k] = c*(x - t*b[k]);
-        b[k] = c*(b[k] + t*x);
-    }
-}
-
 /*
  * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
  * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
@@ -259,11 +244,9 @@ static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes
                 const panda_real off = product_of(bent[i], bent[j]);
                 if (off*off > PANDA_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
-                    const panda_real half = PANDA_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
-                    const panda_real length = PANDA_FABS(half) + PANDA_SQRT(half*half + PANDA_R(1.0));
-                    const panda_real t = (half < PANDA_R(0.0) ? PANDA_R(-1.0) : PANDA_R(1.0))/length;
-                    turn_both(t, bent[i], bent[j]);
-                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    const panda_real t = panda_tangent(modes->squared[j] - modes->squared[i], off);
+                    panda_turn_by(PANDA_SYSTEM, t, bent[j], bent[i]);
+                    panda_turn_by(PANDA_SYSTEM, t, modes->shape[j], modes->shape[i]);
                     modes->squared[i] = product_of(bent[i], bent[i]);
                     modes->squared[j] = product_of(bent[j], bent[j]);
                 }
@@ -279,7 +262,7 @@ static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes
 int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift)
 {
-    panda_matrix mass; /* and then X'KX */
+    panda_matrix mass; /* and then XKX' */
     panda_matrix X;
     panda_real (*const K)[PANDA_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
@@ -302,8 +285,8 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
     for (int i = 0; i < PANDA_SYSTEM; ++i) {
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
             panda_real shape = PANDA_R(0.0);
-            for (int k = j; k < PANDA_SYSTEM; ++k) { /* X has nothing below its diagonal */
-                shape += X[j][k]*K[i][k];
+            for (int k = j; k < PANDA_SYSTEM; ++k) { /* X has nothing behind its diagonal */
+                shape += X[k][j]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
         }

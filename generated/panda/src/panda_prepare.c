@@ -4,6 +4,11 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS PANDA_R(1.6e-2)
+/*
+ * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
+ * inputs, 4.6 % with this, errors as before).
+ */
+#define LEAST_SMOOTH PANDA_R(0.05)
 
 void panda_impact_forget(panda_impact *impact)
 {
@@ -72,7 +77,8 @@ static int modes_of(panda_impact *impact, int which)
 /*
  * What rounding may change of an approach within a time, as a share of it. An entry of a stiffness over modes i and
  * j errs by about sqrt(n_i n_j) for the noise n of their squared frequencies; it takes start_i t of one motion to
- * row_j t^2 of the other, or less where one of them swings. What is led starts by what the contact moves.
+ * row_j t^2 of the other, or less where one of them swings. Before motors are let go no mode starts off the motion
+ * before: its start is what a pull that grows with time leads it to, of which it takes no more than it has turned.
  */
 static panda_real blur_of(const panda_impact *impact, const panda_phase *phase, panda_real time)
 {
@@ -179,7 +185,7 @@ int panda_impact_prepare(const panda_region *region, const panda_params *p, int 
     impact->scale = PANDA_R(0.5)*size;
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const panda_real damped = region->damping*PANDA_SQRT(impact->mobility/region->stiffness);
-    impact->smooth = PANDA_R(1.0)/(PANDA_R(1.0) + PANDA_R(4.0)*damped);
+    impact->smooth = PANDA_FMAX(PANDA_R(1.0)/(PANDA_R(1.0) + PANDA_R(4.0)*damped), LEAST_SMOOTH);
     impact->skin_rate = panda_law_stiffness(region, size)*impact->mobility;
     const panda_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!panda_all_finite(numbers, 3) || panda_check_positive(numbers, 3) != PANDA_OK) {

@@ -4,11 +4,12 @@
 
 /* Share of the limit at which trials aim, below PANDA_KEPT, and from which on one is near enough. */
 #define AIM PANDA_R(0.984)
-#define NEAR PANDA_R(0.977)
+#define NEAR_ENOUGH PANDA_R(0.977)
 /*
  * Smoothness below which a body damps harder than it springs back, or above which it hardly damps, so that errors grow
  * from contact to contact, and the share of the limit that counts there: forces on such bodies were up to 1.5e-2 and
- * 2e-2 too low in inputs that a search climbed to. Parts of the human body are between.
+ * 2e-2 too low in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors
+ * hold the contact point, and the body is held, too.
  */
 #define HARD PANDA_R(0.2)
 #define HARDLY PANDA_R(0.99)
@@ -17,8 +18,8 @@
 #define TRIALS 16
 #define APART PANDA_R(4e-3)
 /*
- * Where a cover ends as if it were solid, before a body that hardly damps, the force of a law by table jumps with
- * speed: from which one on is known to half a percent, as the end lies between two steps.
+ * Where a cover ends as if it were solid the force of a law by table jumps with speed: before a body that hardly
+ * damps, or where joints or servos do, from which one on is known to half a percent.
  */
 #define SHORT_OF_JUMP PANDA_R(0.99)
 /*
@@ -69,7 +70,7 @@ static bool try_speed(panda_impact *impact, panda_real v, bool rough, search *s,
 
 static bool is_found(const search *s, panda_real cap)
 {
-    const bool near = s->low_force >= NEAR*s->limit;
+    const bool near = s->low_force >= NEAR_ENOUGH*s->limit;
     const bool jumps = s->high > PANDA_R(0.0) && s->high - s->low <= APART*s->low;
     return s->low > PANDA_R(0.0) && (near || jumps || (cap > PANDA_R(0.0) && s->low >= cap));
 }
@@ -105,24 +106,39 @@ static bool find(panda_impact *impact, panda_real guess, panda_real cap, search 
     return false;
 }
 
-/* Lowers a speed that was found below the slowest share of it that is not safe; false if no speed is left. */
+/*
+ * Lowers a speed that was found below the slowest share of it that is not safe; where the slowest of all is none, the
+ * same is done with that one, until one is or the steps do not do. False if the speed may be far too low.
+ */
 static bool look_slower(panda_impact *impact, search *s, panda_budget *budget)
 {
     static const panda_real slower[SHARES] = {PANDA_R(0.25), PANDA_R(0.45), PANDA_R(0.6), PANDA_R(0.72),
         PANDA_R(0.84), PANDA_R(0.94)};
     const panda_real found = s->low;
     const panda_real force = s->low_force;
+    panda_real from = found;
     s->low = PANDA_R(0.0);
-    for (int k = 0; k < SHARES; ++k) {
+    int k = 0; /* of them that are safe */
+    while (k < SHARES) {
         panda_real unused;
         s->high = PANDA_R(0.0);
-        if (!try_speed(impact, slower[k]*found, false, s, budget, &unused) || s->high > PANDA_R(0.0)) {
-            return s->low > PANDA_R(0.0);
+        if (!try_speed(impact, slower[k]*from, false, s, budget, &unused) || (s->high > PANDA_R(0.0) && k > 0)) {
+            break;
+        }
+        if (s->high > PANDA_R(0.0)) {
+            from = s->high;
+        } else {
+            ++k;
         }
     }
-    s->low = found;
-    s->low_force = force;
-    return true;
+    if (from < found) {
+        return false;
+    }
+    if (k == SHARES) {
+        s->low = found;
+        s->low_force = force;
+    }
+    return k > 0;
 }
 
 /* Whether loose motors bring too little energy for a force: panda_settled.c, w = 0 at first touch. */
@@ -150,13 +166,15 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
         if (status != PANDA_OK) {
             return status;
         }
-        const bool hardly_damps = impact->smooth > HARDLY;
+        const bool is_held = !PANDA_STRUCTURED && !(impact->mobility > PANDA_LEAST_MOBILITY);
+        const bool hardly_damps = impact->smooth > HARDLY && !is_held;
         const panda_real counts = impact->smooth < HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
         const panda_real guess = panda_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)};
         bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
         if (region->law != NULL || hardly_damps) {
-            const panda_real share = region->law != NULL && hardly_damps ? SHORT_OF_JUMP : PANDA_R(1.0);
+            const bool exact = !hardly_damps && !impact->phase[impact->first].damped;
+            const panda_real share = region->law == NULL || exact ? PANDA_R(1.0) : SHORT_OF_JUMP;
             s.low = is_known ? share*s.low : PANDA_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, &s, &budget);
         }

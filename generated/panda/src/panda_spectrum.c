@@ -96,17 +96,6 @@ static void reflect(int size, panda_matrix A, panda_real *d, panda_real *e, pand
     }
 }
 
-/* Turns two rows of Q by an angle. */
-static void turn_rows(int size, panda_real c, panda_real s, panda_real *upper, panda_real *lower)
-{
-    for (int j = 0; j < size; ++j) {
-        const panda_real x = upper[j];
-        const panda_real y = lower[j];
-        upper[j] = c*x + s*y;
-        lower[j] = c*y - s*x;
-    }
-}
-
 /* One QR step on rows first to last; turns the rows of Q, too. */
 static void chase(int first, int last, int size, panda_real *d, panda_real *e, panda_matrix Q)
 {
@@ -133,7 +122,7 @@ static void chase(int first, int last, int size, panda_real *d, panda_real *e, p
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        turn_rows(size, c, s, Q[k], Q[k + 1]);
+        panda_turn(size, c, s, Q[k], Q[k + 1]);
     }
 }
 

@@ -39,6 +39,9 @@ typedef struct {
     panda_real swings; /* most that modes that stand add to the force as they swing, N */
 } panda_state;
 
+/* Until when forces of a contact count that began before 0.5 s; later ones count until they end, s. */
+#define PANDA_COUNTS_UNTIL PANDA_R(0.6)
+
 /* What is looked for in the steps of an impact that goes on after its peak. */
 struct panda_watch {
     panda_real matters; /* force that may still come, N */

@@ -13,7 +13,7 @@
 #define SERVO_STEP PANDA_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
- * displacement, in a contact as fast as `contact`.
+ * displacement, in a contact as fast as `contact`, or as the time there is.
  */
 #define STANDS PANDA_R(1e-5)
 /*
@@ -167,7 +167,8 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
-    let_stand(impact, contact, released, phase);
+    const panda_real end = PANDA_R(1.0)/PANDA_HORIZON(impact->p);
+    let_stand(impact, PANDA_FMAX(contact, end*end), released, phase);
     panda_real moving = PANDA_R(0.0);
     panda_real rate2 = PANDA_R(0.0);
     for (int i = 0; i < phase->active; ++i) {

@@ -9,8 +9,6 @@
  * 1.8 times at a twentieth of the speed (Hertz's contact lasts as v^-1/5), and oscillate with other phases.
  */
 #define AGAIN PANDA_R(0.25)
-/* Until when forces of a contact count that began before it was late. */
-#define COUNTS_UNTIL PANDA_R(0.6)
 /* Steps after which it is looked whether the rest matters. */
 #define LOOKS_LATE 2
 
@@ -18,7 +16,7 @@ bool panda_pass(const panda_state *s, panda_watch *watch)
 {
     watch->apart = s->touching ? watch->apart : s->time;
     const panda_real from = watch->slower && watch->apart > PANDA_R(0.0) ? AGAIN : LATE;
-    const panda_real until = watch->apart > LATE ? s->time : PANDA_FMIN(COUNTS_UNTIL, s->time);
+    const panda_real until = watch->apart > LATE ? s->time : PANDA_FMIN(PANDA_COUNTS_UNTIL, s->time);
     if (s->time >= from && until > s->time - s->h) {
         const panda_real share = PANDA_FMIN((s->time - from)/s->h, PANDA_R(1.0));
         const panda_real then = share*watch->last + (PANDA_R(1.0) - share)*s->f;

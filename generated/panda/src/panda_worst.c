@@ -7,14 +7,17 @@
 #define OVER_A_CIRCLE 32
 #define TURN PANDA_R(2.399963229728653) /* of one from the one before: pi (3 - sqrt(5)) */
 #define HALF_A_TURN PANDA_R(3.141592653589793)
-/* How far around the best is looked, as a share of a unit vector, first and last. */
+/*
+ * How far around the best is looked, as a share of a unit vector, first and last; and last where motors hardly move
+ * the point one way, so that directions in which they can lie within a slice.
+ */
 #define WIDE PANDA_R(0.2)
-#define NARROW PANDA_R(0.01)
-#define AROUND 6
-#define MOST_ROUNDS 16
+#define NARROW PANDA_R(2e-3)
+#define SLICE PANDA_R(1e-5)
+#define MOST_ROUNDS 20
 /* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
 #define STARTS 3
-#define ALIKE PANDA_R(0.94)
+#define ALIKE (PANDA_REACH > 2 ? PANDA_R(0.94) : PANDA_R(0.98))
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (PANDA_R(1.0) - PANDA_KEPT)
 
@@ -25,7 +28,9 @@ typedef struct {
     panda_real n[3]; /* the worst so far */
     panda_real force;
     panda_real tried; /* force of the last direction that was tried */
-    bool bounded, unknown;
+    panda_matrix axes; /* of the ellipsoid of what motors move, a row each */
+    int least; /* of these, the shortest */
+    bool bounded, unknown; /* some direction */
     bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
@@ -45,13 +50,13 @@ static bool try_direction(const panda_region *region, const panda_params *p, con
     if (status == PANDA_OK) {
         status = panda_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->bounded = w->bounded || status == PANDA_BOUNDED;
     w->lost = w->lost || status == PANDA_SINGULAR;
     w->unknown = w->unknown || (status != PANDA_OK && status != PANDA_BOUNDED && status != PANDA_SINGULAR);
     w->tried = found.force;
     const bool worse = (status == PANDA_OK || status == PANDA_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
-        w->bounded = status == PANDA_BOUNDED;
         for (int k = 0; k < 3; ++k) {
             w->n[k] = along[k];
         }
@@ -71,16 +76,12 @@ static void direction_of(int k, panda_real along[3])
 }
 
 #if PANDA_REACH > 1
-/*
- * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
- * one dimension less, and hardly any of the directions over a ball is within the others.
- */
-static void try_across(const panda_region *region, const panda_params *p, hardest *w)
+/* Finds the axes along which motors move the point most to least, whatever joints do at a given rate. */
+static void find_axes(hardest *w)
 {
     const panda_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     panda_matrix square;
-    panda_matrix vectors;
     panda_real values[PANDA_SYSTEM];
     for (int k = 0; k < PANDA_REACH; ++k) {
         for (int l = 0; l < PANDA_REACH; ++l) {
@@ -94,16 +95,24 @@ static void try_across(const panda_region *region, const panda_params *p, hardes
             }
         }
     }
-    if (!panda_spectrum(PANDA_REACH, PANDA_EPSILON*PANDA_EPSILON, square, values, vectors)) {
+    if (!panda_spectrum(PANDA_REACH, PANDA_EPSILON*PANDA_EPSILON, square, values, w->axes)) {
         w->unknown = true;
         return;
     }
-    int least = 0;
+    w->least = 0;
     for (int k = 1; k < PANDA_REACH; ++k) {
-        least = values[k] < values[least] ? k : least;
+        w->least = values[k] < values[w->least] ? k : w->least;
     }
-    const panda_real *const a = vectors[(least + 1) % PANDA_REACH];
-    const panda_real *const b = vectors[(least + 2) % PANDA_REACH];
+}
+
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const panda_region *region, const panda_params *p, hardest *w)
+{
+    const panda_real *const a = w->axes[(w->least + 1) % PANDA_REACH];
+    const panda_real *const b = w->axes[(w->least + 2) % PANDA_REACH];
     for (int k = 0; k < (PANDA_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
         const panda_real turn = HALF_A_TURN*(panda_real)k/(panda_real)OVER_A_CIRCLE;
         panda_real along[3] = {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)};
@@ -113,33 +122,34 @@ static void try_across(const panda_region *region, const panda_params *p, hardes
         (void)try_direction(region, p, along, w);
     }
 }
-#endif
 
-/* Looks around the worst, wider where that helps. */
+/*
+ * Looks around the worst, along each of the axes as far as that helps: where motors move the point much more one
+ * way than others, hard directions lie on a narrow ridge.
+ */
 static void look_around(const panda_region *region, const panda_params *p, hardest *w)
 {
-    panda_real wide = WIDE;
-    for (int round = 0; round < MOST_ROUNDS && wide > NARROW && PANDA_REACH > 1; ++round) {
-        const panda_real *const n = w->n;
-        const panda_real side = PANDA_FABS(n[2]) < PANDA_R(0.9) ? PANDA_SQRT(n[0]*n[0] + n[1]*n[1])
-            : PANDA_SQRT(n[1]*n[1] + n[2]*n[2]);
-        const panda_real a[3] = {PANDA_FABS(n[2]) < PANDA_R(0.9) ? n[1]/side : PANDA_R(0.0),
-            PANDA_FABS(n[2]) < PANDA_R(0.9) ? -n[0]/side : n[2]/side,
-            PANDA_FABS(n[2]) < PANDA_R(0.9) ? PANDA_R(0.0) : -n[1]/side};
-        const panda_real b[3] = {n[1]*a[2] - n[2]*a[1], n[2]*a[0] - n[0]*a[2], n[0]*a[1] - n[1]*a[0]};
-        const panda_real centre[3] = {n[0], n[1], n[2]};
-        bool better = false;
-        for (int k = 0; k < AROUND; ++k) {
-            const panda_real turn = PANDA_R(2.0)*HALF_A_TURN*(panda_real)k/(panda_real)AROUND;
-            const panda_real s = wide*PANDA_SIN(turn);
-            const panda_real c = wide*PANDA_COS(turn);
-            const panda_real aside[3] = {centre[0] + c*a[0] + s*b[0], centre[1] + c*a[1] + s*b[1],
-                PANDA_REACH > 2 ? centre[2] + c*a[2] + s*b[2] : PANDA_R(0.0)};
-            const panda_real size = PANDA_SQRT(aside[0]*aside[0] + aside[1]*aside[1] + aside[2]*aside[2]);
-            const panda_real along[3] = {aside[0]/size, aside[1]/size, aside[2]/size};
-            better = try_direction(region, p, along, w) || better;
+    const panda_real narrow = w->lost ? SLICE : NARROW;
+    panda_real wide[3] = {WIDE, WIDE, WIDE};
+    for (int round = 0; round < MOST_ROUNDS; ++round) {
+        for (int k = 0; k < PANDA_REACH; ++k) {
+            bool better = false;
+            for (int side = 0; side < 2 && !better && wide[k] > narrow; ++side) {
+                const panda_real by = side == 0 ? wide[k] : -wide[k];
+                panda_real along[3] = {PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)};
+                panda_real size = PANDA_R(0.0);
+                for (int l = 0; l < PANDA_REACH; ++l) {
+                    along[l] = w->n[l] + by*w->axes[k][l];
+                    size += along[l]*along[l];
+                }
+                size = PANDA_SQRT(size);
+                for (int l = 0; l < PANDA_REACH && size > PANDA_R(0.0); ++l) {
+                    along[l] /= size;
+                }
+                better = try_direction(region, p, along, w);
+            }
+            wide[k] *= better ? PANDA_R(1.5) : PANDA_R(0.5);
         }
-        wide = better ? wide : PANDA_R(0.5)*wide;
     }
 }
 
@@ -149,7 +159,6 @@ static void look_elsewhere(const panda_region *region, const panda_params *p, in
     for (int start = 0; start < STARTS; ++start) {
         const panda_real n[3] = {w->n[0], w->n[1], w->n[2]};
         const panda_real force = w->force;
-        const bool bounded = w->bounded;
         int best = 0;
         for (int k = 1; k < count; ++k) {
             best = forces[k] > forces[best] ? k : best;
@@ -168,12 +177,58 @@ static void look_elsewhere(const panda_region *region, const panda_params *p, in
         look_around(region, p, w);
         if (!(w->force > force)) {
             w->force = force;
-            w->bounded = bounded;
             for (int k = 0; k < 3; ++k) {
                 w->n[k] = n[k];
             }
         }
     }
+}
+#endif
+
+/*
+ * A force that no impact in any direction exceeds, by motors of one kind; 0 where none is known.
+ *
+ * What panda_bound takes of a direction is its K = k + c^2 mobility and its energy, and the bound grows with both.
+ * Over directions n of unit length the robot's mobility is a quadratic form, n'An, and so is r'(M + B)r for joint
+ * velocities r that are linear in n: none exceeds the sum of its values along directions at right angles, which is
+ * the form's trace. Links and rotors as one weigh no more than r'(M + B)r at a contact point, so with a body of
+ * mass m, and nothing but joints' springs, the energy is at most that of two masses, 1/(1/trace + 1/m). What pulls
+ * on none of the r of these directions pulls on no sum of them.
+ */
+static panda_real bound_all(const panda_region *region, const panda_params *p, int motors, hardest *w)
+{
+    panda_impact *const impact = &w->impact;
+    const panda_real body = region->clamped == 0 ? PANDA_R(1.0)/region->effective_mass : PANDA_R(0.0);
+    panda_real mobility = body;
+    panda_real twice = PANDA_R(0.0);
+    for (int k = 0; k < PANDA_REACH; ++k) {
+        const int status = panda_arrive(panda_directions[k], w->point, &impact->arrival);
+        panda_impact_forget(impact);
+        if (status != PANDA_OK || panda_impact_prepare(region, p, motors, -w->speed, impact) != PANDA_OK
+            || !(panda_bound(impact) > PANDA_R(0.0))) {
+            return PANDA_R(0.0);
+        }
+        mobility += impact->mobility - body;
+        twice += panda_twice_energy_of_arrival(&impact->arrival, p);
+    }
+    twice = PANDA_STRUCTURED ? twice/(PANDA_R(1.0) + twice*body) : twice;
+    return w->speed*panda_bound_by(impact, region->stiffness + region->damping*region->damping*mobility, twice);
+}
+
+/* Where some impacts cannot be followed to their end: takes the bound of all directions; false if none is known. */
+static bool raise_to_bound(const panda_region *region, const panda_params *p, hardest *w)
+{
+    int first;
+    int last;
+    panda_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last; ++motors) {
+        const panda_real bound = bound_all(region, p, motors, w);
+        if (!(bound > PANDA_R(0.0) && bound <= PANDA_REAL_MAX)) {
+            return false;
+        }
+        w->force = PANDA_FMAX(w->force, bound);
+    }
+    return true;
 }
 
 /* Looks everywhere. */
@@ -192,6 +247,7 @@ static int find_hardest(const panda_region *region, const panda_params *p, harde
         forces[k] = w->tried;
     }
 #if PANDA_REACH > 1
+    find_axes(w);
     if (w->lost) {
         try_across(region, p, w);
     }
@@ -203,9 +259,16 @@ static int find_hardest(const panda_region *region, const panda_params *p, harde
         return PANDA_SINGULAR;
     }
     const panda_real seen = w->force;
-    look_around(region, p, w);
-    look_elsewhere(region, p, count, forces, w);
+#if PANDA_REACH > 1
+    if (!w->bounded) {
+        look_around(region, p, w);
+        look_elsewhere(region, p, count, forces, w);
+    }
+#endif
     if (w->unknown) { /* so may be the hardest */
+        return PANDA_UNRESOLVED;
+    }
+    if (w->bounded && !raise_to_bound(region, p, w)) {
         return PANDA_UNRESOLVED;
     }
     for (int k = 0; k < 3; ++k) {
@@ -215,7 +278,7 @@ static int find_hardest(const panda_region *region, const panda_params *p, harde
         }
     }
     out->force = w->force;
-    out->error = w->force/seen - PANDA_R(1.0) + OF_FORCES;
+    out->error = w->bounded ? PANDA_R(0.0) : w->force/seen - PANDA_R(1.0) + OF_FORCES;
     return w->bounded ? PANDA_BOUNDED : PANDA_OK;
 }
 

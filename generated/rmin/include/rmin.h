@@ -331,8 +331,10 @@ typedef struct {
 
 /*
  * The direction in which a contact point (rmin_point) hits hardest at a speed, among those in which the
- * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control loop. The
- * error is estimated by what looking closer brought, and held in tests against thousands of directions.
+ * robot can go at this pose: some 300 impacts, each with a budget of p->steps; not for a control loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of directions. Where the
+ * impacts of some direction cannot be followed to their end (RMIN_BOUNDED), the force is one that no direction
+ * exceeds, and n the hardest direction that was seen.
  */
 int rmin_worst_direction_at(const rmin_real q[RMIN_JOINTS], int point, rmin_real speed,
     const rmin_region *region, const rmin_params *p, rmin_worst_direction_t *out);

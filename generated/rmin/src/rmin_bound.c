@@ -29,16 +29,19 @@ static rmin_real while_driven(rmin_real time, rmin_real hold, rmin_real damping)
 
 rmin_real rmin_twice_energy(const rmin_impact *impact)
 {
-    const rmin_params *const p = impact->p;
-    const rmin_arrival *const arrival = &impact->arrival;
 #if RMIN_STRUCTURED
-    const rmin_real together = rmin_together(arrival, p);
+    const rmin_real together = rmin_together(&impact->arrival, impact->p);
     if (together > RMIN_R(0.0)) {
         const rmin_real body =
             impact->gives_way ? RMIN_R(1.0)/impact->region->effective_mass : RMIN_R(0.0);
         return RMIN_R(1.0)/(together + body);
     }
 #endif
+    return rmin_twice_energy_of_arrival(&impact->arrival, impact->p);
+}
+
+rmin_real rmin_twice_energy_of_arrival(const rmin_arrival *arrival, const rmin_params *p)
+{
     rmin_real sum = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
         for (int j = 0; j < RMIN_N; ++j) {
@@ -85,11 +88,11 @@ static bool is_held_by_nothing(const rmin_impact *impact)
 
 rmin_real rmin_bound(const rmin_impact *impact)
 {
-    if (!is_held_by_nothing(impact)) {
-        return RMIN_R(0.0);
-    }
-    const rmin_real hold = impact->hold;
-    const rmin_real twice = rmin_twice_energy(impact);
+    return is_held_by_nothing(impact) ? rmin_bound_by(impact, impact->hold, rmin_twice_energy(impact)) : RMIN_R(0.0);
+}
+
+rmin_real rmin_bound_by(const rmin_impact *impact, rmin_real hold, rmin_real twice)
+{
     const rmin_real horizon = RMIN_HORIZON(impact->p);
     const rmin_real always = while_driven(horizon, hold, impact->region->damping);
     if (RMIN_DAMPED) {

@@ -164,9 +164,13 @@ void rmin_impact_let_go(rmin_impact *impact);
  * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
  */
 rmin_real rmin_twice_energy(const rmin_impact *impact);
+/* The first of these, r'(M + B)r. */
+rmin_real rmin_twice_energy_of_arrival(const rmin_arrival *arrival, const rmin_params *p);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 rmin_real rmin_bound(const rmin_impact *impact);
+/* The same for a K and an energy of one's own, where there is a bound. */
+rmin_real rmin_bound_by(const rmin_impact *impact, rmin_real hold, rmin_real twice);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void rmin_kinds_of_motors(const rmin_params *p, int *first, int *last);
@@ -243,7 +247,15 @@ bool rmin_cholesky(int size, rmin_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void rmin_forward(int size, rmin_matrix L, rmin_real *x);
 void rmin_backward(int size, rmin_matrix L, rmin_real *x);
-/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+/* Turns two vectors, a towards b, by an angle of such a cosine and sine, or of a tangent. */
+void rmin_turn(int size, rmin_real c, rmin_real s, rmin_real *a, rmin_real *b);
+void rmin_turn_by(int size, rmin_real t, rmin_real *a, rmin_real *b);
+/*
+ * Tangent of the angle that leaves nothing of an entry `off` of a symmetric matrix (Jacobi): the later one of its
+ * entries on the diagonal, which is more by `apart`, turns towards the earlier one.
+ */
+rmin_real rmin_tangent(rmin_real apart, rmin_real off);
+/* Turns the rows of X, and A with them, until A = XKX' is diagonal (Jacobi); false if that does not end. */
 bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X);
 /*
  * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is

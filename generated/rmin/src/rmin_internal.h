@@ -35,6 +35,7 @@
 #define RMIN_FMIN(x, y) RMIN_F(fmin)(x, y)
 #define RMIN_FMAX(x, y) RMIN_F(fmax)(x, y)
 #define RMIN_COPYSIGN(x, y) RMIN_F(copysign)(x, y)
+#define RMIN_CBRT(x) RMIN_F(cbrt)(x)
 #define RMIN_POW(x, y) RMIN_F(pow)(x, y)
 
 /* Sines s and cosines c of finite angles x. */

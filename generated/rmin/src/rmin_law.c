@@ -8,8 +8,12 @@
  */
 #include "rmin_impact.h"
 
-/* Halvings of a force that is only a first guess. */
+/*
+ * Halvings of a force that is only a first guess; and trials under Hertz's law, where the speed grows like the
+ * force to the power of 5/6 to 1, so that each leaves a sixth of how far the last was off, in powers.
+ */
 #define FORCE_HALVINGS 16
+#define FORCE_TRIALS 6
 
 /* What a sum of depth and force, each times a number, does from a point of a law to the next. */
 typedef struct {
@@ -69,7 +73,8 @@ rmin_real rmin_law_press(const rmin_region *region, rmin_real hold, rmin_real so
 rmin_real rmin_law_depth(const rmin_region *region, rmin_real force)
 {
     if (region->law == NULL) {
-        return RMIN_POW(force/region->hertz_stiffness, RMIN_R(2.0)/RMIN_R(3.0));
+        const rmin_real root = RMIN_CBRT(force/region->hertz_stiffness);
+        return root*root;
     }
     rmin_real depth;
     (void)rmin_law_press(region, RMIN_R(0.0), RMIN_R(1.0), force, &depth);
@@ -105,9 +110,8 @@ rmin_real rmin_law_twice_work(const rmin_region *region, rmin_real force)
 rmin_real rmin_law_stiffness(const rmin_region *region, rmin_real force)
 {
     if (region->law == NULL) {
-        const rmin_real third = RMIN_R(1.0)/RMIN_R(3.0);
         const rmin_real hertz = region->hertz_stiffness;
-        return RMIN_R(1.5)*RMIN_POW(hertz*hertz*force, third);
+        return RMIN_R(1.5)*RMIN_CBRT(hertz*hertz*force);
     }
     rmin_real most = RMIN_R(0.0);
     for (int i = 0; i < region->law_points && region->law[i].force <= force; ++i) {
@@ -157,9 +161,11 @@ rmin_real rmin_two_body_force(const rmin_region *region, rmin_real mobility, rmi
 {
     const rmin_real spring = speed*RMIN_SQRT(region->stiffness/mobility);
     if (region->law == NULL) {
-        const rmin_real energy = RMIN_R(1.25)*speed*speed/mobility;
-        const rmin_real skin = RMIN_POW(energy, RMIN_R(0.6))*RMIN_POW(region->hertz_stiffness, RMIN_R(0.4));
-        return RMIN_R(1.0)/(RMIN_R(1.0)/spring + RMIN_R(1.0)/skin);
+        rmin_real force = spring;
+        for (int k = 0; k < FORCE_TRIALS; ++k) {
+            force *= speed/rmin_two_body_speed(region, mobility, force);
+        }
+        return force;
     }
     rmin_real low = RMIN_R(0.0);
     rmin_real high = spring;

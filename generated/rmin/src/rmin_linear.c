@@ -48,6 +48,29 @@ void rmin_backward(int size, rmin_matrix L, rmin_real *x)
     }
 }
 
+void rmin_turn(int size, rmin_real c, rmin_real s, rmin_real *a, rmin_real *b)
+{
+    for (int k = 0; k < size; ++k) {
+        const rmin_real x = a[k];
+        const rmin_real y = b[k];
+        a[k] = c*x + s*y;
+        b[k] = c*y - s*x;
+    }
+}
+
+void rmin_turn_by(int size, rmin_real t, rmin_real *a, rmin_real *b)
+{
+    const rmin_real c = RMIN_R(1.0)/RMIN_SQRT(t*t + RMIN_R(1.0));
+    rmin_turn(size, c, t*c, a, b);
+}
+
+rmin_real rmin_tangent(rmin_real apart, rmin_real off)
+{
+    const rmin_real half = apart/(off + off);
+    const rmin_real length = RMIN_FABS(half) + RMIN_SQRT(half*half + RMIN_R(1.0));
+    return (half < RMIN_R(0.0) ? RMIN_R(-1.0) : RMIN_R(1.0))/length;
+}
+
 #if !RMIN_STRUCTURED
 /*
  * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
@@ -58,41 +81,23 @@ void rmin_backward(int size, rmin_matrix L, rmin_real *x)
 /* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
 #define SWEEPS 16
 
-/* Turns columns i and j of a matrix by an angle. */
-static void turn_columns(int size, rmin_matrix X, int i, int j, rmin_real c, rmin_real s)
-{
-    for (int k = 0; k < size; ++k) {
-        const rmin_real a = X[k][i];
-        const rmin_real b = X[k][j];
-        X[k][i] = c*a - s*b;
-        X[k][j] = s*a + c*b;
-    }
-}
-
 /* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
 static void rotate(int size, rmin_matrix A, rmin_matrix X, int i, int j)
 {
     const rmin_real off = A[i][j];
-    const rmin_real half = (A[j][j] - A[i][i])/(off + off);
-    const rmin_real length = RMIN_FABS(half) + RMIN_SQRT(half*half + RMIN_R(1.0));
-    const rmin_real t = (half < RMIN_R(0.0) ? RMIN_R(-1.0) : RMIN_R(1.0))/length;
-    const rmin_real c = RMIN_R(1.0)/RMIN_SQRT(t*t + RMIN_R(1.0));
-    const rmin_real s = t*c;
-    A[i][i] -= t*off;
-    A[j][j] += t*off;
+    const rmin_real first = A[i][i];
+    const rmin_real second = A[j][j];
+    const rmin_real t = rmin_tangent(second - first, off);
+    rmin_turn_by(size, t, A[j], A[i]);
+    for (int k = 0; k < size; ++k) {
+        A[k][i] = A[i][k];
+        A[k][j] = A[j][k];
+    }
+    A[i][i] = first - t*off;
+    A[j][j] = second + t*off;
     A[i][j] = RMIN_R(0.0);
     A[j][i] = RMIN_R(0.0);
-    for (int k = 0; k < size; ++k) {
-        if (k != i && k != j) {
-            const rmin_real a = A[i][k];
-            const rmin_real b = A[j][k];
-            A[i][k] = c*a - s*b;
-            A[j][k] = s*a + c*b;
-            A[k][i] = A[i][k];
-            A[k][j] = A[j][k];
-        }
-    }
-    turn_columns(size, X, i, j, c, s);
+    rmin_turn_by(size, t, X[j], X[i]);
 }
 
 bool rmin_diagonalise(int size, rmin_matrix A, rmin_matrix X)

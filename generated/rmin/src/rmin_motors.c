@@ -8,26 +8,22 @@
  */
 #include "rmin_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
+/* X = L^-1 of a mass matrix M = L L': its rows are motions of unit mass, with nothing behind its diagonal. */
 static bool unit_motions(int size, rmin_matrix mass, rmin_matrix X)
 {
     if (!rmin_cholesky(size, mass)) {
         return false;
     }
     for (int j = 0; j < size; ++j) {
-        rmin_real column[RMIN_SYSTEM];
         for (int i = 0; i < size; ++i) {
-            column[i] = i == j ? RMIN_R(1.0) : RMIN_R(0.0);
+            X[j][i] = i == j ? RMIN_R(1.0) : RMIN_R(0.0);
         }
-        rmin_backward(j + 1, mass, column);
-        for (int i = 0; i < size; ++i) {
-            X[i][j] = column[i];
-        }
+        rmin_backward(j + 1, mass, X[j]);
     }
     return true;
 }
 
-/* A = X'KX of such an X. */
+/* A = XKX' of such an X. */
 static void congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A)
 {
     for (int i = 0; i < size; ++i) {
@@ -35,13 +31,13 @@ static void congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A)
         for (int l = 0; l <= i; ++l) {
             pulled[l] = RMIN_R(0.0);
             for (int m = 0; m <= i; ++m) {
-                pulled[l] += K[l][m]*X[m][i];
+                pulled[l] += K[l][m]*X[i][m];
             }
         }
         for (int j = 0; j <= i; ++j) {
             rmin_real sum = RMIN_R(0.0);
             for (int l = 0; l <= j; ++l) {
-                sum += pulled[l]*X[l][j];
+                sum += pulled[l]*X[j][l];
             }
             A[i][j] = sum;
             A[j][i] = sum;
@@ -51,7 +47,7 @@ static void congruent(int size, rmin_matrix K, rmin_matrix X, rmin_matrix A)
 
 #if !RMIN_STRUCTURED
 /*
- * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * Modes: the eigenvectors of A = XKX' in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
  * squared sum of these roots' shares in it. False if eigenvectors are not found.
  */
@@ -68,7 +64,7 @@ static bool find_modes(int size, const int *places, rmin_matrix L, rmin_matrix A
         for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
             rmin_real share = RMIN_R(0.0);
             for (int m = l; m < size; ++m) {
-                share += L[m][l]*X[m][i];
+                share += L[m][l]*X[i][m];
             }
             held += roots[l]*RMIN_FABS(share);
         }
@@ -77,8 +73,8 @@ static bool find_modes(int size, const int *places, rmin_matrix L, rmin_matrix A
         }
         rmin_real sum = RMIN_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[i][places[j]] = X[j][i];
-            sum += row[j]*X[j][i];
+            modes->shape[i][places[j]] = X[i][j];
+            sum += row[j]*X[i][j];
         }
         modes->noise[i] = RMIN_EPSILON*held*held;
         modes->squared[i] = A[i][i];
@@ -214,17 +210,6 @@ static rmin_real product_of(const rmin_real a[RMIN_SYSTEM], const rmin_real b[RM
     return sum;
 }
 
-/* Turns two rows by an angle of tangent t. */
-static void turn_both(rmin_real t, rmin_real a[RMIN_SYSTEM], rmin_real b[RMIN_SYSTEM])
-{
-    const rmin_real c = RMIN_R(1.0)/RMIN_SQRT(RMIN_R(1.0) + t*t);
-    for (int k = 0; k < RMIN_SYSTEM; ++k) {
-        const rmin_real x = a[k];
-        a[k] = c*(x - t*b[k]);
-        b[k] = c*(b[k] + t*x);
-    }
-}
-
 /*
  * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
  * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
@@ -259,11 +244,9 @@ static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
                 const rmin_real off = product_of(bent[i], bent[j]);
                 if (off*off > RMIN_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
-                    const rmin_real half = RMIN_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
-                    const rmin_real length = RMIN_FABS(half) + RMIN_SQRT(half*half + RMIN_R(1.0));
-                    const rmin_real t = (half < RMIN_R(0.0) ? RMIN_R(-1.0) : RMIN_R(1.0))/length;
-                    turn_both(t, bent[i], bent[j]);
-                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    const rmin_real t = rmin_tangent(modes->squared[j] - modes->squared[i], off);
+                    rmin_turn_by(RMIN_SYSTEM, t, bent[j], bent[i]);
+                    rmin_turn_by(RMIN_SYSTEM, t, modes->shape[j], modes->shape[i]);
                     modes->squared[i] = product_of(bent[i], bent[i]);
                     modes->squared[j] = product_of(bent[j], bent[j]);
                 }
@@ -279,7 +262,7 @@ static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
 int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift)
 {
-    rmin_matrix mass; /* and then X'KX */
+    rmin_matrix mass; /* and then XKX' */
     rmin_matrix X;
     rmin_real (*const K)[RMIN_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
@@ -302,8 +285,8 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
     for (int i = 0; i < RMIN_SYSTEM; ++i) {
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
             rmin_real shape = RMIN_R(0.0);
-            for (int k = j; k < RMIN_SYSTEM; ++k) { /* X has nothing below its diagonal */
-                shape += X[j][k]*K[i][k];
+            for (int k = j; k < RMIN_SYSTEM; ++k) { /* X has nothing behind its diagonal */
+                shape += X[k][j]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
         }

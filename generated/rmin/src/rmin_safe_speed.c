@@ -4,11 +4,12 @@
 
 /* Share of the limit at which trials aim, below RMIN_KEPT, and from which on one is near enough. */
 #define AIM RMIN_R(0.984)
-#define NEAR RMIN_R(0.977)
+#define NEAR_ENOUGH RMIN_R(0.977)
 /*
  * Smoothness below which a body damps harder than it springs back, or above which it hardly damps, so that errors grow
  * from contact to contact, and the share of the limit that counts there: forces on such bodies were up to 1.5e-2 and
- * 2e-2 too low in inputs that a search climbed to. Parts of the human body are between.
+ * 2e-2 too low in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors
+ * hold the contact point, and the body is held, too.
  */
 #define HARD RMIN_R(0.2)
 #define HARDLY RMIN_R(0.99)
@@ -17,8 +18,8 @@
 #define TRIALS 16
 #define APART RMIN_R(4e-3)
 /*
- * Where a cover ends as if it were solid, before a body that hardly damps, the force of a law by table jumps with
- * speed: from which one on is known to half a percent, as the end lies between two steps.
+ * Where a cover ends as if it were solid the force of a law by table jumps with speed: before a body that hardly
+ * damps, or where joints or servos do, from which one on is known to half a percent.
  */
 #define SHORT_OF_JUMP RMIN_R(0.99)
 /*
@@ -69,7 +70,7 @@ static bool try_speed(rmin_impact *impact, rmin_real v, bool rough, search *s,
 
 static bool is_found(const search *s, rmin_real cap)
 {
-    const bool near = s->low_force >= NEAR*s->limit;
+    const bool near = s->low_force >= NEAR_ENOUGH*s->limit;
     const bool jumps = s->high > RMIN_R(0.0) && s->high - s->low <= APART*s->low;
     return s->low > RMIN_R(0.0) && (near || jumps || (cap > RMIN_R(0.0) && s->low >= cap));
 }
@@ -105,24 +106,39 @@ static bool find(rmin_impact *impact, rmin_real guess, rmin_real cap, search *s,
     return false;
 }
 
-/* Lowers a speed that was found below the slowest share of it that is not safe; false if no speed is left. */
+/*
+ * Lowers a speed that was found below the slowest share of it that is not safe; where the slowest of all is none, the
+ * same is done with that one, until one is or the steps do not do. False if the speed may be far too low.
+ */
 static bool look_slower(rmin_impact *impact, search *s, rmin_budget *budget)
 {
     static const rmin_real slower[SHARES] = {RMIN_R(0.25), RMIN_R(0.45), RMIN_R(0.6), RMIN_R(0.72),
         RMIN_R(0.84), RMIN_R(0.94)};
     const rmin_real found = s->low;
     const rmin_real force = s->low_force;
+    rmin_real from = found;
     s->low = RMIN_R(0.0);
-    for (int k = 0; k < SHARES; ++k) {
+    int k = 0; /* of them that are safe */
+    while (k < SHARES) {
         rmin_real unused;
         s->high = RMIN_R(0.0);
-        if (!try_speed(impact, slower[k]*found, false, s, budget, &unused) || s->high > RMIN_R(0.0)) {
-            return s->low > RMIN_R(0.0);
+        if (!try_speed(impact, slower[k]*from, false, s, budget, &unused) || (s->high > RMIN_R(0.0) && k > 0)) {
+            break;
+        }
+        if (s->high > RMIN_R(0.0)) {
+            from = s->high;
+        } else {
+            ++k;
         }
     }
-    s->low = found;
-    s->low_force = force;
-    return true;
+    if (from < found) {
+        return false;
+    }
+    if (k == SHARES) {
+        s->low = found;
+        s->low_force = force;
+    }
+    return k > 0;
 }
 
 /* Whether loose motors bring too little energy for a force: rmin_settled.c, w = 0 at first touch. */
@@ -150,13 +166,15 @@ int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real l
         if (status != RMIN_OK) {
             return status;
         }
-        const bool hardly_damps = impact->smooth > HARDLY;
+        const bool is_held = !RMIN_STRUCTURED && !(impact->mobility > RMIN_LEAST_MOBILITY);
+        const bool hardly_damps = impact->smooth > HARDLY && !is_held;
         const rmin_real counts = impact->smooth < HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
         const rmin_real guess = rmin_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, RMIN_R(0.0), RMIN_R(0.0), RMIN_R(0.0)};
         bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
         if (region->law != NULL || hardly_damps) {
-            const rmin_real share = region->law != NULL && hardly_damps ? SHORT_OF_JUMP : RMIN_R(1.0);
+            const bool exact = !hardly_damps && !impact->phase[impact->first].damped;
+            const rmin_real share = region->law == NULL || exact ? RMIN_R(1.0) : SHORT_OF_JUMP;
             s.low = is_known ? share*s.low : RMIN_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, &s, &budget);
         }

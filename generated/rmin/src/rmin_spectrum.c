@@ -96,17 +96,6 @@ static void reflect(int size, rmin_matrix A, rmin_real *d, rmin_real *e, rmin_ma
     }
 }
 
-/* Turns two rows of Q by an angle. */
-static void turn_rows(int size, rmin_real c, rmin_real s, rmin_real *upper, rmin_real *lower)
-{
-    for (int j = 0; j < size; ++j) {
-        const rmin_real x = upper[j];
-        const rmin_real y = lower[j];
-        upper[j] = c*x + s*y;
-        lower[j] = c*y - s*x;
-    }
-}
-
 /* One QR step on rows first to last; turns the rows of Q, too. */
 static void chase(int first, int last, int size, rmin_real *d, rmin_real *e, rmin_matrix Q)
 {
@@ -133,7 +122,7 @@ static void chase(int first, int last, int size, rmin_real *d, rmin_real *e, rmi
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        turn_rows(size, c, s, Q[k], Q[k + 1]);
+        rmin_turn(size, c, s, Q[k], Q[k + 1]);
     }
 }
 

@@ -13,7 +13,7 @@
 #define SERVO_STEP RMIN_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
- * displacement, in a contact as fast as `contact`.
+ * displacement, in a contact as fast as `contact`, or as the time there is.
  */
 #define STANDS RMIN_R(1e-5)
 /*
@@ -167,7 +167,8 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
-    let_stand(impact, contact, released, phase);
+    const rmin_real end = RMIN_R(1.0)/RMIN_HORIZON(impact->p);
+    let_stand(impact, RMIN_FMAX(contact, end*end), released, phase);
     rmin_real moving = RMIN_R(0.0);
     rmin_real rate2 = RMIN_R(0.0);
     for (int i = 0; i < phase->active; ++i) {

@@ -9,8 +9,6 @@
  * 1.8 times at a twentieth of the speed (Hertz's contact lasts as v^-1/5), and oscillate with other phases.
  */
 #define AGAIN RMIN_R(0.25)
-/* Until when forces of a contact count that began before it was late. */
-#define COUNTS_UNTIL RMIN_R(0.6)
 /* Steps after which it is looked whether the rest matters. */
 #define LOOKS_LATE 2
 
@@ -18,7 +16,7 @@ bool rmin_pass(const rmin_state *s, rmin_watch *watch)
 {
     watch->apart = s->touching ? watch->apart : s->time;
     const rmin_real from = watch->slower && watch->apart > RMIN_R(0.0) ? AGAIN : LATE;
-    const rmin_real until = watch->apart > LATE ? s->time : RMIN_FMIN(COUNTS_UNTIL, s->time);
+    const rmin_real until = watch->apart > LATE ? s->time : RMIN_FMIN(RMIN_COUNTS_UNTIL, s->time);
     if (s->time >= from && until > s->time - s->h) {
         const rmin_real share = RMIN_FMIN((s->time - from)/s->h, RMIN_R(1.0));
         const rmin_real then = share*watch->last + (RMIN_R(1.0) - share)*s->f;

@@ -7,14 +7,17 @@
 #define OVER_A_CIRCLE 32
 #define TURN RMIN_R(2.399963229728653) /* of one from the one before: pi (3 - sqrt(5)) */
 #define HALF_A_TURN RMIN_R(3.141592653589793)
-/* How far around the best is looked, as a share of a unit vector, first and last. */
+/*
+ * How far around the best is looked, as a share of a unit vector, first and last; and last where motors hardly move
+ * the point one way, so that directions in which they can lie within a slice.
+ */
 #define WIDE RMIN_R(0.2)
-#define NARROW RMIN_R(0.01)
-#define AROUND 6
-#define MOST_ROUNDS 16
+#define NARROW RMIN_R(2e-3)
+#define SLICE RMIN_R(1e-5)
+#define MOST_ROUNDS 20
 /* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
 #define STARTS 3
-#define ALIKE RMIN_R(0.94)
+#define ALIKE (RMIN_REACH > 2 ? RMIN_R(0.94) : RMIN_R(0.98))
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (RMIN_R(1.0) - RMIN_KEPT)
 
@@ -25,7 +28,9 @@ typedef struct {
     rmin_real n[3]; /* the worst so far */
     rmin_real force;
     rmin_real tried; /* force of the last direction that was tried */
-    bool bounded, unknown;
+    rmin_matrix axes; /* of the ellipsoid of what motors move, a row each */
+    int least; /* of these, the shortest */
+    bool bounded, unknown; /* some direction */
     bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
@@ -45,13 +50,13 @@ static bool try_direction(const rmin_region *region, const rmin_params *p, const
     if (status == RMIN_OK) {
         status = rmin_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->bounded = w->bounded || status == RMIN_BOUNDED;
     w->lost = w->lost || status == RMIN_SINGULAR;
     w->unknown = w->unknown || (status != RMIN_OK && status != RMIN_BOUNDED && status != RMIN_SINGULAR);
     w->tried = found.force;
     const bool worse = (status == RMIN_OK || status == RMIN_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
-        w->bounded = status == RMIN_BOUNDED;
         for (int k = 0; k < 3; ++k) {
             w->n[k] = along[k];
         }
@@ -71,16 +76,12 @@ static void direction_of(int k, rmin_real along[3])
 }
 
 #if RMIN_REACH > 1
-/*
- * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
- * one dimension less, and hardly any of the directions over a ball is within the others.
- */
-static void try_across(const rmin_region *region, const rmin_params *p, hardest *w)
+/* Finds the axes along which motors move the point most to least, whatever joints do at a given rate. */
+static void find_axes(hardest *w)
 {
     const rmin_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     rmin_matrix square;
-    rmin_matrix vectors;
     rmin_real values[RMIN_SYSTEM];
     for (int k = 0; k < RMIN_REACH; ++k) {
         for (int l = 0; l < RMIN_REACH; ++l) {
@@ -94,16 +95,24 @@ static void try_across(const rmin_region *region, const rmin_params *p, hardest 
             }
         }
     }
-    if (!rmin_spectrum(RMIN_REACH, RMIN_EPSILON*RMIN_EPSILON, square, values, vectors)) {
+    if (!rmin_spectrum(RMIN_REACH, RMIN_EPSILON*RMIN_EPSILON, square, values, w->axes)) {
         w->unknown = true;
         return;
     }
-    int least = 0;
+    w->least = 0;
     for (int k = 1; k < RMIN_REACH; ++k) {
-        least = values[k] < values[least] ? k : least;
+        w->least = values[k] < values[w->least] ? k : w->least;
     }
-    const rmin_real *const a = vectors[(least + 1) % RMIN_REACH];
-    const rmin_real *const b = vectors[(least + 2) % RMIN_REACH];
+}
+
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const rmin_region *region, const rmin_params *p, hardest *w)
+{
+    const rmin_real *const a = w->axes[(w->least + 1) % RMIN_REACH];
+    const rmin_real *const b = w->axes[(w->least + 2) % RMIN_REACH];
     for (int k = 0; k < (RMIN_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
         const rmin_real turn = HALF_A_TURN*(rmin_real)k/(rmin_real)OVER_A_CIRCLE;
         rmin_real along[3] = {RMIN_R(0.0), RMIN_R(0.0), RMIN_R(0.0)};
@@ -113,33 +122,34 @@ static void try_across(const rmin_region *region, const rmin_params *p, hardest 
         (void)try_direction(region, p, along, w);
     }
 }
-#endif
 
-/* Looks around the worst, wider where that helps. */
+/*
+ * Looks around the worst, along each of the axes as far as that helps: where motors move the point much more one
+ * way than others, hard directions lie on a narrow ridge.
+ */
 static void look_around(const rmin_region *region, const rmin_params *p, hardest *w)
 {
-    rmin_real wide = WIDE;
-    for (int round = 0; round < MOST_ROUNDS && wide > NARROW && RMIN_REACH > 1; ++round) {
-        const rmin_real *const n = w->n;
-        const rmin_real side = RMIN_FABS(n[2]) < RMIN_R(0.9) ? RMIN_SQRT(n[0]*n[0] + n[1]*n[1])
-            : RMIN_SQRT(n[1]*n[1] + n[2]*n[2]);
-        const rmin_real a[3] = {RMIN_FABS(n[2]) < RMIN_R(0.9) ? n[1]/side : RMIN_R(0.0),
-            RMIN_FABS(n[2]) < RMIN_R(0.9) ? -n[0]/side : n[2]/side,
-            RMIN_FABS(n[2]) < RMIN_R(0.9) ? RMIN_R(0.0) : -n[1]/side};
-        const rmin_real b[3] = {n[1]*a[2] - n[2]*a[1], n[2]*a[0] - n[0]*a[2], n[0]*a[1] - n[1]*a[0]};
-        const rmin_real centre[3] = {n[0], n[1], n[2]};
-        bool better = false;
-        for (int k = 0; k < AROUND; ++k) {
-            const rmin_real turn = RMIN_R(2.0)*HALF_A_TURN*(rmin_real)k/(rmin_real)AROUND;
-            const rmin_real s = wide*RMIN_SIN(turn);
-            const rmin_real c = wide*RMIN_COS(turn);
-            const rmin_real aside[3] = {centre[0] + c*a[0] + s*b[0], centre[1] + c*a[1] + s*b[1],
-                RMIN_REACH > 2 ? centre[2] + c*a[2] + s*b[2] : RMIN_R(0.0)};
-            const rmin_real size = RMIN_SQRT(aside[0]*aside[0] + aside[1]*aside[1] + aside[2]*aside[2]);
-            const rmin_real along[3] = {aside[0]/size, aside[1]/size, aside[2]/size};
-            better = try_direction(region, p, along, w) || better;
+    const rmin_real narrow = w->lost ? SLICE : NARROW;
+    rmin_real wide[3] = {WIDE, WIDE, WIDE};
+    for (int round = 0; round < MOST_ROUNDS; ++round) {
+        for (int k = 0; k < RMIN_REACH; ++k) {
+            bool better = false;
+            for (int side = 0; side < 2 && !better && wide[k] > narrow; ++side) {
+                const rmin_real by = side == 0 ? wide[k] : -wide[k];
+                rmin_real along[3] = {RMIN_R(0.0), RMIN_R(0.0), RMIN_R(0.0)};
+                rmin_real size = RMIN_R(0.0);
+                for (int l = 0; l < RMIN_REACH; ++l) {
+                    along[l] = w->n[l] + by*w->axes[k][l];
+                    size += along[l]*along[l];
+                }
+                size = RMIN_SQRT(size);
+                for (int l = 0; l < RMIN_REACH && size > RMIN_R(0.0); ++l) {
+                    along[l] /= size;
+                }
+                better = try_direction(region, p, along, w);
+            }
+            wide[k] *= better ? RMIN_R(1.5) : RMIN_R(0.5);
         }
-        wide = better ? wide : RMIN_R(0.5)*wide;
     }
 }
 
@@ -149,7 +159,6 @@ static void look_elsewhere(const rmin_region *region, const rmin_params *p, int 
     for (int start = 0; start < STARTS; ++start) {
         const rmin_real n[3] = {w->n[0], w->n[1], w->n[2]};
         const rmin_real force = w->force;
-        const bool bounded = w->bounded;
         int best = 0;
         for (int k = 1; k < count; ++k) {
             best = forces[k] > forces[best] ? k : best;
@@ -168,12 +177,58 @@ static void look_elsewhere(const rmin_region *region, const rmin_params *p, int 
         look_around(region, p, w);
         if (!(w->force > force)) {
             w->force = force;
-            w->bounded = bounded;
             for (int k = 0; k < 3; ++k) {
                 w->n[k] = n[k];
             }
         }
     }
+}
+#endif
+
+/*
+ * A force that no impact in any direction exceeds, by motors of one kind; 0 where none is known.
+ *
+ * What rmin_bound takes of a direction is its K = k + c^2 mobility and its energy, and the bound grows with both.
+ * Over directions n of unit length the robot's mobility is a quadratic form, n'An, and so is r'(M + B)r for joint
+ * velocities r that are linear in n: none exceeds the sum of its values along directions at right angles, which is
+ * the form's trace. Links and rotors as one weigh no more than r'(M + B)r at a contact point, so with a body of
+ * mass m, and nothing but joints' springs, the energy is at most that of two masses, 1/(1/trace + 1/m). What pulls
+ * on none of the r of these directions pulls on no sum of them.
+ */
+static rmin_real bound_all(const rmin_region *region, const rmin_params *p, int motors, hardest *w)
+{
+    rmin_impact *const impact = &w->impact;
+    const rmin_real body = region->clamped == 0 ? RMIN_R(1.0)/region->effective_mass : RMIN_R(0.0);
+    rmin_real mobility = body;
+    rmin_real twice = RMIN_R(0.0);
+    for (int k = 0; k < RMIN_REACH; ++k) {
+        const int status = rmin_arrive(rmin_directions[k], w->point, &impact->arrival);
+        rmin_impact_forget(impact);
+        if (status != RMIN_OK || rmin_impact_prepare(region, p, motors, -w->speed, impact) != RMIN_OK
+            || !(rmin_bound(impact) > RMIN_R(0.0))) {
+            return RMIN_R(0.0);
+        }
+        mobility += impact->mobility - body;
+        twice += rmin_twice_energy_of_arrival(&impact->arrival, p);
+    }
+    twice = RMIN_STRUCTURED ? twice/(RMIN_R(1.0) + twice*body) : twice;
+    return w->speed*rmin_bound_by(impact, region->stiffness + region->damping*region->damping*mobility, twice);
+}
+
+/* Where some impacts cannot be followed to their end: takes the bound of all directions; false if none is known. */
+static bool raise_to_bound(const rmin_region *region, const rmin_params *p, hardest *w)
+{
+    int first;
+    int last;
+    rmin_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last; ++motors) {
+        const rmin_real bound = bound_all(region, p, motors, w);
+        if (!(bound > RMIN_R(0.0) && bound <= RMIN_REAL_MAX)) {
+            return false;
+        }
+        w->force = RMIN_FMAX(w->force, bound);
+    }
+    return true;
 }
 
 /* Looks everywhere. */
@@ -192,6 +247,7 @@ static int find_hardest(const rmin_region *region, const rmin_params *p, hardest
         forces[k] = w->tried;
     }
 #if RMIN_REACH > 1
+    find_axes(w);
     if (w->lost) {
         try_across(region, p, w);
     }
@@ -203,9 +259,16 @@ static int find_hardest(const rmin_region *region, const rmin_params *p, hardest
         return RMIN_SINGULAR;
     }
     const rmin_real seen = w->force;
-    look_around(region, p, w);
-    look_elsewhere(region, p, count, forces, w);
+#if RMIN_REACH > 1
+    if (!w->bounded) {
+        look_around(region, p, w);
+        look_elsewhere(region, p, count, forces, w);
+    }
+#endif
     if (w->unknown) { /* so may be the hardest */
+        return RMIN_UNRESOLVED;
+    }
+    if (w->bounded && !raise_to_bound(region, p, w)) {
         return RMIN_UNRESOLVED;
     }
     for (int k = 0; k < 3; ++k) {
@@ -215,7 +278,7 @@ static int find_hardest(const rmin_region *region, const rmin_params *p, hardest
         }
     }
     out->force = w->force;
-    out->error = w->force/seen - RMIN_R(1.0) + OF_FORCES;
+    out->error = w->bounded ? RMIN_R(0.0) : w->force/seen - RMIN_R(1.0) + OF_FORCES;
     return w->bounded ? RMIN_BOUNDED : RMIN_OK;
 }
 

@@ -29,16 +29,19 @@ static rr_real while_driven(rr_real time, rr_real hold, rr_real damping)
 
 rr_real rr_twice_energy(const rr_impact *impact)
 {
-    const rr_params *const p = impact->p;
-    const rr_arrival *const arrival = &impact->arrival;
 #if RR_STRUCTURED
-    const rr_real together = rr_together(arrival, p);
+    const rr_real together = rr_together(&impact->arrival, impact->p);
     if (together > RR_R(0.0)) {
         const rr_real body =
             impact->gives_way ? RR_R(1.0)/impact->region->effective_mass : RR_R(0.0);
         return RR_R(1.0)/(together + body);
     }
 #endif
+    return rr_twice_energy_of_arrival(&impact->arrival, impact->p);
+}
+
+rr_real rr_twice_energy_of_arrival(const rr_arrival *arrival, const rr_params *p)
+{
     rr_real sum = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) {
         for (int j = 0; j < RR_N; ++j) {
@@ -85,11 +88,11 @@ static bool is_held_by_nothing(const rr_impact *impact)
 
 rr_real rr_bound(const rr_impact *impact)
 {
-    if (!is_held_by_nothing(impact)) {
-        return RR_R(0.0);
-    }
-    const rr_real hold = impact->hold;
-    const rr_real twice = rr_twice_energy(impact);
+    return is_held_by_nothing(impact) ? rr_bound_by(impact, impact->hold, rr_twice_energy(impact)) : RR_R(0.0);
+}
+
+rr_real rr_bound_by(const rr_impact *impact, rr_real hold, rr_real twice)
+{
     const rr_real horizon = RR_HORIZON(impact->p);
     const rr_real always = while_driven(horizon, hold, impact->region->damping);
     if (RR_DAMPED) {

@@ -12,12 +12,12 @@
 /*
  * Halley's iterations, and the relative change after which the next, a fourth of its cube, is nothing. A guess is
  * off by a factor of 1.7 at most, which iterations take to 1.09, 1.0002 and 1: the root of the step before where
- * its depth is within NEAR, or else one made of square roots, 1.1 times the root where body and skin are as human
+ * its depth is within DEPTH_OFF, or else one made of square roots, 1.1 times the root where body and skin are as human
  * ones, 1.7 times for a cubic light of 1e11. Five square roots in a row take as long as the rest of a step.
  */
 #define ITERATIONS 3
 #define CLOSE RR_R(0.01)
-#define NEAR RR_R(2.8)
+#define DEPTH_OFF RR_R(2.8)
 /* Steps of one length after which the next is as the last was. */
 #define LIKE 3
 /* Parts of a step between which a law through points is looked at. */
@@ -53,7 +53,7 @@ static rr_real root_of(rr_real depth, rr_real cubic, rr_real guess)
 {
     const rr_real guessed = guess*guess*(RR_R(1.0) + cubic*guess);
     rr_real u = guess;
-    if (!(NEAR*guessed > depth && guessed < NEAR*depth)) {
+    if (!(DEPTH_OFF*guessed > depth && guessed < DEPTH_OFF*depth)) {
         const rr_real light = RR_SQRT(depth);
         const rr_real fourth = RR_SQRT(RR_SQRT(RR_R(1.0) + cubic*light));
         u = light/(fourth*RR_SQRT(RR_SQRT(fourth))); /* never below the root, as 5/16 < 1/3 < 1/2 */

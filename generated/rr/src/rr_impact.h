@@ -164,9 +164,13 @@ void rr_impact_let_go(rr_impact *impact);
  * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
  */
 rr_real rr_twice_energy(const rr_impact *impact);
+/* The first of these, r'(M + B)r. */
+rr_real rr_twice_energy_of_arrival(const rr_arrival *arrival, const rr_params *p);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 rr_real rr_bound(const rr_impact *impact);
+/* The same for a K and an energy of one's own, where there is a bound. */
+rr_real rr_bound_by(const rr_impact *impact, rr_real hold, rr_real twice);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void rr_kinds_of_motors(const rr_params *p, int *first, int *last);
@@ -243,7 +247,15 @@ bool rr_cholesky(int size, rr_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void rr_forward(int size, rr_matrix L, rr_real *x);
 void rr_backward(int size, rr_matrix L, rr_real *x);
-/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+/* Turns two vectors, a towards b, by an angle of such a cosine and sine, or of a tangent. */
+void rr_turn(int size, rr_real c, rr_real s, rr_real *a, rr_real *b);
+void rr_turn_by(int size, rr_real t, rr_real *a, rr_real *b);
+/*
+ * Tangent of the angle that leaves nothing of an entry `off` of a symmetric matrix (Jacobi): the later one of its
+ * entries on the diagonal, which is more by `apart`, turns towards the earlier one.
+ */
+rr_real rr_tangent(rr_real apart, rr_real off);
+/* Turns the rows of X, and A with them, until A = XKX' is diagonal (Jacobi); false if that does not end. */
 bool rr_diagonalise(int size, rr_matrix A, rr_matrix X);
 /*
  * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is

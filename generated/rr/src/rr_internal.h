@@ -35,6 +35,7 @@
 #define RR_FMIN(x, y) RR_F(fmin)(x, y)
 #define RR_FMAX(x, y) RR_F(fmax)(x, y)
 #define RR_COPYSIGN(x, y) RR_F(copysign)(x, y)
+#define RR_CBRT(x) RR_F(cbrt)(x)
 #define RR_POW(x, y) RR_F(pow)(x, y)
 
 /* Sines s and cosines c of finite angles x. */

@@ -8,8 +8,12 @@
  */
 #include "rr_impact.h"
 
-/* Halvings of a force that is only a first guess. */
+/*
+ * Halvings of a force that is only a first guess; and trials under Hertz's law, where the speed grows like the
+ * force to the power of 5/6 to 1, so that each leaves a sixth of how far the last was off, in powers.
+ */
 #define FORCE_HALVINGS 16
+#define FORCE_TRIALS 6
 
 /* What a sum of depth and force, each times a number, does from a point of a law to the next. */
 typedef struct {
@@ -69,7 +73,8 @@ rr_real rr_law_press(const rr_region *region, rr_real hold, rr_real soft, rr_rea
 rr_real rr_law_depth(const rr_region *region, rr_real force)
 {
     if (region->law == NULL) {
-        return RR_POW(force/region->hertz_stiffness, RR_R(2.0)/RR_R(3.0));
+        const rr_real root = RR_CBRT(force/region->hertz_stiffness);
+        return root*root;
     }
     rr_real depth;
     (void)rr_law_press(region, RR_R(0.0), RR_R(1.0), force, &depth);
@@ -105,9 +110,8 @@ rr_real rr_law_twice_work(const rr_region *region, rr_real force)
 rr_real rr_law_stiffness(const rr_region *region, rr_real force)
 {
     if (region->law == NULL) {
-        const rr_real third = RR_R(1.0)/RR_R(3.0);
         const rr_real hertz = region->hertz_stiffness;
-        return RR_R(1.5)*RR_POW(hertz*hertz*force, third);
+        return RR_R(1.5)*RR_CBRT(hertz*hertz*force);
     }
     rr_real most = RR_R(0.0);
     for (int i = 0; i < region->law_points && region->law[i].force <= force; ++i) {
@@ -157,9 +161,11 @@ rr_real rr_two_body_force(const rr_region *region, rr_real mobility, rr_real spe
 {
     const rr_real spring = speed*RR_SQRT(region->stiffness/mobility);
     if (region->law == NULL) {
-        const rr_real energy = RR_R(1.25)*speed*speed/mobility;
-        const rr_real skin = RR_POW(energy, RR_R(0.6))*RR_POW(region->hertz_stiffness, RR_R(0.4));
-        return RR_R(1.0)/(RR_R(1.0)/spring + RR_R(1.0)/skin);
+        rr_real force = spring;
+        for (int k = 0; k < FORCE_TRIALS; ++k) {
+            force *= speed/rr_two_body_speed(region, mobility, force);
+        }
+        return force;
     }
     rr_real low = RR_R(0.0);
     rr_real high = spring;

@@ -48,6 +48,29 @@ void rr_backward(int size, rr_matrix L, rr_real *x)
     }
 }
 
+void rr_turn(int size, rr_real c, rr_real s, rr_real *a, rr_real *b)
+{
+    for (int k = 0; k < size; ++k) {
+        const rr_real x = a[k];
+        const rr_real y = b[k];
+        a[k] = c*x + s*y;
+        b[k] = c*y - s*x;
+    }
+}
+
+void rr_turn_by(int size, rr_real t, rr_real *a, rr_real *b)
+{
+    const rr_real c = RR_R(1.0)/RR_SQRT(t*t + RR_R(1.0));
+    rr_turn(size, c, t*c, a, b);
+}
+
+rr_real rr_tangent(rr_real apart, rr_real off)
+{
+    const rr_real half = apart/(off + off);
+    const rr_real length = RR_FABS(half) + RR_SQRT(half*half + RR_R(1.0));
+    return (half < RR_R(0.0) ? RR_R(-1.0) : RR_R(1.0))/length;
+}
+
 #if !RR_STRUCTURED
 /*
  * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
@@ -58,41 +81,23 @@ void rr_backward(int size, rr_matrix L, rr_real *x)
 /* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
 #define SWEEPS 16
 
-/* Turns columns i and j of a matrix by an angle. */
-static void turn_columns(int size, rr_matrix X, int i, int j, rr_real c, rr_real s)
-{
-    for (int k = 0; k < size; ++k) {
-        const rr_real a = X[k][i];
-        const rr_real b = X[k][j];
-        X[k][i] = c*a - s*b;
-        X[k][j] = s*a + c*b;
-    }
-}
-
 /* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
 static void rotate(int size, rr_matrix A, rr_matrix X, int i, int j)
 {
     const rr_real off = A[i][j];
-    const rr_real half = (A[j][j] - A[i][i])/(off + off);
-    const rr_real length = RR_FABS(half) + RR_SQRT(half*half + RR_R(1.0));
-    const rr_real t = (half < RR_R(0.0) ? RR_R(-1.0) : RR_R(1.0))/length;
-    const rr_real c = RR_R(1.0)/RR_SQRT(t*t + RR_R(1.0));
-    const rr_real s = t*c;
-    A[i][i] -= t*off;
-    A[j][j] += t*off;
+    const rr_real first = A[i][i];
+    const rr_real second = A[j][j];
+    const rr_real t = rr_tangent(second - first, off);
+    rr_turn_by(size, t, A[j], A[i]);
+    for (int k = 0; k < size; ++k) {
+        A[k][i] = A[i][k];
+        A[k][j] = A[j][k];
+    }
+    A[i][i] = first - t*off;
+    A[j][j] = second + t*off;
     A[i][j] = RR_R(0.0);
     A[j][i] = RR_R(0.0);
-    for (int k = 0; k < size; ++k) {
-        if (k != i && k != j) {
-            const rr_real a = A[i][k];
-            const rr_real b = A[j][k];
-            A[i][k] = c*a - s*b;
-            A[j][k] = s*a + c*b;
-            A[k][i] = A[i][k];
-            A[k][j] = A[j][k];
-        }
-    }
-    turn_columns(size, X, i, j, c, s);
+    rr_turn_by(size, t, X[j], X[i]);
 }
 
 bool rr_diagonalise(int size, rr_matrix A, rr_matrix X)

@@ -8,26 +8,22 @@
  */
 #include "rr_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
+/* X = L^-1 of a mass matrix M = L L': its rows are motions of unit mass, with nothing behind its diagonal. */
 static bool unit_motions(int size, rr_matrix mass, rr_matrix X)
 {
     if (!rr_cholesky(size, mass)) {
         return false;
     }
     for (int j = 0; j < size; ++j) {
-        rr_real column[RR_SYSTEM];
         for (int i = 0; i < size; ++i) {
-            column[i] = i == j ? RR_R(1.0) : RR_R(0.0);
+            X[j][i] = i == j ? RR_R(1.0) : RR_R(0.0);
         }
-        rr_backward(j + 1, mass, column);
-        for (int i = 0; i < size; ++i) {
-            X[i][j] = column[i];
-        }
+        rr_backward(j + 1, mass, X[j]);
     }
     return true;
 }
 
-/* A = X'KX of such an X. */
+/* A = XKX' of such an X. */
 static void congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
 {
     for (int i = 0; i < size; ++i) {
@@ -35,13 +31,13 @@ static void congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
         for (int l = 0; l <= i; ++l) {
             pulled[l] = RR_R(0.0);
             for (int m = 0; m <= i; ++m) {
-                pulled[l] += K[l][m]*X[m][i];
+                pulled[l] += K[l][m]*X[i][m];
             }
         }
         for (int j = 0; j <= i; ++j) {
             rr_real sum = RR_R(0.0);
             for (int l = 0; l <= j; ++l) {
-                sum += pulled[l]*X[l][j];
+                sum += pulled[l]*X[j][l];
             }
             A[i][j] = sum;
             A[j][i] = sum;
@@ -51,7 +47,7 @@ static void congruent(int size, rr_matrix K, rr_matrix X, rr_matrix A)
 
 #if !RR_STRUCTURED
 /*
- * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * Modes: the eigenvectors of A = XKX' in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
  * squared sum of these roots' shares in it. False if eigenvectors are not found.
  */
@@ -68,7 +64,7 @@ static bool find_modes(int size, const int *places, rr_matrix L, rr_matrix A, rr
         for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
             rr_real share = RR_R(0.0);
             for (int m = l; m < size; ++m) {
-                share += L[m][l]*X[m][i];
+                share += L[m][l]*X[i][m];
             }
             held += roots[l]*RR_FABS(share);
         }
@@ -77,8 +73,8 @@ static bool find_modes(int size, const int *places, rr_matrix L, rr_matrix A, rr
         }
         rr_real sum = RR_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[i][places[j]] = X[j][i];
-            sum += row[j]*X[j][i];
+            modes->shape[i][places[j]] = X[i][j];
+            sum += row[j]*X[i][j];
         }
         modes->noise[i] = RR_EPSILON*held*held;
         modes->squared[i] = A[i][i];
@@ -214,17 +210,6 @@ static rr_real product_of(const rr_real a[RR_SYSTEM], const rr_real b[RR_SYSTEM]
     return sum;
 }
 
-/* Turns two rows by an angle of tangent t. */
-static void turn_both(rr_real t, rr_real a[RR_SYSTEM], rr_real b[RR_SYSTEM])
-{
-    const rr_real c = RR_R(1.0)/RR_SQRT(RR_R(1.0) + t*t);
-    for (int k = 0; k < RR_SYSTEM; ++k) {
-        const rr_real x = a[k];
-        a[k] = c*(x - t*b[k]);
-        b[k] = c*(b[k] + t*x);
-    }
-}
-
 /*
  * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
  * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
@@ -259,11 +244,9 @@ static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
                 const rr_real off = product_of(bent[i], bent[j]);
                 if (off*off > RR_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
-                    const rr_real half = RR_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
-                    const rr_real length = RR_FABS(half) + RR_SQRT(half*half + RR_R(1.0));
-                    const rr_real t = (half < RR_R(0.0) ? RR_R(-1.0) : RR_R(1.0))/length;
-                    turn_both(t, bent[i], bent[j]);
-                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    const rr_real t = rr_tangent(modes->squared[j] - modes->squared[i], off);
+                    rr_turn_by(RR_SYSTEM, t, bent[j], bent[i]);
+                    rr_turn_by(RR_SYSTEM, t, modes->shape[j], modes->shape[i]);
                     modes->squared[i] = product_of(bent[i], bent[i]);
                     modes->squared[j] = product_of(bent[j], bent[j]);
                 }
@@ -279,7 +262,7 @@ static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
 int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real *drift)
 {
-    rr_matrix mass; /* and then X'KX */
+    rr_matrix mass; /* and then XKX' */
     rr_matrix X;
     rr_real (*const K)[RR_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
@@ -302,8 +285,8 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
     for (int i = 0; i < RR_SYSTEM; ++i) {
         for (int j = 0; j < RR_SYSTEM; ++j) {
             rr_real shape = RR_R(0.0);
-            for (int k = j; k < RR_SYSTEM; ++k) { /* X has nothing below its diagonal */
-                shape += X[j][k]*K[i][k];
+            for (int k = j; k < RR_SYSTEM; ++k) { /* X has nothing behind its diagonal */
+                shape += X[k][j]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
         }

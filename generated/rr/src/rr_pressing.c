@@ -2,9 +2,8 @@
 /* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
 #include "rr_state.h"
 
-/* Until when it is looked, s; at contacts that began late beyond that, as these may come a little earlier. */
-#define PRESSED_UNTIL RR_R(0.6)
-#define PRESSED_AGAIN_UNTIL RR_R(0.62)
+/* Until when it is looked where slower speeds matter, s: contacts that began late may come a little earlier there. */
+#define AGAIN_UNTIL RR_R(0.62)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
 /*
@@ -17,6 +16,8 @@
  * nearly with the speed, so what parts for good at one does at slower ones.
  */
 #define CALM RR_R(0.5)
+/* What steps err by, as a share of the peak, which they are fitted to: far smaller late forces were 1.8e-3 off. */
+#define OF_PEAK RR_R(2e-3)
 /* Else shares of the speed that are tried: arms may bounce past 0.5 s at slower speeds and not at that one. */
 #define SHARES 10
 
@@ -28,6 +29,7 @@ typedef struct {
     rr_watch watch;
     bool bounded; /* some force is a bound */
     bool calm; /* what was asked last cannot press harder at slower speeds */
+    rr_real peak; /* force of what was asked last, N */
 } rr_pressing;
 
 /*
@@ -46,6 +48,7 @@ static rr_real pressed_by(rr_pressing *k, rr_real speed, rr_real matters)
     k->watch.last = RR_R(0.0);
     k->budget.watch = &k->watch;
     rr_impact_run(&k->impact, speed, &k->budget, &peak);
+    k->peak = peak.force;
     if (peak.ended) {
         return k->watch.late;
     }
@@ -64,8 +67,9 @@ static bool keeps(rr_pressing *k, const rr_region *region, rr_real speed, rr_rea
     k->watch.slower = true;
     k->calm = region->law == NULL;
     for (int motors = first; motors <= last && kept; ++motors) {
-        kept = rr_impact_prepare(region, &k->p, motors, limit, &k->impact) == RR_OK
-            && pressed_by(k, speed, CALM*limit) <= RR_KEPT*limit;
+        kept = rr_impact_prepare(region, &k->p, motors, limit, &k->impact) == RR_OK;
+        const rr_real late = kept ? pressed_by(k, speed, CALM*limit) : RR_REAL_MAX;
+        kept = late <= RR_KEPT*limit - OF_PEAK*k->peak;
         k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
@@ -82,6 +86,7 @@ static void prepare_pressing(const rr_params *p, rr_real until, rr_pressing *k)
     k->watch.slower = false;
     k->bounded = false;
     k->calm = false;
+    k->peak = RR_R(0.0);
 }
 
 /* A speed at which a proven bound keeps a limit; 0 if there is none. */
@@ -148,7 +153,7 @@ int rr_pressing_force_at(const rr_real q[RR_JOINTS], int point, const rr_real n[
     if (status != RR_OK) {
         return status;
     }
-    prepare_pressing(p, PRESSED_UNTIL, &k);
+    prepare_pressing(p, RR_COUNTS_UNTIL, &k);
     rr_real found = RR_R(0.0);
     int first;
     int last;
@@ -187,7 +192,7 @@ static int find_allowed(const rr_region *region, const rr_params *p, rr_real cap
         found->speed = safe.speed;
         found->force = safe.force;
         if (region->clamped != 0) {
-            prepare_pressing(p, PRESSED_AGAIN_UNTIL, k);
+            prepare_pressing(p, AGAIN_UNTIL, k);
             const rr_real share = region->law == NULL ? RR_R(1.0) : KEPT_OF_TABLES;
             found->speed = slow_down(k, region, safe.speed, share*region->quasi_static_limit);
         }
@@ -290,7 +295,7 @@ int rr_may_press(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],
     for (int point = 0; point < RR_POINTS && region->clamped != 0 && kept; ++point) {
         const rr_real speed = rr_arrive_as_it_moves(point, rates, &k.impact.arrival);
         rr_impact_forget(&k.impact);
-        prepare_pressing(p, PRESSED_AGAIN_UNTIL, &k);
+        prepare_pressing(p, AGAIN_UNTIL, &k);
         kept = !(speed > RR_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;

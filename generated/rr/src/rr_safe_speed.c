@@ -4,11 +4,12 @@
 
 /* Share of the limit at which trials aim, below RR_KEPT, and from which on one is near enough. */
 #define AIM RR_R(0.984)
-#define NEAR RR_R(0.977)
+#define NEAR_ENOUGH RR_R(0.977)
 /*
  * Smoothness below which a body damps harder than it springs back, or above which it hardly damps, so that errors grow
  * from contact to contact, and the share of the limit that counts there: forces on such bodies were up to 1.5e-2 and
- * 2e-2 too low in inputs that a search climbed to. Parts of the human body are between.
+ * 2e-2 too low in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors
+ * hold the contact point, and the body is held, too.
  */
 #define HARD RR_R(0.2)
 #define HARDLY RR_R(0.99)
@@ -17,8 +18,8 @@
 #define TRIALS 16
 #define APART RR_R(4e-3)
 /*
- * Where a cover ends as if it were solid, before a body that hardly damps, the force of a law by table jumps with
- * speed: from which one on is known to half a percent, as the end lies between two steps.
+ * Where a cover ends as if it were solid the force of a law by table jumps with speed: before a body that hardly
+ * damps, or where joints or servos do, from which one on is known to half a percent.
  */
 #define SHORT_OF_JUMP RR_R(0.99)
 /*
@@ -69,7 +70,7 @@ static bool try_speed(rr_impact *impact, rr_real v, bool rough, search *s,
 
 static bool is_found(const search *s, rr_real cap)
 {
-    const bool near = s->low_force >= NEAR*s->limit;
+    const bool near = s->low_force >= NEAR_ENOUGH*s->limit;
     const bool jumps = s->high > RR_R(0.0) && s->high - s->low <= APART*s->low;
     return s->low > RR_R(0.0) && (near || jumps || (cap > RR_R(0.0) && s->low >= cap));
 }
@@ -105,24 +106,39 @@ static bool find(rr_impact *impact, rr_real guess, rr_real cap, search *s,
     return false;
 }
 
-/* Lowers a speed that was found below the slowest share of it that is not safe; false if no speed is left. */
+/*
+ * Lowers a speed that was found below the slowest share of it that is not safe; where the slowest of all is none, the
+ * same is done with that one, until one is or the steps do not do. False if the speed may be far too low.
+ */
 static bool look_slower(rr_impact *impact, search *s, rr_budget *budget)
 {
     static const rr_real slower[SHARES] = {RR_R(0.25), RR_R(0.45), RR_R(0.6), RR_R(0.72),
         RR_R(0.84), RR_R(0.94)};
     const rr_real found = s->low;
     const rr_real force = s->low_force;
+    rr_real from = found;
     s->low = RR_R(0.0);
-    for (int k = 0; k < SHARES; ++k) {
+    int k = 0; /* of them that are safe */
+    while (k < SHARES) {
         rr_real unused;
         s->high = RR_R(0.0);
-        if (!try_speed(impact, slower[k]*found, false, s, budget, &unused) || s->high > RR_R(0.0)) {
-            return s->low > RR_R(0.0);
+        if (!try_speed(impact, slower[k]*from, false, s, budget, &unused) || (s->high > RR_R(0.0) && k > 0)) {
+            break;
+        }
+        if (s->high > RR_R(0.0)) {
+            from = s->high;
+        } else {
+            ++k;
         }
     }
-    s->low = found;
-    s->low_force = force;
-    return true;
+    if (from < found) {
+        return false;
+    }
+    if (k == SHARES) {
+        s->low = found;
+        s->low_force = force;
+    }
+    return k > 0;
 }
 
 /* Whether loose motors bring too little energy for a force: rr_settled.c, w = 0 at first touch. */
@@ -150,13 +166,15 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
         if (status != RR_OK) {
             return status;
         }
-        const bool hardly_damps = impact->smooth > HARDLY;
+        const bool is_held = !RR_STRUCTURED && !(impact->mobility > RR_LEAST_MOBILITY);
+        const bool hardly_damps = impact->smooth > HARDLY && !is_held;
         const rr_real counts = impact->smooth < HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
         const rr_real guess = rr_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, RR_R(0.0), RR_R(0.0), RR_R(0.0)};
         bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
         if (region->law != NULL || hardly_damps) {
-            const rr_real share = region->law != NULL && hardly_damps ? SHORT_OF_JUMP : RR_R(1.0);
+            const bool exact = !hardly_damps && !impact->phase[impact->first].damped;
+            const rr_real share = region->law == NULL || exact ? RR_R(1.0) : SHORT_OF_JUMP;
             s.low = is_known ? share*s.low : RR_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, &s, &budget);
         }

@@ -96,17 +96,6 @@ static void reflect(int size, rr_matrix A, rr_real *d, rr_real *e, rr_matrix Q)
     }
 }
 
-/* Turns two rows of Q by an angle. */
-static void turn_rows(int size, rr_real c, rr_real s, rr_real *upper, rr_real *lower)
-{
-    for (int j = 0; j < size; ++j) {
-        const rr_real x = upper[j];
-        const rr_real y = lower[j];
-        upper[j] = c*x + s*y;
-        lower[j] = c*y - s*x;
-    }
-}
-
 /* One QR step on rows first to last; turns the rows of Q, too. */
 static void chase(int first, int last, int size, rr_real *d, rr_real *e, rr_matrix Q)
 {
@@ -133,7 +122,7 @@ static void chase(int first, int last, int size, rr_real *d, rr_real *e, rr_matr
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        turn_rows(size, c, s, Q[k], Q[k + 1]);
+        rr_turn(size, c, s, Q[k], Q[k + 1]);
     }
 }
 

@@ -39,6 +39,9 @@ typedef struct {
     rr_real swings; /* most that modes that stand add to the force as they swing, N */
 } rr_state;
 
+/* Until when forces of a contact count that began before 0.5 s; later ones count until they end, s. */
+#define RR_COUNTS_UNTIL RR_R(0.6)
+
 /* What is looked for in the steps of an impact that goes on after its peak. */
 struct rr_watch {
     rr_real matters; /* force that may still come, N */

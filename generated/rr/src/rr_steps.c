@@ -13,7 +13,7 @@
 #define SERVO_STEP RR_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
- * displacement, in a contact as fast as `contact`.
+ * displacement, in a contact as fast as `contact`, or as the time there is.
  */
 #define STANDS RR_R(1e-5)
 /*
@@ -167,7 +167,8 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
-    let_stand(impact, contact, released, phase);
+    const rr_real end = RR_R(1.0)/RR_HORIZON(impact->p);
+    let_stand(impact, RR_FMAX(contact, end*end), released, phase);
     rr_real moving = RR_R(0.0);
     rr_real rate2 = RR_R(0.0);
     for (int i = 0; i < phase->active; ++i) {

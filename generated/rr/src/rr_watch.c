@@ -9,8 +9,6 @@
  * 1.8 times at a twentieth of the speed (Hertz's contact lasts as v^-1/5), and oscillate with other phases.
  */
 #define AGAIN RR_R(0.25)
-/* Until when forces of a contact count that began before it was late. */
-#define COUNTS_UNTIL RR_R(0.6)
 /* Steps after which it is looked whether the rest matters. */
 #define LOOKS_LATE 2
 
@@ -18,7 +16,7 @@ bool rr_pass(const rr_state *s, rr_watch *watch)
 {
     watch->apart = s->touching ? watch->apart : s->time;
     const rr_real from = watch->slower && watch->apart > RR_R(0.0) ? AGAIN : LATE;
-    const rr_real until = watch->apart > LATE ? s->time : RR_FMIN(COUNTS_UNTIL, s->time);
+    const rr_real until = watch->apart > LATE ? s->time : RR_FMIN(RR_COUNTS_UNTIL, s->time);
     if (s->time >= from && until > s->time - s->h) {
         const rr_real share = RR_FMIN((s->time - from)/s->h, RR_R(1.0));
         const rr_real then = share*watch->last + (RR_R(1.0) - share)*s->f;

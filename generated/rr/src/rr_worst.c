@@ -7,14 +7,17 @@
 #define OVER_A_CIRCLE 32
 #define TURN RR_R(2.399963229728653) /* of one from the one before: pi (3 - sqrt(5)) */
 #define HALF_A_TURN RR_R(3.141592653589793)
-/* How far around the best is looked, as a share of a unit vector, first and last. */
+/*
+ * How far around the best is looked, as a share of a unit vector, first and last; and last where motors hardly move
+ * the point one way, so that directions in which they can lie within a slice.
+ */
 #define WIDE RR_R(0.2)
-#define NARROW RR_R(0.01)
-#define AROUND 6
-#define MOST_ROUNDS 16
+#define NARROW RR_R(2e-3)
+#define SLICE RR_R(1e-5)
+#define MOST_ROUNDS 20
 /* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
 #define STARTS 3
-#define ALIKE RR_R(0.94)
+#define ALIKE (RR_REACH > 2 ? RR_R(0.94) : RR_R(0.98))
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (RR_R(1.0) - RR_KEPT)
 
@@ -25,7 +28,9 @@ typedef struct {
     rr_real n[3]; /* the worst so far */
     rr_real force;
     rr_real tried; /* force of the last direction that was tried */
-    bool bounded, unknown;
+    rr_matrix axes; /* of the ellipsoid of what motors move, a row each */
+    int least; /* of these, the shortest */
+    bool bounded, unknown; /* some direction */
     bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
@@ -45,13 +50,13 @@ static bool try_direction(const rr_region *region, const rr_params *p, const rr_
     if (status == RR_OK) {
         status = rr_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->bounded = w->bounded || status == RR_BOUNDED;
     w->lost = w->lost || status == RR_SINGULAR;
     w->unknown = w->unknown || (status != RR_OK && status != RR_BOUNDED && status != RR_SINGULAR);
     w->tried = found.force;
     const bool worse = (status == RR_OK || status == RR_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
-        w->bounded = status == RR_BOUNDED;
         for (int k = 0; k < 3; ++k) {
             w->n[k] = along[k];
         }
@@ -71,16 +76,12 @@ static void direction_of(int k, rr_real along[3])
 }
 
 #if RR_REACH > 1
-/*
- * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
- * one dimension less, and hardly any of the directions over a ball is within the others.
- */
-static void try_across(const rr_region *region, const rr_params *p, hardest *w)
+/* Finds the axes along which motors move the point most to least, whatever joints do at a given rate. */
+static void find_axes(hardest *w)
 {
     const rr_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     rr_matrix square;
-    rr_matrix vectors;
     rr_real values[RR_SYSTEM];
     for (int k = 0; k < RR_REACH; ++k) {
         for (int l = 0; l < RR_REACH; ++l) {
@@ -94,16 +95,24 @@ static void try_across(const rr_region *region, const rr_params *p, hardest *w)
             }
         }
     }
-    if (!rr_spectrum(RR_REACH, RR_EPSILON*RR_EPSILON, square, values, vectors)) {
+    if (!rr_spectrum(RR_REACH, RR_EPSILON*RR_EPSILON, square, values, w->axes)) {
         w->unknown = true;
         return;
     }
-    int least = 0;
+    w->least = 0;
     for (int k = 1; k < RR_REACH; ++k) {
-        least = values[k] < values[least] ? k : least;
+        w->least = values[k] < values[w->least] ? k : w->least;
     }
-    const rr_real *const a = vectors[(least + 1) % RR_REACH];
-    const rr_real *const b = vectors[(least + 2) % RR_REACH];
+}
+
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const rr_region *region, const rr_params *p, hardest *w)
+{
+    const rr_real *const a = w->axes[(w->least + 1) % RR_REACH];
+    const rr_real *const b = w->axes[(w->least + 2) % RR_REACH];
     for (int k = 0; k < (RR_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
         const rr_real turn = HALF_A_TURN*(rr_real)k/(rr_real)OVER_A_CIRCLE;
         rr_real along[3] = {RR_R(0.0), RR_R(0.0), RR_R(0.0)};
@@ -113,33 +122,34 @@ static void try_across(const rr_region *region, const rr_params *p, hardest *w)
         (void)try_direction(region, p, along, w);
     }
 }
-#endif
 
-/* Looks around the worst, wider where that helps. */
+/*
+ * Looks around the worst, along each of the axes as far as that helps: where motors move the point much more one
+ * way than others, hard directions lie on a narrow ridge.
+ */
 static void look_around(const rr_region *region, const rr_params *p, hardest *w)
 {
-    rr_real wide = WIDE;
-    for (int round = 0; round < MOST_ROUNDS && wide > NARROW && RR_REACH > 1; ++round) {
-        const rr_real *const n = w->n;
-        const rr_real side = RR_FABS(n[2]) < RR_R(0.9) ? RR_SQRT(n[0]*n[0] + n[1]*n[1])
-            : RR_SQRT(n[1]*n[1] + n[2]*n[2]);
-        const rr_real a[3] = {RR_FABS(n[2]) < RR_R(0.9) ? n[1]/side : RR_R(0.0),
-            RR_FABS(n[2]) < RR_R(0.9) ? -n[0]/side : n[2]/side,
-            RR_FABS(n[2]) < RR_R(0.9) ? RR_R(0.0) : -n[1]/side};
-        const rr_real b[3] = {n[1]*a[2] - n[2]*a[1], n[2]*a[0] - n[0]*a[2], n[0]*a[1] - n[1]*a[0]};
-        const rr_real centre[3] = {n[0], n[1], n[2]};
-        bool better = false;
-        for (int k = 0; k < AROUND; ++k) {
-            const rr_real turn = RR_R(2.0)*HALF_A_TURN*(rr_real)k/(rr_real)AROUND;
-            const rr_real s = wide*RR_SIN(turn);
-            const rr_real c = wide*RR_COS(turn);
-            const rr_real aside[3] = {centre[0] + c*a[0] + s*b[0], centre[1] + c*a[1] + s*b[1],
-                RR_REACH > 2 ? centre[2] + c*a[2] + s*b[2] : RR_R(0.0)};
-            const rr_real size = RR_SQRT(aside[0]*aside[0] + aside[1]*aside[1] + aside[2]*aside[2]);
-            const rr_real along[3] = {aside[0]/size, aside[1]/size, aside[2]/size};
-            better = try_direction(region, p, along, w) || better;
+    const rr_real narrow = w->lost ? SLICE : NARROW;
+    rr_real wide[3] = {WIDE, WIDE, WIDE};
+    for (int round = 0; round < MOST_ROUNDS; ++round) {
+        for (int k = 0; k < RR_REACH; ++k) {
+            bool better = false;
+            for (int side = 0; side < 2 && !better && wide[k] > narrow; ++side) {
+                const rr_real by = side == 0 ? wide[k] : -wide[k];
+                rr_real along[3] = {RR_R(0.0), RR_R(0.0), RR_R(0.0)};
+                rr_real size = RR_R(0.0);
+                for (int l = 0; l < RR_REACH; ++l) {
+                    along[l] = w->n[l] + by*w->axes[k][l];
+                    size += along[l]*along[l];
+                }
+                size = RR_SQRT(size);
+                for (int l = 0; l < RR_REACH && size > RR_R(0.0); ++l) {
+                    along[l] /= size;
+                }
+                better = try_direction(region, p, along, w);
+            }
+            wide[k] *= better ? RR_R(1.5) : RR_R(0.5);
         }
-        wide = better ? wide : RR_R(0.5)*wide;
     }
 }
 
@@ -149,7 +159,6 @@ static void look_elsewhere(const rr_region *region, const rr_params *p, int coun
     for (int start = 0; start < STARTS; ++start) {
         const rr_real n[3] = {w->n[0], w->n[1], w->n[2]};
         const rr_real force = w->force;
-        const bool bounded = w->bounded;
         int best = 0;
         for (int k = 1; k < count; ++k) {
             best = forces[k] > forces[best] ? k : best;
@@ -168,12 +177,58 @@ static void look_elsewhere(const rr_region *region, const rr_params *p, int coun
         look_around(region, p, w);
         if (!(w->force > force)) {
             w->force = force;
-            w->bounded = bounded;
             for (int k = 0; k < 3; ++k) {
                 w->n[k] = n[k];
             }
         }
     }
+}
+#endif
+
+/*
+ * A force that no impact in any direction exceeds, by motors of one kind; 0 where none is known.
+ *
+ * What rr_bound takes of a direction is its K = k + c^2 mobility and its energy, and the bound grows with both.
+ * Over directions n of unit length the robot's mobility is a quadratic form, n'An, and so is r'(M + B)r for joint
+ * velocities r that are linear in n: none exceeds the sum of its values along directions at right angles, which is
+ * the form's trace. Links and rotors as one weigh no more than r'(M + B)r at a contact point, so with a body of
+ * mass m, and nothing but joints' springs, the energy is at most that of two masses, 1/(1/trace + 1/m). What pulls
+ * on none of the r of these directions pulls on no sum of them.
+ */
+static rr_real bound_all(const rr_region *region, const rr_params *p, int motors, hardest *w)
+{
+    rr_impact *const impact = &w->impact;
+    const rr_real body = region->clamped == 0 ? RR_R(1.0)/region->effective_mass : RR_R(0.0);
+    rr_real mobility = body;
+    rr_real twice = RR_R(0.0);
+    for (int k = 0; k < RR_REACH; ++k) {
+        const int status = rr_arrive(rr_directions[k], w->point, &impact->arrival);
+        rr_impact_forget(impact);
+        if (status != RR_OK || rr_impact_prepare(region, p, motors, -w->speed, impact) != RR_OK
+            || !(rr_bound(impact) > RR_R(0.0))) {
+            return RR_R(0.0);
+        }
+        mobility += impact->mobility - body;
+        twice += rr_twice_energy_of_arrival(&impact->arrival, p);
+    }
+    twice = RR_STRUCTURED ? twice/(RR_R(1.0) + twice*body) : twice;
+    return w->speed*rr_bound_by(impact, region->stiffness + region->damping*region->damping*mobility, twice);
+}
+
+/* Where some impacts cannot be followed to their end: takes the bound of all directions; false if none is known. */
+static bool raise_to_bound(const rr_region *region, const rr_params *p, hardest *w)
+{
+    int first;
+    int last;
+    rr_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last; ++motors) {
+        const rr_real bound = bound_all(region, p, motors, w);
+        if (!(bound > RR_R(0.0) && bound <= RR_REAL_MAX)) {
+            return false;
+        }
+        w->force = RR_FMAX(w->force, bound);
+    }
+    return true;
 }
 
 /* Looks everywhere. */
@@ -192,6 +247,7 @@ static int find_hardest(const rr_region *region, const rr_params *p, hardest *w,
         forces[k] = w->tried;
     }
 #if RR_REACH > 1
+    find_axes(w);
     if (w->lost) {
         try_across(region, p, w);
     }
@@ -203,9 +259,16 @@ static int find_hardest(const rr_region *region, const rr_params *p, hardest *w,
         return RR_SINGULAR;
     }
     const rr_real seen = w->force;
-    look_around(region, p, w);
-    look_elsewhere(region, p, count, forces, w);
+#if RR_REACH > 1
+    if (!w->bounded) {
+        look_around(region, p, w);
+        look_elsewhere(region, p, count, forces, w);
+    }
+#endif
     if (w->unknown) { /* so may be the hardest */
+        return RR_UNRESOLVED;
+    }
+    if (w->bounded && !raise_to_bound(region, p, w)) {
         return RR_UNRESOLVED;
     }
     for (int k = 0; k < 3; ++k) {
@@ -215,7 +278,7 @@ static int find_hardest(const rr_region *region, const rr_params *p, hardest *w,
         }
     }
     out->force = w->force;
-    out->error = w->force/seen - RR_R(1.0) + OF_FORCES;
+    out->error = w->bounded ? RR_R(0.0) : w->force/seen - RR_R(1.0) + OF_FORCES;
     return w->bounded ? RR_BOUNDED : RR_OK;
 }
 

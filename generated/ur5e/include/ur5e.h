@@ -478,8 +478,10 @@ typedef struct {
 
 /*
  * The direction in which a contact point (ur5e_point) hits hardest at a speed, among those in which the
- * robot can go at this pose: some 150 impacts, each with a budget of p->steps; not for a control loop. The
- * error is estimated by what looking closer brought, and held in tests against thousands of directions.
+ * robot can go at this pose: some 300 impacts, each with a budget of p->steps; not for a control loop. The
+ * error is estimated by what looking closer brought, and held in tests against thousands of directions. Where the
+ * impacts of some direction cannot be followed to their end (UR5E_BOUNDED), the force is one that no direction
+ * exceeds, and n the hardest direction that was seen.
  */
 int ur5e_worst_direction_at(const ur5e_real q[UR5E_JOINTS], int point, ur5e_real speed,
     const ur5e_region *region, const ur5e_params *p, ur5e_worst_direction_t *out);

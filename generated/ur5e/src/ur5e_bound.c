@@ -29,16 +29,19 @@ static ur5e_real while_driven(ur5e_real time, ur5e_real hold, ur5e_real damping)
 
 ur5e_real ur5e_twice_energy(const ur5e_impact *impact)
 {
-    const ur5e_params *const p = impact->p;
-    const ur5e_arrival *const arrival = &impact->arrival;
 #if UR5E_STRUCTURED
-    const ur5e_real together = ur5e_together(arrival, p);
+    const ur5e_real together = ur5e_together(&impact->arrival, impact->p);
     if (together > UR5E_R(0.0)) {
         const ur5e_real body =
             impact->gives_way ? UR5E_R(1.0)/impact->region->effective_mass : UR5E_R(0.0);
         return UR5E_R(1.0)/(together + body);
     }
 #endif
+    return ur5e_twice_energy_of_arrival(&impact->arrival, impact->p);
+}
+
+ur5e_real ur5e_twice_energy_of_arrival(const ur5e_arrival *arrival, const ur5e_params *p)
+{
     ur5e_real sum = UR5E_R(0.0);
     for (int i = 0; i < UR5E_N; ++i) {
         for (int j = 0; j < UR5E_N; ++j) {
@@ -85,11 +88,11 @@ static bool is_held_by_nothing(const ur5e_impact *impact)
 
 ur5e_real ur5e_bound(const ur5e_impact *impact)
 {
-    if (!is_held_by_nothing(impact)) {
-        return UR5E_R(0.0);
-    }
-    const ur5e_real hold = impact->hold;
-    const ur5e_real twice = ur5e_twice_energy(impact);
+    return is_held_by_nothing(impact) ? ur5e_bound_by(impact, impact->hold, ur5e_twice_energy(impact)) : UR5E_R(0.0);
+}
+
+ur5e_real ur5e_bound_by(const ur5e_impact *impact, ur5e_real hold, ur5e_real twice)
+{
     const ur5e_real horizon = UR5E_HORIZON(impact->p);
     const ur5e_real always = while_driven(horizon, hold, impact->region->damping);
     if (UR5E_DAMPED) {

@@ -164,9 +164,13 @@ void ur5e_impact_let_go(ur5e_impact *impact);
  * velocities r; where nothing but joints' springs pulls that of links, rotors and body as two masses.
  */
 ur5e_real ur5e_twice_energy(const ur5e_impact *impact);
+/* The first of these, r'(M + B)r. */
+ur5e_real ur5e_twice_energy_of_arrival(const ur5e_arrival *arrival, const ur5e_params *p);
 
 /* No force is larger than this times the speed, N s/m; 0 where none is known. */
 ur5e_real ur5e_bound(const ur5e_impact *impact);
+/* The same for a K and an energy of one's own, where there is a bound. */
+ur5e_real ur5e_bound_by(const ur5e_impact *impact, ur5e_real hold, ur5e_real twice);
 
 /* Least and largest kind of motors that parameters stand for: two for the bracket. */
 void ur5e_kinds_of_motors(const ur5e_params *p, int *first, int *last);
@@ -243,7 +247,15 @@ bool ur5e_cholesky(int size, ur5e_matrix A);
 /* x = L^-1 x and x = L^-T x. */
 void ur5e_forward(int size, ur5e_matrix L, ur5e_real *x);
 void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x);
-/* Rotates the columns of X, and A with them, until A = X'KX is diagonal (Jacobi); false if that does not end. */
+/* Turns two vectors, a towards b, by an angle of such a cosine and sine, or of a tangent. */
+void ur5e_turn(int size, ur5e_real c, ur5e_real s, ur5e_real *a, ur5e_real *b);
+void ur5e_turn_by(int size, ur5e_real t, ur5e_real *a, ur5e_real *b);
+/*
+ * Tangent of the angle that leaves nothing of an entry `off` of a symmetric matrix (Jacobi): the later one of its
+ * entries on the diagonal, which is more by `apart`, turns towards the earlier one.
+ */
+ur5e_real ur5e_tangent(ur5e_real apart, ur5e_real off);
+/* Turns the rows of X, and A with them, until A = XKX' is diagonal (Jacobi); false if that does not end. */
 bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X);
 /*
  * Eigenvalues of a symmetric A, which is lost, and eigenvectors as rows; false if that does not end. `small` is

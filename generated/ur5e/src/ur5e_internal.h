@@ -35,6 +35,7 @@
 #define UR5E_FMIN(x, y) UR5E_F(fmin)(x, y)
 #define UR5E_FMAX(x, y) UR5E_F(fmax)(x, y)
 #define UR5E_COPYSIGN(x, y) UR5E_F(copysign)(x, y)
+#define UR5E_CBRT(x) UR5E_F(cbrt)(x)
 #define UR5E_POW(x, y) UR5E_F(pow)(x, y)
 
 /* Sines s and cosines c of finite angles x. */

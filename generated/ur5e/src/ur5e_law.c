@@ -8,8 +8,12 @@
  */
 #include "ur5e_impact.h"
 
-/* Halvings of a force that is only a first guess. */
+/*
+ * Halvings of a force that is only a first guess; and trials under Hertz's law, where the speed grows like the
+ * force to the power of 5/6 to 1, so that each leaves a sixth of how far the last was off, in powers.
+ */
 #define FORCE_HALVINGS 16
+#define FORCE_TRIALS 6
 
 /* What a sum of depth and force, each times a number, does from a point of a law to the next. */
 typedef struct {
@@ -69,7 +73,8 @@ ur5e_real ur5e_law_press(const ur5e_region *region, ur5e_real hold, ur5e_real so
 ur5e_real ur5e_law_depth(const ur5e_region *region, ur5e_real force)
 {
     if (region->law == NULL) {
-        return UR5E_POW(force/region->hertz_stiffness, UR5E_R(2.0)/UR5E_R(3.0));
+        const ur5e_real root = UR5E_CBRT(force/region->hertz_stiffness);
+        return root*root;
     }
     ur5e_real depth;
     (void)ur5e_law_press(region, UR5E_R(0.0), UR5E_R(1.0), force, &depth);
@@ -105,9 +110,8 @@ ur5e_real ur5e_law_twice_work(const ur5e_region *region, ur5e_real force)
 ur5e_real ur5e_law_stiffness(const ur5e_region *region, ur5e_real force)
 {
     if (region->law == NULL) {
-        const ur5e_real third = UR5E_R(1.0)/UR5E_R(3.0);
         const ur5e_real hertz = region->hertz_stiffness;
-        return UR5E_R(1.5)*UR5E_POW(hertz*hertz*force, third);
+        return UR5E_R(1.5)*UR5E_CBRT(hertz*hertz*force);
     }
     ur5e_real most = UR5E_R(0.0);
     for (int i = 0; i < region->law_points && region->law[i].force <= force; ++i) {
@@ -157,9 +161,11 @@ ur5e_real ur5e_two_body_force(const ur5e_region *region, ur5e_real mobility, ur5
 {
     const ur5e_real spring = speed*UR5E_SQRT(region->stiffness/mobility);
     if (region->law == NULL) {
-        const ur5e_real energy = UR5E_R(1.25)*speed*speed/mobility;
-        const ur5e_real skin = UR5E_POW(energy, UR5E_R(0.6))*UR5E_POW(region->hertz_stiffness, UR5E_R(0.4));
-        return UR5E_R(1.0)/(UR5E_R(1.0)/spring + UR5E_R(1.0)/skin);
+        ur5e_real force = spring;
+        for (int k = 0; k < FORCE_TRIALS; ++k) {
+            force *= speed/ur5e_two_body_speed(region, mobility, force);
+        }
+        return force;
     }
     ur5e_real low = UR5E_R(0.0);
     ur5e_real high = spring;

@@ -48,6 +48,29 @@ void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x)
     }
 }
 
+void ur5e_turn(int size, ur5e_real c, ur5e_real s, ur5e_real *a, ur5e_real *b)
+{
+    for (int k = 0; k < size; ++k) {
+        const ur5e_real x = a[k];
+        const ur5e_real y = b[k];
+        a[k] = c*x + s*y;
+        b[k] = c*y - s*x;
+    }
+}
+
+void ur5e_turn_by(int size, ur5e_real t, ur5e_real *a, ur5e_real *b)
+{
+    const ur5e_real c = UR5E_R(1.0)/UR5E_SQRT(t*t + UR5E_R(1.0));
+    ur5e_turn(size, c, t*c, a, b);
+}
+
+ur5e_real ur5e_tangent(ur5e_real apart, ur5e_real off)
+{
+    const ur5e_real half = apart/(off + off);
+    const ur5e_real length = UR5E_FABS(half) + UR5E_SQRT(half*half + UR5E_R(1.0));
+    return (half < UR5E_R(0.0) ? UR5E_R(-1.0) : UR5E_R(1.0))/length;
+}
+
 #if !UR5E_STRUCTURED
 /*
  * Square of an entry, over the product of its diagonal entries, from which on it is rotated away: against
@@ -58,41 +81,23 @@ void ur5e_backward(int size, ur5e_matrix L, ur5e_real *x)
 /* Jacobi's method converges in 5 to 8 sweeps; from there on it is not going to. */
 #define SWEEPS 16
 
-/* Turns columns i and j of a matrix by an angle. */
-static void turn_columns(int size, ur5e_matrix X, int i, int j, ur5e_real c, ur5e_real s)
-{
-    for (int k = 0; k < size; ++k) {
-        const ur5e_real a = X[k][i];
-        const ur5e_real b = X[k][j];
-        X[k][i] = c*a - s*b;
-        X[k][j] = s*a + c*b;
-    }
-}
-
 /* Rotates away A[i][j]; A is kept whole, so that rows and columns turn alike. */
 static void rotate(int size, ur5e_matrix A, ur5e_matrix X, int i, int j)
 {
     const ur5e_real off = A[i][j];
-    const ur5e_real half = (A[j][j] - A[i][i])/(off + off);
-    const ur5e_real length = UR5E_FABS(half) + UR5E_SQRT(half*half + UR5E_R(1.0));
-    const ur5e_real t = (half < UR5E_R(0.0) ? UR5E_R(-1.0) : UR5E_R(1.0))/length;
-    const ur5e_real c = UR5E_R(1.0)/UR5E_SQRT(t*t + UR5E_R(1.0));
-    const ur5e_real s = t*c;
-    A[i][i] -= t*off;
-    A[j][j] += t*off;
+    const ur5e_real first = A[i][i];
+    const ur5e_real second = A[j][j];
+    const ur5e_real t = ur5e_tangent(second - first, off);
+    ur5e_turn_by(size, t, A[j], A[i]);
+    for (int k = 0; k < size; ++k) {
+        A[k][i] = A[i][k];
+        A[k][j] = A[j][k];
+    }
+    A[i][i] = first - t*off;
+    A[j][j] = second + t*off;
     A[i][j] = UR5E_R(0.0);
     A[j][i] = UR5E_R(0.0);
-    for (int k = 0; k < size; ++k) {
-        if (k != i && k != j) {
-            const ur5e_real a = A[i][k];
-            const ur5e_real b = A[j][k];
-            A[i][k] = c*a - s*b;
-            A[j][k] = s*a + c*b;
-            A[k][i] = A[i][k];
-            A[k][j] = A[j][k];
-        }
-    }
-    turn_columns(size, X, i, j, c, s);
+    ur5e_turn_by(size, t, X[j], X[i]);
 }
 
 bool ur5e_diagonalise(int size, ur5e_matrix A, ur5e_matrix X)

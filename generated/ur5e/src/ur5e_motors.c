@@ -8,26 +8,22 @@
  */
 #include "ur5e_impact.h"
 
-/* X = L^-T of a mass matrix M = L L': its columns are motions of unit mass, with nothing below its diagonal. */
+/* X = L^-1 of a mass matrix M = L L': its rows are motions of unit mass, with nothing behind its diagonal. */
 static bool unit_motions(int size, ur5e_matrix mass, ur5e_matrix X)
 {
     if (!ur5e_cholesky(size, mass)) {
         return false;
     }
     for (int j = 0; j < size; ++j) {
-        ur5e_real column[UR5E_SYSTEM];
         for (int i = 0; i < size; ++i) {
-            column[i] = i == j ? UR5E_R(1.0) : UR5E_R(0.0);
+            X[j][i] = i == j ? UR5E_R(1.0) : UR5E_R(0.0);
         }
-        ur5e_backward(j + 1, mass, column);
-        for (int i = 0; i < size; ++i) {
-            X[i][j] = column[i];
-        }
+        ur5e_backward(j + 1, mass, X[j]);
     }
     return true;
 }
 
-/* A = X'KX of such an X. */
+/* A = XKX' of such an X. */
 static void congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A)
 {
     for (int i = 0; i < size; ++i) {
@@ -35,13 +31,13 @@ static void congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A)
         for (int l = 0; l <= i; ++l) {
             pulled[l] = UR5E_R(0.0);
             for (int m = 0; m <= i; ++m) {
-                pulled[l] += K[l][m]*X[m][i];
+                pulled[l] += K[l][m]*X[i][m];
             }
         }
         for (int j = 0; j <= i; ++j) {
             ur5e_real sum = UR5E_R(0.0);
             for (int l = 0; l <= j; ++l) {
-                sum += pulled[l]*X[l][j];
+                sum += pulled[l]*X[j][l];
             }
             A[i][j] = sum;
             A[j][i] = sum;
@@ -51,7 +47,7 @@ static void congruent(int size, ur5e_matrix K, ur5e_matrix X, ur5e_matrix A)
 
 #if !UR5E_STRUCTURED
 /*
- * Modes: the eigenvectors of A = X'KX in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
+ * Modes: the eigenvectors of A = XKX' in X, over the coordinates `places`, of the mass L L'. An entry of A errs by
  * rounding times the root of its diagonal entries' product, so a mode's squared frequency by as much of the
  * squared sum of these roots' shares in it. False if eigenvectors are not found.
  */
@@ -68,7 +64,7 @@ static bool find_modes(int size, const int *places, ur5e_matrix L, ur5e_matrix A
         for (int l = 0; l < size; ++l) { /* what X was, times a share, is what it is: share = L'x */
             ur5e_real share = UR5E_R(0.0);
             for (int m = l; m < size; ++m) {
-                share += L[m][l]*X[m][i];
+                share += L[m][l]*X[i][m];
             }
             held += roots[l]*UR5E_FABS(share);
         }
@@ -77,8 +73,8 @@ static bool find_modes(int size, const int *places, ur5e_matrix L, ur5e_matrix A
         }
         ur5e_real sum = UR5E_R(0.0);
         for (int j = 0; j < size; ++j) {
-            modes->shape[i][places[j]] = X[j][i];
-            sum += row[j]*X[j][i];
+            modes->shape[i][places[j]] = X[i][j];
+            sum += row[j]*X[i][j];
         }
         modes->noise[i] = UR5E_EPSILON*held*held;
         modes->squared[i] = A[i][i];
@@ -214,17 +210,6 @@ static ur5e_real product_of(const ur5e_real a[UR5E_SYSTEM], const ur5e_real b[UR
     return sum;
 }
 
-/* Turns two rows by an angle of tangent t. */
-static void turn_both(ur5e_real t, ur5e_real a[UR5E_SYSTEM], ur5e_real b[UR5E_SYSTEM])
-{
-    const ur5e_real c = UR5E_R(1.0)/UR5E_SQRT(UR5E_R(1.0) + t*t);
-    for (int k = 0; k < UR5E_SYSTEM; ++k) {
-        const ur5e_real x = a[k];
-        a[k] = c*(x - t*b[k]);
-        b[k] = c*(b[k] + t*x);
-    }
-}
-
 /*
  * QR errs by rounding of the largest squared frequency, whatever the mode. What each mode bends of springs and
  * gains, times their roots, is known better: its square is the mode's squared frequency, and two modes' are
@@ -259,11 +244,9 @@ static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
                 const ur5e_real off = product_of(bent[i], bent[j]);
                 if (off*off > UR5E_EPSILON*modes->squared[i]*modes->squared[j]) {
                     turned = true;
-                    const ur5e_real half = UR5E_R(0.5)*(modes->squared[j] - modes->squared[i])/off;
-                    const ur5e_real length = UR5E_FABS(half) + UR5E_SQRT(half*half + UR5E_R(1.0));
-                    const ur5e_real t = (half < UR5E_R(0.0) ? UR5E_R(-1.0) : UR5E_R(1.0))/length;
-                    turn_both(t, bent[i], bent[j]);
-                    turn_both(t, modes->shape[i], modes->shape[j]);
+                    const ur5e_real t = ur5e_tangent(modes->squared[j] - modes->squared[i], off);
+                    ur5e_turn_by(UR5E_SYSTEM, t, bent[j], bent[i]);
+                    ur5e_turn_by(UR5E_SYSTEM, t, modes->shape[j], modes->shape[i]);
                     modes->squared[i] = product_of(bent[i], bent[i]);
                     modes->squared[j] = product_of(bent[j], bent[j]);
                 }
@@ -279,7 +262,7 @@ static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
 int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real *drift)
 {
-    ur5e_matrix mass; /* and then X'KX */
+    ur5e_matrix mass; /* and then XKX' */
     ur5e_matrix X;
     ur5e_real (*const K)[UR5E_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
     modes->count = 0;
@@ -302,8 +285,8 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
     for (int i = 0; i < UR5E_SYSTEM; ++i) {
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
             ur5e_real shape = UR5E_R(0.0);
-            for (int k = j; k < UR5E_SYSTEM; ++k) { /* X has nothing below its diagonal */
-                shape += X[j][k]*K[i][k];
+            for (int k = j; k < UR5E_SYSTEM; ++k) { /* X has nothing behind its diagonal */
+                shape += X[k][j]*K[i][k];
             }
             modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
         }

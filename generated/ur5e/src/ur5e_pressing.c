@@ -2,9 +2,8 @@
 /* What presses on a clamped body once the quasi-static limit counts, and speeds that keep both limits. */
 #include "ur5e_state.h"
 
-/* Until when it is looked, s; at contacts that began late beyond that, as these may come a little earlier. */
-#define PRESSED_UNTIL UR5E_R(0.6)
-#define PRESSED_AGAIN_UNTIL UR5E_R(0.62)
+/* Until when it is looked where slower speeds matter, s: contacts that began late may come a little earlier there. */
+#define AGAIN_UNTIL UR5E_R(0.62)
 /* Halvings of a speed that presses too hard. */
 #define SLOWER 14
 /*
@@ -17,6 +16,8 @@
  * nearly with the speed, so what parts for good at one does at slower ones.
  */
 #define CALM UR5E_R(0.5)
+/* What steps err by, as a share of the peak, which they are fitted to: far smaller late forces were 1.8e-3 off. */
+#define OF_PEAK UR5E_R(2e-3)
 /* Else shares of the speed that are tried: arms may bounce past 0.5 s at slower speeds and not at that one. */
 #define SHARES 10
 
@@ -28,6 +29,7 @@ typedef struct {
     ur5e_watch watch;
     bool bounded; /* some force is a bound */
     bool calm; /* what was asked last cannot press harder at slower speeds */
+    ur5e_real peak; /* force of what was asked last, N */
 } ur5e_pressing;
 
 /*
@@ -46,6 +48,7 @@ static ur5e_real pressed_by(ur5e_pressing *k, ur5e_real speed, ur5e_real matters
     k->watch.last = UR5E_R(0.0);
     k->budget.watch = &k->watch;
     ur5e_impact_run(&k->impact, speed, &k->budget, &peak);
+    k->peak = peak.force;
     if (peak.ended) {
         return k->watch.late;
     }
@@ -64,8 +67,9 @@ static bool keeps(ur5e_pressing *k, const ur5e_region *region, ur5e_real speed, 
     k->watch.slower = true;
     k->calm = region->law == NULL;
     for (int motors = first; motors <= last && kept; ++motors) {
-        kept = ur5e_impact_prepare(region, &k->p, motors, limit, &k->impact) == UR5E_OK
-            && pressed_by(k, speed, CALM*limit) <= UR5E_KEPT*limit;
+        kept = ur5e_impact_prepare(region, &k->p, motors, limit, &k->impact) == UR5E_OK;
+        const ur5e_real late = kept ? pressed_by(k, speed, CALM*limit) : UR5E_REAL_MAX;
+        kept = late <= UR5E_KEPT*limit - OF_PEAK*k->peak;
         k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
@@ -82,6 +86,7 @@ static void prepare_pressing(const ur5e_params *p, ur5e_real until, ur5e_pressin
     k->watch.slower = false;
     k->bounded = false;
     k->calm = false;
+    k->peak = UR5E_R(0.0);
 }
 
 /* A speed at which a proven bound keeps a limit; 0 if there is none. */
@@ -148,7 +153,7 @@ int ur5e_pressing_force_at(const ur5e_real q[UR5E_JOINTS], int point, const ur5e
     if (status != UR5E_OK) {
         return status;
     }
-    prepare_pressing(p, PRESSED_UNTIL, &k);
+    prepare_pressing(p, UR5E_COUNTS_UNTIL, &k);
     ur5e_real found = UR5E_R(0.0);
     int first;
     int last;
@@ -187,7 +192,7 @@ static int find_allowed(const ur5e_region *region, const ur5e_params *p, ur5e_re
         found->speed = safe.speed;
         found->force = safe.force;
         if (region->clamped != 0) {
-            prepare_pressing(p, PRESSED_AGAIN_UNTIL, k);
+            prepare_pressing(p, AGAIN_UNTIL, k);
             const ur5e_real share = region->law == NULL ? UR5E_R(1.0) : KEPT_OF_TABLES;
             found->speed = slow_down(k, region, safe.speed, share*region->quasi_static_limit);
         }
@@ -290,7 +295,7 @@ int ur5e_may_press(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINT
     for (int point = 0; point < UR5E_POINTS && region->clamped != 0 && kept; ++point) {
         const ur5e_real speed = ur5e_arrive_as_it_moves(point, rates, &k.impact.arrival);
         ur5e_impact_forget(&k.impact);
-        prepare_pressing(p, PRESSED_AGAIN_UNTIL, &k);
+        prepare_pressing(p, AGAIN_UNTIL, &k);
         kept = !(speed > UR5E_AT_REST) || keeps(&k, region, speed, limit);
     }
     *may = kept ? 0 : 1;

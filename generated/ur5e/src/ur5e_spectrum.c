@@ -96,17 +96,6 @@ static void reflect(int size, ur5e_matrix A, ur5e_real *d, ur5e_real *e, ur5e_ma
     }
 }
 
-/* Turns two rows of Q by an angle. */
-static void turn_rows(int size, ur5e_real c, ur5e_real s, ur5e_real *upper, ur5e_real *lower)
-{
-    for (int j = 0; j < size; ++j) {
-        const ur5e_real x = upper[j];
-        const ur5e_real y = lower[j];
-        upper[j] = c*x + s*y;
-        lower[j] = c*y - s*x;
-    }
-}
-
 /* One QR step on rows first to last; turns the rows of Q, too. */
 static void chase(int first, int last, int size, ur5e_real *d, ur5e_real *e, ur5e_matrix Q)
 {
@@ -133,7 +122,7 @@ static void chase(int first, int last, int size, ur5e_real *d, ur5e_real *e, ur5
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        turn_rows(size, c, s, Q[k], Q[k + 1]);
+        ur5e_turn(size, c, s, Q[k], Q[k + 1]);
     }
 }
 

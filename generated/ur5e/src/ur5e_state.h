@@ -39,6 +39,9 @@ typedef struct {
     ur5e_real swings; /* most that modes that stand add to the force as they swing, N */
 } ur5e_state;
 
+/* Until when forces of a contact count that began before 0.5 s; later ones count until they end, s. */
+#define UR5E_COUNTS_UNTIL UR5E_R(0.6)
+
 /* What is looked for in the steps of an impact that goes on after its peak. */
 struct ur5e_watch {
     ur5e_real matters; /* force that may still come, N */

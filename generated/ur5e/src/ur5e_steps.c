@@ -13,7 +13,7 @@
 #define SERVO_STEP UR5E_R(0.1)
 /*
  * A mode stands if its motion about where the force bends it is less than this share of the
- * displacement, in a contact as fast as `contact`.
+ * displacement, in a contact as fast as `contact`, or as the time there is.
  */
 #define STANDS UR5E_R(1e-5)
 /*
@@ -167,7 +167,8 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
-    let_stand(impact, contact, released, phase);
+    const ur5e_real end = UR5E_R(1.0)/UR5E_HORIZON(impact->p);
+    let_stand(impact, UR5E_FMAX(contact, end*end), released, phase);
     ur5e_real moving = UR5E_R(0.0);
     ur5e_real rate2 = UR5E_R(0.0);
     for (int i = 0; i < phase->active; ++i) {

@@ -9,8 +9,6 @@
  * 1.8 times at a twentieth of the speed (Hertz's contact lasts as v^-1/5), and oscillate with other phases.
  */
 #define AGAIN UR5E_R(0.25)
-/* Until when forces of a contact count that began before it was late. */
-#define COUNTS_UNTIL UR5E_R(0.6)
 /* Steps after which it is looked whether the rest matters. */
 #define LOOKS_LATE 2
 
@@ -18,7 +16,7 @@ bool ur5e_pass(const ur5e_state *s, ur5e_watch *watch)
 {
     watch->apart = s->touching ? watch->apart : s->time;
     const ur5e_real from = watch->slower && watch->apart > UR5E_R(0.0) ? AGAIN : LATE;
-    const ur5e_real until = watch->apart > LATE ? s->time : UR5E_FMIN(COUNTS_UNTIL, s->time);
+    const ur5e_real until = watch->apart > LATE ? s->time : UR5E_FMIN(UR5E_COUNTS_UNTIL, s->time);
     if (s->time >= from && until > s->time - s->h) {
         const ur5e_real share = UR5E_FMIN((s->time - from)/s->h, UR5E_R(1.0));
         const ur5e_real then = share*watch->last + (UR5E_R(1.0) - share)*s->f;

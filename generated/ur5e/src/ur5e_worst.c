@@ -7,14 +7,17 @@
 #define OVER_A_CIRCLE 32
 #define TURN UR5E_R(2.399963229728653) /* of one from the one before: pi (3 - sqrt(5)) */
 #define HALF_A_TURN UR5E_R(3.141592653589793)
-/* How far around the best is looked, as a share of a unit vector, first and last. */
+/*
+ * How far around the best is looked, as a share of a unit vector, first and last; and last where motors hardly move
+ * the point one way, so that directions in which they can lie within a slice.
+ */
 #define WIDE UR5E_R(0.2)
-#define NARROW UR5E_R(0.01)
-#define AROUND 6
-#define MOST_ROUNDS 16
+#define NARROW UR5E_R(2e-3)
+#define SLICE UR5E_R(1e-5)
+#define MOST_ROUNDS 20
 /* Around how many it is looked, and the cosine above which two of them are the same: forces have several tops. */
 #define STARTS 3
-#define ALIKE UR5E_R(0.94)
+#define ALIKE (UR5E_REACH > 2 ? UR5E_R(0.94) : UR5E_R(0.98))
 /* What forces may be too low, added to what the directions were apart. */
 #define OF_FORCES (UR5E_R(1.0) - UR5E_KEPT)
 
@@ -25,7 +28,9 @@ typedef struct {
     ur5e_real n[3]; /* the worst so far */
     ur5e_real force;
     ur5e_real tried; /* force of the last direction that was tried */
-    bool bounded, unknown;
+    ur5e_matrix axes; /* of the ellipsoid of what motors move, a row each */
+    int least; /* of these, the shortest */
+    bool bounded, unknown; /* some direction */
     bool lost; /* some direction is one in which motors cannot move the point here */
 } hardest;
 
@@ -45,13 +50,13 @@ static bool try_direction(const ur5e_region *region, const ur5e_params *p, const
     if (status == UR5E_OK) {
         status = ur5e_find_peak(region, p, w->speed, &w->impact, &found);
     }
+    w->bounded = w->bounded || status == UR5E_BOUNDED;
     w->lost = w->lost || status == UR5E_SINGULAR;
     w->unknown = w->unknown || (status != UR5E_OK && status != UR5E_BOUNDED && status != UR5E_SINGULAR);
     w->tried = found.force;
     const bool worse = (status == UR5E_OK || status == UR5E_BOUNDED) && found.force > w->force;
     if (worse) {
         w->force = found.force;
-        w->bounded = status == UR5E_BOUNDED;
         for (int k = 0; k < 3; ++k) {
             w->n[k] = along[k];
         }
@@ -71,16 +76,12 @@ static void direction_of(int k, ur5e_real along[3])
 }
 
 #if UR5E_REACH > 1
-/*
- * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
- * one dimension less, and hardly any of the directions over a ball is within the others.
- */
-static void try_across(const ur5e_region *region, const ur5e_params *p, hardest *w)
+/* Finds the axes along which motors move the point most to least, whatever joints do at a given rate. */
+static void find_axes(hardest *w)
 {
     const ur5e_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     ur5e_matrix square;
-    ur5e_matrix vectors;
     ur5e_real values[UR5E_SYSTEM];
     for (int k = 0; k < UR5E_REACH; ++k) {
         for (int l = 0; l < UR5E_REACH; ++l) {
@@ -94,16 +95,24 @@ static void try_across(const ur5e_region *region, const ur5e_params *p, hardest 
             }
         }
     }
-    if (!ur5e_spectrum(UR5E_REACH, UR5E_EPSILON*UR5E_EPSILON, square, values, vectors)) {
+    if (!ur5e_spectrum(UR5E_REACH, UR5E_EPSILON*UR5E_EPSILON, square, values, w->axes)) {
         w->unknown = true;
         return;
     }
-    int least = 0;
+    w->least = 0;
     for (int k = 1; k < UR5E_REACH; ++k) {
-        least = values[k] < values[least] ? k : least;
+        w->least = values[k] < values[w->least] ? k : w->least;
     }
-    const ur5e_real *const a = vectors[(least + 1) % UR5E_REACH];
-    const ur5e_real *const b = vectors[(least + 2) % UR5E_REACH];
+}
+
+/*
+ * Tries directions at right angles to that in which motors move the point least: where they hardly do, a pose has
+ * one dimension less, and hardly any of the directions over a ball is within the others.
+ */
+static void try_across(const ur5e_region *region, const ur5e_params *p, hardest *w)
+{
+    const ur5e_real *const a = w->axes[(w->least + 1) % UR5E_REACH];
+    const ur5e_real *const b = w->axes[(w->least + 2) % UR5E_REACH];
     for (int k = 0; k < (UR5E_REACH > 2 ? OVER_A_CIRCLE : 1); ++k) {
         const ur5e_real turn = HALF_A_TURN*(ur5e_real)k/(ur5e_real)OVER_A_CIRCLE;
         ur5e_real along[3] = {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
@@ -113,33 +122,34 @@ static void try_across(const ur5e_region *region, const ur5e_params *p, hardest 
         (void)try_direction(region, p, along, w);
     }
 }
-#endif
 
-/* Looks around the worst, wider where that helps. */
+/*
+ * Looks around the worst, along each of the axes as far as that helps: where motors move the point much more one
+ * way than others, hard directions lie on a narrow ridge.
+ */
 static void look_around(const ur5e_region *region, const ur5e_params *p, hardest *w)
 {
-    ur5e_real wide = WIDE;
-    for (int round = 0; round < MOST_ROUNDS && wide > NARROW && UR5E_REACH > 1; ++round) {
-        const ur5e_real *const n = w->n;
-        const ur5e_real side = UR5E_FABS(n[2]) < UR5E_R(0.9) ? UR5E_SQRT(n[0]*n[0] + n[1]*n[1])
-            : UR5E_SQRT(n[1]*n[1] + n[2]*n[2]);
-        const ur5e_real a[3] = {UR5E_FABS(n[2]) < UR5E_R(0.9) ? n[1]/side : UR5E_R(0.0),
-            UR5E_FABS(n[2]) < UR5E_R(0.9) ? -n[0]/side : n[2]/side,
-            UR5E_FABS(n[2]) < UR5E_R(0.9) ? UR5E_R(0.0) : -n[1]/side};
-        const ur5e_real b[3] = {n[1]*a[2] - n[2]*a[1], n[2]*a[0] - n[0]*a[2], n[0]*a[1] - n[1]*a[0]};
-        const ur5e_real centre[3] = {n[0], n[1], n[2]};
-        bool better = false;
-        for (int k = 0; k < AROUND; ++k) {
-            const ur5e_real turn = UR5E_R(2.0)*HALF_A_TURN*(ur5e_real)k/(ur5e_real)AROUND;
-            const ur5e_real s = wide*UR5E_SIN(turn);
-            const ur5e_real c = wide*UR5E_COS(turn);
-            const ur5e_real aside[3] = {centre[0] + c*a[0] + s*b[0], centre[1] + c*a[1] + s*b[1],
-                UR5E_REACH > 2 ? centre[2] + c*a[2] + s*b[2] : UR5E_R(0.0)};
-            const ur5e_real size = UR5E_SQRT(aside[0]*aside[0] + aside[1]*aside[1] + aside[2]*aside[2]);
-            const ur5e_real along[3] = {aside[0]/size, aside[1]/size, aside[2]/size};
-            better = try_direction(region, p, along, w) || better;
+    const ur5e_real narrow = w->lost ? SLICE : NARROW;
+    ur5e_real wide[3] = {WIDE, WIDE, WIDE};
+    for (int round = 0; round < MOST_ROUNDS; ++round) {
+        for (int k = 0; k < UR5E_REACH; ++k) {
+            bool better = false;
+            for (int side = 0; side < 2 && !better && wide[k] > narrow; ++side) {
+                const ur5e_real by = side == 0 ? wide[k] : -wide[k];
+                ur5e_real along[3] = {UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
+                ur5e_real size = UR5E_R(0.0);
+                for (int l = 0; l < UR5E_REACH; ++l) {
+                    along[l] = w->n[l] + by*w->axes[k][l];
+                    size += along[l]*along[l];
+                }
+                size = UR5E_SQRT(size);
+                for (int l = 0; l < UR5E_REACH && size > UR5E_R(0.0); ++l) {
+                    along[l] /= size;
+                }
+                better = try_direction(region, p, along, w);
+            }
+            wide[k] *= better ? UR5E_R(1.5) : UR5E_R(0.5);
         }
-        wide = better ? wide : UR5E_R(0.5)*wide;
     }
 }
 
@@ -149,7 +159,6 @@ static void look_elsewhere(const ur5e_region *region, const ur5e_params *p, int 
     for (int start = 0; start < STARTS; ++start) {
         const ur5e_real n[3] = {w->n[0], w->n[1], w->n[2]};
         const ur5e_real force = w->force;
-        const bool bounded = w->bounded;
         int best = 0;
         for (int k = 1; k < count; ++k) {
             best = forces[k] > forces[best] ? k : best;
@@ -168,12 +177,58 @@ static void look_elsewhere(const ur5e_region *region, const ur5e_params *p, int 
         look_around(region, p, w);
         if (!(w->force > force)) {
             w->force = force;
-            w->bounded = bounded;
             for (int k = 0; k < 3; ++k) {
                 w->n[k] = n[k];
             }
         }
     }
+}
+#endif
+
+/*
+ * A force that no impact in any direction exceeds, by motors of one kind; 0 where none is known.
+ *
+ * What ur5e_bound takes of a direction is its K = k + c^2 mobility and its energy, and the bound grows with both.
+ * Over directions n of unit length the robot's mobility is a quadratic form, n'An, and so is r'(M + B)r for joint
+ * velocities r that are linear in n: none exceeds the sum of its values along directions at right angles, which is
+ * the form's trace. Links and rotors as one weigh no more than r'(M + B)r at a contact point, so with a body of
+ * mass m, and nothing but joints' springs, the energy is at most that of two masses, 1/(1/trace + 1/m). What pulls
+ * on none of the r of these directions pulls on no sum of them.
+ */
+static ur5e_real bound_all(const ur5e_region *region, const ur5e_params *p, int motors, hardest *w)
+{
+    ur5e_impact *const impact = &w->impact;
+    const ur5e_real body = region->clamped == 0 ? UR5E_R(1.0)/region->effective_mass : UR5E_R(0.0);
+    ur5e_real mobility = body;
+    ur5e_real twice = UR5E_R(0.0);
+    for (int k = 0; k < UR5E_REACH; ++k) {
+        const int status = ur5e_arrive(ur5e_directions[k], w->point, &impact->arrival);
+        ur5e_impact_forget(impact);
+        if (status != UR5E_OK || ur5e_impact_prepare(region, p, motors, -w->speed, impact) != UR5E_OK
+            || !(ur5e_bound(impact) > UR5E_R(0.0))) {
+            return UR5E_R(0.0);
+        }
+        mobility += impact->mobility - body;
+        twice += ur5e_twice_energy_of_arrival(&impact->arrival, p);
+    }
+    twice = UR5E_STRUCTURED ? twice/(UR5E_R(1.0) + twice*body) : twice;
+    return w->speed*ur5e_bound_by(impact, region->stiffness + region->damping*region->damping*mobility, twice);
+}
+
+/* Where some impacts cannot be followed to their end: takes the bound of all directions; false if none is known. */
+static bool raise_to_bound(const ur5e_region *region, const ur5e_params *p, hardest *w)
+{
+    int first;
+    int last;
+    ur5e_kinds_of_motors(p, &first, &last);
+    for (int motors = first; motors <= last; ++motors) {
+        const ur5e_real bound = bound_all(region, p, motors, w);
+        if (!(bound > UR5E_R(0.0) && bound <= UR5E_REAL_MAX)) {
+            return false;
+        }
+        w->force = UR5E_FMAX(w->force, bound);
+    }
+    return true;
 }
 
 /* Looks everywhere. */
@@ -192,6 +247,7 @@ static int find_hardest(const ur5e_region *region, const ur5e_params *p, hardest
         forces[k] = w->tried;
     }
 #if UR5E_REACH > 1
+    find_axes(w);
     if (w->lost) {
         try_across(region, p, w);
     }
@@ -203,9 +259,16 @@ static int find_hardest(const ur5e_region *region, const ur5e_params *p, hardest
         return UR5E_SINGULAR;
     }
     const ur5e_real seen = w->force;
-    look_around(region, p, w);
-    look_elsewhere(region, p, count, forces, w);
+#if UR5E_REACH > 1
+    if (!w->bounded) {
+        look_around(region, p, w);
+        look_elsewhere(region, p, count, forces, w);
+    }
+#endif
     if (w->unknown) { /* so may be the hardest */
+        return UR5E_UNRESOLVED;
+    }
+    if (w->bounded && !raise_to_bound(region, p, w)) {
         return UR5E_UNRESOLVED;
     }
     for (int k = 0; k < 3; ++k) {
@@ -215,7 +278,7 @@ static int find_hardest(const ur5e_region *region, const ur5e_params *p, hardest
         }
     }
     out->force = w->force;
-    out->error = w->force/seen - UR5E_R(1.0) + OF_FORCES;
+    out->error = w->bounded ? UR5E_R(0.0) : w->force/seen - UR5E_R(1.0) + OF_FORCES;
     return w->bounded ? UR5E_BOUNDED : UR5E_OK;
 }
 

@@ -97,7 +97,7 @@ def test_a_body_without_a_region_stands_alone(file: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ('region = "chest"', "name: Field required"),
+        ('region = "chest"', "name: is missing"),
         ('name = "a"', "stiffness: missing"),
         ('name = "a"\nstiffness = 1e4', "effective_mass: missing"),
         ('name = "a"\nregion = "chest"\nstiffness = -1.0', "stiffness: .*greater than 0"),
@@ -145,7 +145,7 @@ def test_a_cover_is_a_law_or_several(file: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ('name = "gel"', "law: Field required"),
+        ('name = "gel"', "law: is missing"),
         ("law = []", r"law: must be a table, \[law\], or several"),
         ("law = 3", r"law: must be a table"),
         ("[law]\nstiffness = 1e6", "law.kind: must be one of curve, .*power.*, not None"),
