@@ -109,7 +109,10 @@ def _figures(
 
 
 def kept(study: Study, q: Array, springs: Array, others: Array | None = None) -> list[Kept]:
-    """Return how well each bound of a study is kept in a posture; arguments as ``figures``."""
+    """Return how well each bound of a study is kept in a posture, or where worst of m×n.
+
+    Arguments as ``figures``.
+    """
     return [_kept(bound, figures(bound, study, q, springs, others)) for bound in study.bounds]
 
 
@@ -135,7 +138,7 @@ def _kept(bound: Bound, found: Array) -> Kept:
 
 
 def largest_share(study: Study, q: Array, springs: Array, others: Array | None = None) -> float:
-    """Return the largest share of a limit that any bound uses in a posture."""
+    """Return the largest share of a limit that any bound uses in a posture, or in any of m×n."""
     return max(each.share for each in kept(study, q, springs, others))
 
 
@@ -151,5 +154,5 @@ def keeps_bounds(study: Study, q: Array, springs: Array, others: Array | None = 
 def largest_deflection(
     study: Study, q: Array, springs: Array, others: Array | None = None
 ) -> float:
-    """Return the tip's largest displacement under the study's loads [m]."""
+    """Return the tip's largest displacement under the study's loads, also of m×n postures [m]."""
     return float(figures(study.deflection, study, q, springs, others).max())

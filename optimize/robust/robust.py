@@ -138,7 +138,7 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
     study, given, limits = setting.study, setting.given, setting.limits
     nominal = Hardening(limits.vector(study.nominal), given)
     before, found = setting.worst(nominal)
-    equal = equal_springs(setting, given)
+    equal = accurate_springs(study, given, study.nominal)
     equal_worst, more = setting.worst(Hardening(limits.vector(equal), given))
     starts = [(equal, None)]
     if not serves(study.objective, free=free):
@@ -172,13 +172,6 @@ def _exchanged(setting: Setting, free: bool) -> RobustDesign:
         compiled=setting.program.library,
         bought=choice,
     )
-
-
-def equal_springs(setting: Setting, postures: Array) -> Array:
-    """Return springs in the nominal proportions that are just accurate in every pose."""
-    study = setting.study
-    softest = [accurate_springs(study, q, study.nominal) for q in postures]
-    return np.asarray(np.max(softest, axis=0))
 
 
 def require_thick_cover(setting: Setting, worst: Worst, hardware: Hardware) -> None:

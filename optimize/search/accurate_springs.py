@@ -24,7 +24,7 @@ def accurate_springs(study: Study, q: Array, springs: Array) -> Array:
 
     Args:
         study: whose forces and bounds count.
-        q: posture, length n [rad].
+        q: posture, length n, or postures in each of which they do, m×n [rad].
         springs: proportions of the stiffness, one for each spring [N·m/rad].
     """
     scaled = np.clip(springs, study.lower, study.upper)

@@ -150,9 +150,10 @@ def reachable(study: Study, q: Array, *, free: bool) -> bool:
 
 def require_reachable(study: Study, poses: Sequence[Candidate], *, free: bool) -> None:
     """Raise Infeasible if no hardware keeps all bounds in all poses at once."""
-    if all(largest_share(study, pose.q, study.upper) <= 1 for pose in poses):
+    postures = [pose.q for pose in poses]
+    if largest_share(study, np.array(postures), study.upper) <= 1:
         return
-    if reach(study, [pose.q for pose in poses], study.bounds, free=free).excess <= FEASIBLE:
+    if reach(study, postures, study.bounds, free=free).excess <= FEASIBLE:
         return
     raise infeasible(study, poses, free=free)
 
