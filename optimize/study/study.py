@@ -42,7 +42,7 @@ from .study_file import (
     StudyFile,
     read_study_file,
 )
-from .study_motors import study_motors
+from .study_motors import asked_kinds, study_motors
 from .study_numbers import catalogue_of, moments_of, stiffness_of
 from .study_parts import asked_bounds, asked_objective, asked_variables, require_fit
 from .study_robot import (
@@ -271,6 +271,8 @@ def _naming(source: Path, section: str, field: str) -> Iterator[None]:
 def build_study(file: StudyFile, source: Path) -> Study:
     """Return the study that a file describes; raises InvalidValue, which names file and field."""
     robot = robot_of_study(file.robot, source)
+    with _naming(source, "motors", "kind"):
+        kinds = asked_kinds(file)
     with _naming(source, "stiffness", "rigid"):
         places = sprung_joints(robot, file.stiffness.rigid)
     with _naming(source, "stiffness", "lower"):
@@ -278,10 +280,10 @@ def build_study(file: StudyFile, source: Path) -> Study:
         lower, upper, nominal = stiffness_of(names, file.stiffness)
     with _naming(source, "robot", "rotor_inertia"):
         model = model_of(robot, file, places, nominal)
-        if file.motors.kind != "driven":
+        if kinds != ("driven",):
             require_known_rotors(model)
     with _naming(source, "motors", "kind"):
-        motors = study_motors(file.motors, model)
+        motors = study_motors(file.motors, model, kinds)
     with _naming(source, "hardware", "joint_stiffness"):
         groups = joint_groups(model, file.hardware.joint_stiffness)
         require_common_stiffness(model, groups, lower, upper)

@@ -84,6 +84,7 @@ class ScenariosSection(FileSection):
     regions: Annotated[list[str], Field(min_length=1)] | None = None
     payloads: Annotated[list[NotNegative], Field(min_length=1)] | None = None
     speeds: Annotated[list[Positive], Field(min_length=1)] | None = None
+    motors: Annotated[list[MotorKind], Field(min_length=1)] | None = None
 
 
 class ScenarioSection(FileSection):

@@ -79,6 +79,33 @@ def test_no_scenario_is_worse_than_the_certificate(found: RobustDesign) -> None:
     assert found.worst.deflection <= found.study.max_deflection * (1 + 1e-5)
 
 
+@pytest.mark.slow
+def test_kinds_of_motors_are_an_axis_of_the_product(tmp_path: Path) -> None:
+    servo = {"position_gain": 3000.0, "damping_gain": 60.0, "horizon": 0.1}
+    kinds = ["free", "servo", "driven"]
+    asked = {**ASKED, "motors": servo, "scenarios": {"motors": kinds, "regions": ["chest"]}}
+    study = study_of(tmp_path, asked, ("q9",))
+    found = robust_design(study, scenarios_of(study), InProcess())
+    assert [m.kind for m in found.scenarios.motors] == kinds
+    assert len(found.scenarios) == 3
+    shares = [simulated(found, i, found.springs) for i in range(3)]
+    assert max(shares) == pytest.approx(found.worst.share, rel=1e-3)
+    assert len(set(np.round(shares, 3))) == 3
+
+
+def test_motors_are_told_once_and_do_not_pull_back(tmp_path: Path) -> None:
+    for motors, kinds, words in (
+        ({"kind": "free"}, ["driven"], r"motors\.kind: and scenarios\.motors say what motors do"),
+        ({}, ["held"], "motors"),
+        ({}, ["servo"], "position_gain: is needed"),
+        ({}, ["driver"], r"scenarios.*motors"),
+        ({}, [], r"scenarios.*motors"),
+    ):
+        asked: dict[str, dict[str, Any]] = {"motors": motors, "scenarios": {"motors": kinds}}
+        with pytest.raises(InvalidValue, match=words):
+            study_of(tmp_path, asked)
+
+
 def test_groups_share_their_spring(found: RobustDesign) -> None:
     for joints in (found.springs[:4], found.springs[4:]):
         np.testing.assert_array_equal(joints, joints[0])
