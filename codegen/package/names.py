@@ -34,7 +34,7 @@ INNER = frozenset((
     "body", "check", "config", "contact", "damping", "default", "directional", "driven", "fill",
     "find", "foreign", "frame", "free", "generalised", "generalised_mass", "golden", "impact",
     "internal", "is", "joint", "kinds_of", "law", "mass", "may", "phase", "reduced", "select",
-    "servo", "single_joint", "state", "steps_of", "stiffness",
+    "servo", "single_joint", "state", "steps_of", "stiffness", "twice_energy_of",
 ))  # fmt: skip
 """What packages' own names begin with: ``arm_contact_jacobian`` is a function of ``arm``, and would
 be one of a package ``arm_contact``; linkers would take either for both."""

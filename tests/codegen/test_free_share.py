@@ -31,7 +31,7 @@ def constant(name: str, path: Path = RUNTIME / "robot_safe_speed.c") -> float:
 
 
 KEPT = constant("ROBOT_KEPT", RUNTIME / "robot_impact.h")
-NEAR, ELSEWHERE = constant("NEAR"), constant("COUNTS_ELSEWHERE")
+NEAR, ELSEWHERE = constant("NEAR_ENOUGH"), constant("COUNTS_ELSEWHERE")
 
 
 def per_cent(share: float) -> str:
