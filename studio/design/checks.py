@@ -12,12 +12,12 @@ from softimpact.simulate import (
     Approach,
     Fidelity,
     ImpactHistory,
-    largest_safe_speed,
     many_peaks,
     simulate_impact,
 )
 from softimpact.simulate.assessment import force_limits
 from softimpact.simulate.band import Band, impact_band
+from softimpact.simulate.trust import safe_speeds
 from softimpact.symbolic import Motors
 from softimpact.symbolic.body.verdict import limits_of
 from softimpact.symbolic.robot.rigid import Array
@@ -99,16 +99,17 @@ def simulated(
 
 
 def safe_speed(study: Study, q: Array, springs: Array) -> float:
-    """Return the speed [m/s] up to which peaks keep the limit, whatever the motors may do."""
+    """Return the speed [m/s] up to which peaks keep the limit, whatever the motors may do.
+
+    It is that of ``simulate``: the nonlinear robot is asked, too.
+    """
     model = study.with_springs(springs)
     approach = Approach(q, study.direction, study.speed)
     limit = force_limits(limits_of(study.contact.region, study.contact.clamped))
-    return min(
-        largest_safe_speed(
-            model, approach, study.contact, limit, motors=motors, horizon=study.horizon
-        )
-        for motors in study.motors
-    )
+    ends: dict[str, Motors] = {motors.kind: motors for motors in study.motors}
+    run = {"horizon": study.horizon}
+    found, _ = safe_speeds(model, approach, study.contact, limit, ends, run)
+    return min(found.values())
 
 
 REACTIONS = (0.0, 0.01, 0.02, 0.05)
