@@ -6,8 +6,9 @@ Names are imported when they are first used: who reads a study need not wait for
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from softimpact.lazy import lazily
 
 if TYPE_CHECKING:
     from .co_design import Design, Gains, PoseResult, design
@@ -65,11 +66,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    for module, names in _HOMES.items():
-        if name in names:
-            return getattr(import_module(f"{__name__}.{module}"), name)
-    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+__getattr__ = lazily(__name__, _HOMES)
 
 
 def __dir__() -> list[str]:

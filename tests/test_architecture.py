@@ -18,7 +18,7 @@ MAY_IMPORT = {
     "symbolic": {"robots"},
     "codegen": {"symbolic", "toolchain"},
     "simulate": {"symbolic"},
-    "optimize": {"robots", "symbolic", "toolchain"},  # built-in studies by name
+    "optimize": {"robots", "symbolic", "toolchain", "lazy"},  # built-in studies by name
     "studio": {"robots", "symbolic", "codegen", "simulate", "optimize", "batch", "toolchain"},
     "papers": {"robots", "symbolic", "simulate", "optimize", "studio"},
 }

@@ -7,15 +7,15 @@ The names that most people need are here; each is of one of the packages ``symbo
 
 from __future__ import annotations
 
-from importlib import import_module
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from .lazy import lazily
 
 if TYPE_CHECKING:
     from .codegen import generate_package
     from .batch import compiled
-    from .optimize import design, load_study, pareto_fronts
-    from .optimize.robust.robust import robust_design
+    from .optimize import design, load_study, pareto_fronts, robust_design
     from .plots import plot
     from .simulate import (
         Approach,
@@ -59,8 +59,7 @@ _HOMES = {
         "largest_safe_speed",
         "simulate_impact",
     ),
-    "optimize": ("design", "load_study", "pareto_fronts"),
-    "optimize.robust.robust": ("robust_design",),
+    "optimize": ("design", "load_study", "pareto_fronts", "robust_design"),
     "batch": ("compiled",),
     "plots": ("plot",),
     "codegen": ("generate_package",),
@@ -92,11 +91,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    for package, names in _HOMES.items():
-        if name in names:
-            return getattr(import_module(f"{__name__}.{package}"), name)
-    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+__getattr__ = lazily(__name__, _HOMES)
 
 
 def __dir__() -> list[str]:
