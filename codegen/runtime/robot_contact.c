@@ -44,6 +44,13 @@ void robot_glide(const robot_state *s, robot_trial *t)
         x += phase->modes.row[i]*t->amplitude[i];
         v += phase->modes.row[i]*t->rate[i];
     }
+    if (phase->damped) { /* the rest of the step's damping, which rates owe */
+        robot_real slowed = ROBOT_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            slowed += phase->slows[i]*(t->rate[i] - s->speed*phase->modes.start[i]);
+        }
+        v -= ROBOT_R(0.5)*level->h*slowed;
+    }
     t->x = x;
     t->v = v;
 }
@@ -99,7 +106,7 @@ static void set_pace(robot_state *s)
     pace->u_before = ratio*early*rate;
     const robot_real share = pace->share*more;
     pace->yields = level->late - share*level->push;
-    const robot_real slows = level->push*rate - share*level->kick;
+    const robot_real slows = level->grow - share*level->kick;
     pace->hold = region->stiffness + region->damping*lag;
     pace->soft = one + region->stiffness*pace->yields + region->damping*slows + pace->hold*s->phase->compliance;
 }
@@ -118,7 +125,7 @@ void robot_press(robot_state *s, robot_trial *t)
     t->base = pace->more*plain - pace->before*s->bump;
     const robot_real first = s->f + t->base;
     const robot_real x = t->x - level->push*first + level->late*s->f; /* a force that falls to its base */
-    const robot_real v = t->v - level->kick*first + level->push*level->per*s->f;
+    const robot_real v = t->v - level->kick*first + level->grow*s->f;
     const robot_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
     const robot_real pressed = region->stiffness*x + region->damping*slip;
     t->root = ROBOT_R(0.0);
@@ -167,7 +174,7 @@ robot_real robot_force_between(const robot_state *s, const robot_trial *t)
     const robot_level *const level = s->step;
     const robot_real h = level->h;
     const robot_real first = s->f + t->base - t->share*t->f;
-    const robot_real after = h*(t->v - level->kick*first) - level->push*(t->f - s->f);
+    const robot_real after = h*(t->v - level->kick*first - level->grow*(t->f - s->f));
     robot_real before = s->drift;
     for (int i = 0; i < phase->active; ++i) {
         before += phase->modes.row[i]*s->rate[i];

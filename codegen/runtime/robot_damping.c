@@ -7,9 +7,32 @@
  */
 #include "robot_state.h"
 
+/* What dampers do to the contact point: row S'DS of each mode. */
+static void slow_contact(robot_phase *phase)
+{
+    const robot_modes *const modes = &phase->modes;
+    robot_real held[ROBOT_DAMPERS];
+    for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+        robot_real sum = ROBOT_R(0.0);
+        for (int k = 0; k < modes->count; ++k) {
+            sum += modes->row[k]*modes->shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS + j];
+        }
+        held[j] = phase->damping[j]*sum;
+    }
+    for (int k = 0; k < modes->count; ++k) {
+        phase->slows[k] = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+            phase->slows[k] += modes->shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS + j]*held[j];
+        }
+    }
+}
+
 robot_real robot_damping_rate(robot_phase *phase)
 {
     robot_real rate = ROBOT_R(0.0);
+    if (phase->damped) {
+        slow_contact(phase);
+    }
     for (int i = 0; i < ROBOT_DAMPERS && phase->damped; ++i) {
         for (int j = 0; j <= i; ++j) {
             robot_real sum = ROBOT_R(0.0);

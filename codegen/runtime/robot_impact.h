@@ -61,7 +61,7 @@ typedef struct {
     robot_real relax; /* what is left of the body's own deflection after a step out of contact */
     robot_real per; /* 1/h */
     robot_real push, late; /* on the contact point */
-    robot_real kick; /* on its velocity, of a force that stays; of one that grows it is push/h */
+    robot_real kick, grow; /* on its velocity, of a force that stays, and of one that grows from none */
     robot_mode_step mode[ROBOT_MODES];
 } robot_level;
 
@@ -79,6 +79,7 @@ typedef struct {
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     robot_real damping[ROBOT_DAMPERS];
+    robot_real slows[ROBOT_MODES]; /* the contact point by each mode's rate, 1/(s sqrt(kg)) */
     robot_real together[ROBOT_DAMPERS][ROBOT_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     int longest_pressed; /* level of the longest step in contact */
