@@ -118,13 +118,15 @@ typedef struct robot_watch robot_watch;
 typedef struct {
     int steps; /* that are left */
     bool rough; /* longer steps do */
+    bool fine; /* only shorter ones do */
     robot_real stop_above; /* force after whose passing the rest does not matter, N */
     robot_watch *watch; /* who sees each step and ends the impact, or NULL; robot_state.h */
 } robot_budget;
 
 typedef struct {
     robot_real force; /* largest, N */
-    robot_real time; /* of it since first touch, s */
+    robot_real later; /* the same from the third contact on */
+    robot_real time; /* of the largest since first touch, s */
     int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */

@@ -5,6 +5,8 @@
 /* Half the second difference of the force, over its size, above which a step is halved. */
 #define BENDS ROBOT_R(0.025)
 #define BENDS_ROUGH ROBOT_R(0.15)
+/* Share of it that is allowed where contacts before may have left an error. */
+#define BENDS_FINE ROBOT_R(0.1)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT ROBOT_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
@@ -79,6 +81,9 @@ static void tick(robot_state *s, bool longer)
 static void see(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
 {
     const robot_real most = force + s->swings;
+    if (peak->contacts > 2) {
+        peak->later = ROBOT_FMAX(peak->later, most);
+    }
     if (most > peak->force) {
         peak->force = most;
         peak->time = s->time + since;
@@ -242,7 +247,8 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
 static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
 {
     const bool rough = budget->rough;
-    const robot_real bends = s->impact->smooth*(rough ? BENDS_ROUGH : BENDS);
+    const robot_real fine = budget->fine ? BENDS_FINE : ROBOT_R(1.0);
+    const robot_real bends = fine*s->impact->smooth*(rough ? BENDS_ROUGH : BENDS);
     const robot_real share = rough ? ROUGHLY : ROBOT_R(1.0);
     const int shortest = rough ? SHORTEST_ROUGH : SHORTEST;
     robot_trial t;
@@ -285,6 +291,7 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
 {
     robot_state s;
     peak->force = ROBOT_R(0.0);
+    peak->later = ROBOT_R(0.0);
     peak->time = ROBOT_R(0.0);
     peak->contact = 1;
     peak->contacts = 1;
