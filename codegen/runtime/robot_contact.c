@@ -29,12 +29,13 @@ void robot_glide(const robot_state *s, robot_trial *t)
     const robot_level *const level = s->step;
     const robot_real *rate = s->rate;
     robot_real damped[ROBOT_MODES];
+    robot_real v = s->drift;
     if (phase->damped) {
         robot_damp_ahead(s, damped);
         rate = damped;
+        v -= robot_owed_slip(s, rate);
     }
     robot_real x = s->drifted + s->drift*level->h;
-    robot_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
         const robot_mode_step *const step = &level->mode[i];
         const robot_real a = s->amplitude[i];
@@ -43,13 +44,6 @@ void robot_glide(const robot_state *s, robot_trial *t)
         t->rate[i] = step->back*a + step->cosine*b;
         x += phase->modes.row[i]*t->amplitude[i];
         v += phase->modes.row[i]*t->rate[i];
-    }
-    if (phase->damped) { /* the rest of the step's damping, which rates owe */
-        robot_real slowed = ROBOT_R(0.0);
-        for (int i = 0; i < phase->active; ++i) {
-            slowed += phase->slows[i]*(t->rate[i] - s->speed*phase->modes.start[i]);
-        }
-        v -= ROBOT_R(0.5)*level->h*slowed;
     }
     t->x = x;
     t->v = v;

@@ -93,3 +93,15 @@ void robot_damp_ahead(const robot_state *s, robot_real *rate)
     }
     robot_damp(s->phase, s->speed, s->owed + ROBOT_R(0.5)*s->step->h, rate);
 }
+
+robot_real robot_owed_slip(const robot_state *s, const robot_real *rate)
+{
+    const robot_phase *const phase = s->phase;
+    const robot_level *const level = s->step;
+    robot_real slowed = ROBOT_R(0.0);
+    for (int i = 0; i < phase->active; ++i) {
+        const robot_real after = level->mode[i].back*s->amplitude[i] + level->mode[i].cosine*rate[i];
+        slowed += phase->slows[i]*(after - s->speed*phase->modes.start[i]);
+    }
+    return ROBOT_R(0.5)*level->h*slowed;
+}

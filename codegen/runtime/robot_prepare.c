@@ -4,7 +4,7 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS ROBOT_R(1.6e-2)
-/* Share of how far the contact point gives way that rounding may change: slow servos that press err by 1.6 times that. */
+/* Share of how far the contact point gives way that rounding may change: a slow servo that pressed erred by 1.6 of it. */
 #define BLURS_SPRING ROBOT_R(4e-3)
 /*
  * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
