@@ -70,6 +70,7 @@ typedef struct {
     bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
     bool has_body;
     bool ready; /* steps are */
+    robot_real blur; /* share of an approach that rounding may change */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* motors do not push on and on, nothing else brings energy: see robot_settled.c */
     robot_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -86,6 +87,9 @@ typedef struct {
     robot_level level[ROBOT_LEVELS];
 } robot_phase;
 
+/* Smoothness below which a body's damper makes forces ripple with modes that steps pass over. */
+#define ROBOT_HARD ROBOT_R(0.4)
+
 /* Everything that does not depend on the speed. */
 typedef struct {
     robot_arrival arrival;
@@ -99,6 +103,7 @@ typedef struct {
     robot_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
     robot_real scale; /* of forces, N: what bends are measured by */
     robot_real smooth; /* 1, or less where the damper makes forces jump */
+    int sure; /* contacts before forces are in doubt: errors grow from one to the next */
     int first, last; /* phases of an impact */
     int status; /* of what was prepared */
     robot_phase phase[2]; /* ROBOT_LED and ROBOT_LOOSE */
@@ -125,7 +130,7 @@ typedef struct {
 
 typedef struct {
     robot_real force; /* largest, N */
-    robot_real later; /* the same from the third contact on */
+    robot_real later; /* the same of contacts in doubt */
     robot_real time; /* of the largest since first touch, s */
     int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */

@@ -4,7 +4,7 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS ROBOT_R(1.6e-2)
-/* Share of how far the contact point gives way that rounding may change: a slow servo that pressed erred by 1.6 of it. */
+/* Share of how far the contact point gives way that rounding may change: a slow servo that pressed was 1.6 off. */
 #define BLURS_SPRING ROBOT_R(4e-3)
 /*
  * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
@@ -141,8 +141,9 @@ static void steps_of(robot_impact *impact, int which)
 {
     robot_phase *const phase = &impact->phase[which];
     const robot_real time = time_of(impact, which);
-    const robot_real blur = blur_of(impact, phase, time);
-    phase->blurred = blur > BLURS || (blur > ROBOT_R(0.0) && blur_of_spring(&phase->modes, time) > BLURS_SPRING);
+    phase->blur = blur_of(impact, phase, time);
+    phase->blurred = phase->blur > BLURS
+        || (phase->blur > ROBOT_R(0.0) && blur_of_spring(&phase->modes, time) > BLURS_SPRING);
     robot_phase_steps(impact, time, phase);
     const robot_real numbers[2] = {phase->level[0].h, phase->level[ROBOT_LEVELS - 1].h};
     if (robot_check_positive(numbers, 2) != ROBOT_OK) {
@@ -205,6 +206,7 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
     impact->smooth = ROBOT_FMAX(ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped), LEAST_SMOOTH);
+    impact->sure = impact->smooth < ROBOT_HARD ? 1 : 2;
     impact->skin_rate = robot_law_stiffness(region, size)*impact->mobility;
     const robot_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!robot_all_finite(numbers, 3) || robot_check_positive(numbers, 3) != ROBOT_OK) {

@@ -19,6 +19,11 @@
 #define SHORTEST (ROBOT_LEVELS - 1)
 #define SHORTEST_APART 4
 #define SHORTEST_ROUGH 2
+/*
+ * Share of the time that rounding may shift a force which still rises at the horizon by, over the share of an approach
+ * that it may change: a stiff body met again just before was 0.16 of it off, and its force by 2.5 %.
+ */
+#define SHIFTS ROBOT_R(0.5)
 /* Steps of a falling force, or of none, after which it is looked whether the rest matters. */
 #define LOOKS 3
 /* Share of a first step within which the damper has to press the skin in, and the share of that time missed. */
@@ -81,7 +86,7 @@ static void tick(robot_state *s, bool longer)
 static void see(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
 {
     const robot_real most = force + s->swings;
-    if (peak->contacts > 2) {
+    if (peak->contacts > s->impact->sure) {
         peak->later = ROBOT_FMAX(peak->later, most);
     }
     if (most > peak->force) {
@@ -314,6 +319,9 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
         s.ticks = BEYOND;
         change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && s.rise > ROBOT_R(0.0)) { /* cut off by the horizon */
+        see(&s, s.f + SHIFTS*s.phase->blur*s.time*s.rise/s.h, ROBOT_R(0.0), peak);
     }
     peak->ended = goes_on;
 }

@@ -6,20 +6,19 @@
 #define AIM ROBOT_R(0.984)
 #define NEAR_ENOUGH ROBOT_R(0.977)
 /*
- * Smoothness below which a body's damper makes forces ripple with modes that steps pass over, or above which it hardly
- * damps, so that errors grow from contact to contact, and the share of the limit that counts there: forces on such
- * bodies were up to 1.5e-2 (1.4e-2 at 0.26) and 2e-2 too low in inputs that a search climbed to. Parts of the human
- * body are between. Nothing swings where motors hold the contact point, and the body is held, too.
+ * Smoothness above which a body hardly damps, so that errors grow from contact to contact, and the share of the limit
+ * that counts there and before a hard damper: forces on such bodies were up to 2e-2 and 1.5e-2 (1.4e-2 at 0.26) too low
+ * in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors hold the contact
+ * point, and the body is held, too.
  */
-#define HARD ROBOT_R(0.4)
 #define HARDLY ROBOT_R(0.99)
 #define COUNTS_ELSEWHERE ROBOT_R(0.985)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 16
 #define APART ROBOT_R(4e-3)
 /*
- * Where a cover ends as if it were solid the force of a law by table jumps with speed: before a body that hardly
- * damps, or where joints or servos do, from which one on is known to half a percent.
+ * Where a cover ends as if it were solid the force of a law by table jumps with speed, from which one on is known to
+ * half a percent.
  */
 #define SHORT_OF_JUMP ROBOT_R(0.99)
 /*
@@ -29,9 +28,10 @@
  */
 #define SHARES 6
 /*
- * The last of these, and the share of a limit from which on a third or later contact makes them count for other
- * bodies, too, and shorter steps: errors grow about fivefold from contact to contact (0.5 % in a second one, 2.4 % in
- * the third), and such forces were up to 1.05 times the limit at nine tenths of the speed.
+ * The last of these, and the share of a limit from which on a third or later contact (before a hard damper a second
+ * one) makes them count for other bodies, too, and shorter steps: errors grow about fivefold from contact to contact
+ * (0.5 % in a second one, 2.4 % in the third), and such forces were up to 1.05 (1.17) times the limit at nine tenths of
+ * the speed.
  */
 #define NEAREST 3
 #define LATER ROBOT_R(0.85)
@@ -42,7 +42,7 @@ typedef struct {
     robot_real limit;
     robot_real low, low_force; /* the largest speed known to be safe; 0 while unknown */
     robot_real high; /* the least known not to be; 0 while unknown */
-    robot_real later; /* of the former, from its third contact on */
+    robot_real later; /* of the former, of contacts in doubt */
 } search;
 
 /* Next speed to try: as for two bodies that meet, unless that is known to be wrong. */
@@ -178,7 +178,7 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
         }
         const bool is_held = !ROBOT_STRUCTURED && !(impact->mobility > ROBOT_LEAST_MOBILITY);
         const bool hardly_damps = impact->smooth > HARDLY && !is_held;
-        const robot_real counts = impact->smooth < HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
+        const robot_real counts = impact->smooth < ROBOT_HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
         const robot_real guess = robot_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
         budget.fine = false;
@@ -193,8 +193,7 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
             is_known = find(impact, most, most, &s, &budget);
         }
         if (all_slower || is_late) {
-            const bool exact = !hardly_damps && !impact->phase[impact->first].damped;
-            const robot_real share = region->law == NULL || exact ? ROBOT_R(1.0) : SHORT_OF_JUMP;
+            const robot_real share = region->law == NULL ? ROBOT_R(1.0) : SHORT_OF_JUMP;
             s.low = is_known ? share*s.low : ROBOT_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, all_slower ? 0 : NEAREST, &s, &budget);
         }
