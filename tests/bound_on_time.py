@@ -26,7 +26,7 @@ LIBRARY = {"memcpy": 60, "memset": 60, "cbrtf": 45, "expf": 80, "sinf": 600, "co
 
 NEVER = (
     *("damp", "damp_ahead", "damping_rate", "servo_modes", "pass", "two_body_force", "law_press"),
-    *("force_between", "slip_off", "owed_slip"),
+    *("force_between", "slip_off", "owed_slip", "slow_contact"),
 )
 """Functions of servos, of what presses late, of peak forces and of other laws than Hertz's."""
 
@@ -63,7 +63,6 @@ def rounds(line: str, name: str, n: int) -> Rounds:
     N, modes = name.upper(), n + 2  # one of links and rotors together, one of the body
     table: list[tuple[str, Rounds]] = [
         (r"ticks > 0", Budget()),
-        (r"phase->damped && i <", 0),
         (r"k < TRIALS", Budget(STEPS_OF_RUN)),
         (r"k < SHARES", Budget(STEPS_OF_RUN)),
         (r"motors >= first", 1),

@@ -86,13 +86,19 @@ static void tick(robot_state *s, bool longer)
 static void see(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
 {
     const robot_real most = force + s->swings;
-    if (peak->contacts > s->impact->sure) {
-        peak->later = ROBOT_FMAX(peak->later, most);
-    }
     if (most > peak->force) {
         peak->force = most;
         peak->time = s->time + since;
         peak->contact = peak->contacts;
+    }
+}
+
+/* Notes the force at a top, or where the horizon cuts it off. */
+static void see_most(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
+{
+    see(s, force, since, peak);
+    if (peak->contacts > s->impact->sure) {
+        peak->later = ROBOT_FMAX(peak->later, force + s->swings);
     }
 }
 
@@ -111,7 +117,7 @@ static void see_top(const robot_state *s, const robot_trial *t, robot_peak *peak
         const robot_real twist = (bend - bent)/(h + s->h + s->h_before);
         force += twist*since*(since + s->h)*(since - h);
     }
-    see(s, force, since, peak);
+    see_most(s, force, since, peak);
 }
 
 /* A step in contact. */
@@ -321,7 +327,7 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
         goes_on = run_phase(&s, budget, peak);
     }
     if (goes_on && !peak->ended && s.rise > ROBOT_R(0.0)) { /* cut off by the horizon */
-        see(&s, s.f + SHIFTS*s.phase->blur*s.time*s.rise/s.h, ROBOT_R(0.0), peak);
+        see_most(&s, s.f + SHIFTS*s.phase->blur*s.time*s.rise/s.h, ROBOT_R(0.0), peak);
     }
     peak->ended = goes_on;
 }

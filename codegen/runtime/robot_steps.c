@@ -123,12 +123,6 @@ static void mode_steps(robot_phase *phase)
         robot_real pushes = ROBOT_R(0.0);
         robot_real lates = ROBOT_R(0.0);
         robot_real kicks = ROBOT_R(0.0);
-        robot_real slowed = ROBOT_R(0.0); /* by dampers, over half a step */
-        robot_real slowed_late = ROBOT_R(0.0);
-        for (int i = 0; phase->damped && i < phase->active; ++i) {
-            slowed += ROBOT_R(0.5)*phase->slows[i]*modes->row[i]*sine[i];
-            slowed_late += ROBOT_R(0.5)*phase->slows[i]*modes->row[i]*push[i];
-        }
         for (int i = 0; i < phase->active; ++i) {
             robot_mode_step *const step = &level->mode[i];
             const robot_real row = modes->row[i];
@@ -148,8 +142,8 @@ static void mode_steps(robot_phase *phase)
         level->per = per;
         level->push = pushes;
         level->late = lates;
-        level->kick = kicks - h*slowed;
-        level->grow = pushes*per - slowed_late;
+        level->kick = kicks;
+        level->grow = pushes*per;
         h += h;
     }
 }
@@ -205,5 +199,8 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
         relax *= relax;
     }
     mode_steps(phase);
+    if (phase->damped) {
+        robot_slow_contact(phase);
+    }
     phase->ready = true;
 }
