@@ -13,6 +13,8 @@
 #define PARTS ROBOT_R(4.0)
 /* Share of that by which the force may be larger within a step than at its ends. */
 #define LEAPS ROBOT_R(0.5)
+/* Bend over the shortest step, over what is allowed, from which on the force of a law through points is unknown. */
+#define TORN ROBOT_R(16.0)
 /* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
 #define BEYOND 2
 /* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
@@ -134,6 +136,7 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
         const robot_real force = robot_force_between(s, t);
         between = force > ROBOT_FMAX(s->f, t->f) + LEAPS*allowed ? force : ROBOT_R(0.0);
         slips = between > ROBOT_R(0.0) || robot_slip_off(s, t) > LEAPS*allowed;
+        s->torn = s->torn || (s->level >= SHORTEST && bent > TORN*allowed);
     }
     if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
@@ -251,6 +254,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     touch(s);
     s->depth = zero;
     s->swings = zero;
+    s->torn = false;
     begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
 }
 
@@ -329,5 +333,5 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
     if (goes_on && !peak->ended && s.rise > ROBOT_R(0.0)) { /* cut off by the horizon */
         see_most(&s, s.f + SHIFTS*s.phase->blur*s.time*s.rise/s.h, ROBOT_R(0.0), peak);
     }
-    peak->ended = goes_on;
+    peak->ended = goes_on && !s.torn;
 }

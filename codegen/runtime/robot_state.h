@@ -28,6 +28,7 @@ typedef struct {
     robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
     robot_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
+    bool torn; /* a law by table bent more over the shortest step than can be known */
     int past; /* steps since the touch */
     robot_real h, h_before, x; /* last steps, contact point */
     robot_real bump; /* what the bend adds to the force on average of the last step */
