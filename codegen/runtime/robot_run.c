@@ -333,5 +333,5 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
     if (goes_on && !peak->ended && s.rise > ROBOT_R(0.0)) { /* cut off by the horizon */
         see_most(&s, s.f + SHIFTS*s.phase->blur*s.time*s.rise/s.h, ROBOT_R(0.0), peak);
     }
-    peak->ended = goes_on && !s.torn;
+    peak->ended = goes_on && !(s.torn && peak->force <= budget->stop_above);
 }
