@@ -35,7 +35,7 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
     }
     for (int i = 0; i < phase->active; ++i) {
         const robot_real *const shape = &modes->shape[i][ROBOT_SYSTEM - ROBOT_DAMPERS];
-        const robot_real led = rate[i] - speed*modes->start[i];
+        const robot_real led = rate[i]/modes->row[i] - speed*modes->start[i];
         for (int j = 0; j < ROBOT_DAMPERS; ++j) {
             turned[j] += shape[j]*led;
         }
@@ -59,14 +59,14 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
         for (int j = 0; j < ROBOT_DAMPERS; ++j) {
             change += shape[j]*impulse[j];
         }
-        rate[i] -= change;
+        rate[i] -= modes->row[i]*change;
     }
 }
 
 void robot_damp_ahead(const robot_state *s, robot_real *rate)
 {
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->rate[i];
+        rate[i] = s->motion[s->at].rate[i];
     }
     robot_damp(s->phase, s->speed, s->owed + ROBOT_R(0.5)*s->step->h, rate);
 }

@@ -47,12 +47,13 @@ typedef struct {
     robot_real shape[ROBOT_MODES][ROBOT_SYSTEM];
 } robot_modes;
 
-/* One step of a mode: what amplitude, rate and force do. */
+/* One step of what a mode moves the contact point by, row amplitude: what it does by itself, and by a force. */
 typedef struct {
     robot_real cosine, sine; /* cos(wh), sin(wh)/w */
     robot_real back; /* -w sin(wh) */
-    robot_real push; /* row (1 - cos(wh))/w^2: on the amplitude, of a force that stays */
-    robot_real late; /* row (wh - sin(wh))/(w^3 h): the same of one that grows from none */
+    robot_real push; /* row^2 (1 - cos(wh))/w^2: on the place, of a force that stays */
+    robot_real late; /* row^2 (wh - sin(wh))/(w^3 h): the same of one that grows from none */
+    robot_real kick; /* row^2 sin(wh)/w: on the velocity, of a force that stays; of one that grows it is push/h */
 } robot_mode_step;
 
 /* Steps of one length. */
@@ -60,8 +61,7 @@ typedef struct {
     robot_real h; /* s */
     robot_real relax; /* what is left of the body's own deflection after a step out of contact */
     robot_real per; /* 1/h */
-    robot_real push, late; /* on the contact point */
-    robot_real kick; /* on its velocity, of a force that stays; of one that grows it is push/h */
+    robot_real push, late, kick; /* of all modes */
     robot_mode_step mode[ROBOT_MODES];
 } robot_level;
 

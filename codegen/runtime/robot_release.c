@@ -19,8 +19,10 @@ static void coordinates_of(const robot_state *s, int size, robot_real *place, ro
     for (int i = 0; i < modes->count; ++i) {
         const bool moves = i < s->phase->active;
         const robot_real led = modes->start[i]*s->speed;
-        const robot_real a = moves ? s->amplitude[i] - led*s->time : -modes->row[i]/modes->squared[i]*s->f;
-        const robot_real b = moves ? s->rate[i] - led : ROBOT_R(0.0);
+        const robot_motion *const motion = &s->motion[s->at];
+        const robot_real per = ROBOT_R(1.0)/modes->row[i];
+        const robot_real a = moves ? per*motion->place[i] - led*s->time : -modes->row[i]/modes->squared[i]*s->f;
+        const robot_real b = moves ? per*motion->rate[i] - led : ROBOT_R(0.0);
         const robot_real *const shape = modes->shape[i];
         for (int j = 0; j < size; ++j) {
             place[j] += shape[j]*a;
@@ -57,18 +59,19 @@ void robot_release(robot_state *s)
     robot_real rate[ROBOT_SYSTEM];
     robot_real a[ROBOT_MODES];
     robot_real b[ROBOT_MODES];
+    robot_feel(s);
+    robot_motion *const motion = &s->motion[s->at];
     if (s->phase->damped) {
-        robot_damp(s->phase, s->speed, s->owed, s->rate);
+        robot_damp(s->phase, s->speed, s->owed, motion->rate);
     }
     coordinates_of(s, ROBOT_STRUCTURED && impact->motors == ROBOT_MOTORS_DRIVEN ? ROBOT_N : ROBOT_SYSTEM, place, rate);
 #if ROBOT_STRUCTURED
-    const robot_modes *const before = &s->phase->modes;
     const int own = s->phase->active - (impact->gives_way ? 1 : 0);
     robot_real x = s->drifted - s->phase->compliance*s->f;
     robot_real v = s->phase->drift*s->speed;
     for (int i = 0; i < own; ++i) {
-        x += before->row[i]*s->amplitude[i];
-        v += before->row[i]*s->rate[i];
+        x += motion->place[i];
+        v += motion->rate[i];
     }
     for (int j = 0; j < ROBOT_N; ++j) {
         if (impact->motors == ROBOT_MOTORS_SERVO) {
@@ -129,12 +132,12 @@ void robot_release(robot_state *s)
     s->swings = swings_of(s, next, a, b);
     /* The body is the last of the modes that move: at least one does. */
     if (impact->gives_way && next->active > 0 && s->phase->active > 0) {
-        a[next->active - 1] = s->amplitude[s->phase->active - 1];
-        b[next->active - 1] = s->rate[s->phase->active - 1];
+        a[next->active - 1] = motion->place[s->phase->active - 1]/modes->row[next->active - 1];
+        b[next->active - 1] = motion->rate[s->phase->active - 1]/modes->row[next->active - 1];
     }
     for (int i = 0; i < next->active; ++i) {
-        s->amplitude[i] = a[i];
-        s->rate[i] = b[i];
+        motion->place[i] = modes->row[i]*a[i];
+        motion->rate[i] = modes->row[i]*b[i];
     }
     const robot_real more = next->compliance - s->phase->compliance; /* of modes that stand from now on */
     s->x += more*s->f;

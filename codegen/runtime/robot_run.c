@@ -65,6 +65,7 @@ static void tick(robot_state *s, bool longer)
     const int ticks = s->ticks - (1 << (ROBOT_LEVELS - 1 - s->level));
     s->h_before = s->h;
     s->h = h;
+    s->per = s->step->per;
     s->time += h;
     s->owed = ROBOT_R(0.5)*h;
     s->drifted += s->drift*h;
@@ -144,6 +145,7 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
     s->bump = t->bump;
     s->rise = rise;
     s->f = t->f;
+    s->u_third = s->u_before;
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
@@ -186,10 +188,9 @@ static outcome step_apart(robot_state *s, const robot_trial *t, int shortest, ro
         }
         return TO_BE_SHORTER;
     }
-    for (int i = 0; i < s->phase->active; ++i) {
-        s->amplitude[i] = t->amplitude[i];
-        s->rate[i] = t->rate[i];
-    }
+    s->at = 1 - s->at;
+    s->due.mean = ROBOT_R(0.0);
+    s->due.rise = ROBOT_R(0.0);
     s->rest = rest;
     s->x = t->x;
     return TAKEN_AND_STRAIGHT;
@@ -223,15 +224,21 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->scale = impact->scale;
     robot_phase_begin(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
+    s->at = 0;
+    s->due.level = s->step;
+    s->due.mean = zero;
+    s->due.rise = zero;
     for (int i = 0; i < phase->active; ++i) {
-        s->amplitude[i] = zero;
-        s->rate[i] = phase->modes.start[i]*speed;
+        s->motion[0].place[i] = zero;
+        s->motion[0].rate[i] = phase->modes.row[i]*phase->modes.start[i]*speed;
     }
     s->h = zero;
     s->h_before = zero;
+    s->per = zero;
     s->x = zero;
     s->rest = zero;
     s->u_before = zero;
+    s->u_third = zero;
     touch(s);
     s->depth = zero;
     s->swings = zero;

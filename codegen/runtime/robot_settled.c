@@ -15,22 +15,24 @@
  */
 #include "robot_state.h"
 
-bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share)
+bool robot_is_settled(robot_state *s, robot_real force, robot_real depth, robot_real share)
 {
     const robot_impact *const impact = s->impact;
     const robot_phase *const phase = s->phase;
     const robot_modes *const modes = &phase->modes;
     const robot_region *const region = impact->region;
     const int body = phase->active - (impact->gives_way ? 1 : 0);
+    robot_feel(s);
+    const robot_motion *const motion = &s->motion[s->at];
     robot_real r = s->drifted;
     robot_real away = phase->drift*s->speed;
     for (int i = 0; i < modes->rigid; ++i) {
-        r += modes->row[i]*s->amplitude[i];
-        away += modes->row[i]*s->rate[i];
+        r += motion->place[i];
+        away += motion->rate[i];
     }
     if (impact->gives_way && body >= 0) { /* it always is */
-        r += modes->row[body]*s->amplitude[body];
-        away += modes->row[body]*s->rate[body];
+        r += motion->place[body];
+        away += motion->rate[body];
     }
     if (!phase->settles || !(away < ROBOT_R(0.0))) {
         return false;
@@ -40,7 +42,9 @@ bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, 
     robot_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
         + (is_hertz ? ROBOT_R(0.8) : ROBOT_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
-        twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
+        const robot_real place = motion->place[i];
+        const robot_real rate = motion->rate[i];
+        twice += (rate*rate + modes->squared[i]*place*place)/(modes->row[i]*modes->row[i]);
     }
     if (phase == &impact->phase[ROBOT_LED] && impact->last == ROBOT_LOOSE
         && (!ROBOT_STRUCTURED || !(away*away > twice*impact->rotors))) {

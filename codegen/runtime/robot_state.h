@@ -8,10 +8,23 @@
 /* What the next step takes of those before it, and of its own length. */
 typedef struct {
     robot_real ratio; /* of its length to the last one's */
-    robot_real share, more, before; /* of the bend, see robot_press */
-    robot_real u, u_before; /* in u', 1/s */
+    robot_real share, whole, before; /* of the bend, see robot_press */
+    robot_real u, u_before, u_third; /* in c u' */
+    robot_real stays, grows; /* by how much less a force presses that stays, and more one that has not grown yet */
     robot_real hold, soft, yields; /* depth hold + soft f = what presses; x gives way by yields f */
+    robot_real per_hold, cubic; /* of Hertz's law, see root_of */
 } robot_pace;
+
+/* What each mode moves the contact point by, m, and how fast. */
+typedef struct {
+    robot_real place[ROBOT_MODES], rate[ROBOT_MODES];
+} robot_motion;
+
+/* The force over a step, on average and by how much it grew, which modes are yet to feel. */
+typedef struct {
+    const robot_level *level;
+    robot_real mean, rise;
+} robot_due;
 
 typedef struct {
     robot_impact *impact;
@@ -25,14 +38,16 @@ typedef struct {
     int ticks; /* of the shortest step, until the phase is over */
     robot_real time;
     robot_real drift, drifted; /* by the motors, m/s and m */
-    robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
+    robot_motion motion[2]; /* one at the last node, but for what is due; and a place for a step on trial */
+    int at; /* which is which */
+    robot_due due;
     robot_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
-    robot_real h, h_before, x; /* last steps, contact point */
+    robot_real h, h_before, per, x; /* last steps, contact point */
     robot_real bump; /* what the bend adds to the force on average of the last step */
     robot_real f, rise; /* force, and by how much it grew in the last step */
-    robot_real u, u_before; /* deformation of the skin and of what stands */
+    robot_real u, u_before, u_third; /* deformation of the skin and of what stands */
     robot_real now, root; /* depth of the skin, and its root under Hertz's law */
     robot_real rest; /* deflection of the body out of contact */
     robot_real depth; /* of the skin at the largest force so far */
@@ -54,13 +69,12 @@ struct robot_watch {
 };
 
 /* Notes a step that was taken: the late force; says whether none that matters can come. */
-bool robot_pass(const robot_state *s, robot_watch *watch);
+bool robot_pass(robot_state *s, robot_watch *watch);
 
 /* A step on trial. */
 typedef struct {
-    robot_real amplitude[ROBOT_MODES], rate[ROBOT_MODES];
     robot_real x, v; /* of the contact point without the force at the end */
-    robot_real f, bump, base, share; /* force at the end; what its bend adds on the way */
+    robot_real f, bump, mean; /* force at the end; what its bend adds on the way; force on average, less half its rise */
     robot_real u, depth, root;
 } robot_trial;
 
@@ -72,8 +86,11 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
 /* Rates of modes, damped until halfway through the next step. */
 void robot_damp_ahead(const robot_state *s, robot_real *rate);
 
-/* Moves all modes by a step without forces. */
-void robot_glide(const robot_state *s, robot_trial *t);
+/* Moves all modes by a step without forces, on trial. */
+void robot_glide(robot_state *s, robot_trial *t);
+
+/* Lets modes feel what is due. */
+void robot_feel(robot_state *s);
 
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
 void robot_press(robot_state *s, robot_trial *t);
@@ -82,12 +99,12 @@ void robot_press(robot_state *s, robot_trial *t);
  * Largest force of a law through points within the step, as if it did not slow down robot and body more on the
  * way: a law that gets stiff between two nodes may press hard there and show at neither.
  */
-robot_real robot_force_between(const robot_state *s, const robot_trial *t);
+robot_real robot_force_between(robot_state *s, const robot_trial *t);
 
 /* What the damper's force at the end may be off where the skin gets stiff within the step, as u' is a difference. */
 robot_real robot_slip_off(const robot_state *s, const robot_trial *t);
 
-/* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
+/* Takes the step: its force, linear with the mean of what the bend adds, is due. */
 void robot_take(const robot_trial *t, robot_state *s);
 
 /* Goes over from motors that drive or servo to loose ones. */
@@ -97,6 +114,6 @@ void robot_release(robot_state *s);
  * Whether no later force exceeds one, the present one being less, under which the skin is so deep: proven,
  * but for a share by which the energy may exceed what that takes.
  */
-bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share);
+bool robot_is_settled(robot_state *s, robot_real force, robot_real depth, robot_real share);
 
 #endif

@@ -29,6 +29,11 @@
  */
 #define JUMPS ROBOT_R(0.1)
 #define JUMP_STEP ROBOT_R(24.0)
+/*
+ * Least that a mode moves the contact point by, as a share of all that moves it: as modes are followed by that, one
+ * that hardly does must not be lost, and so little is not felt.
+ */
+#define LEAST_ROW ROBOT_R(1e-6)
 /* Steps counted; more than any budget has. */
 #define MOST ROBOT_R(1e6)
 
@@ -125,16 +130,17 @@ static void mode_steps(robot_phase *phase)
         robot_real kicks = ROBOT_R(0.0);
         for (int i = 0; i < phase->active; ++i) {
             robot_mode_step *const step = &level->mode[i];
-            const robot_real row = modes->row[i];
+            const robot_real weight = modes->row[i]*modes->row[i];
             const robot_real cosine = one - modes->squared[i]*push[i];
             step->cosine = cosine;
             step->sine = sine[i];
             step->back = -modes->squared[i]*sine[i];
-            step->push = row*push[i];
-            step->late = row*late[i];
-            pushes += row*step->push;
-            lates += row*step->late;
-            kicks += row*row*sine[i];
+            step->push = weight*push[i];
+            step->late = weight*late[i];
+            step->kick = weight*sine[i];
+            pushes += step->push;
+            lates += step->late;
+            kicks += step->kick;
             late[i] += sine[i]*push[i]*per;
             push[i] = ROBOT_R(2.0)*sine[i]*sine[i];
             sine[i] *= ROBOT_R(2.0)*cosine;
@@ -167,6 +173,10 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
+    const robot_real least = LEAST_ROW*ROBOT_SQRT(impact->mobility);
+    for (int i = 0; i < modes->count; ++i) {
+        modes->row[i] = ROBOT_FABS(modes->row[i]) > least ? modes->row[i] : least;
+    }
     const robot_real end = ROBOT_R(1.0)/ROBOT_HORIZON(impact->p);
     let_stand(impact, ROBOT_FMAX(contact, end*end), released, phase);
     robot_real moving = ROBOT_R(0.0);
