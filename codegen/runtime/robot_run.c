@@ -5,6 +5,12 @@
 /* Half the second difference of the force, over its size, above which a step is halved. */
 #define BENDS ROBOT_R(0.025)
 #define BENDS_ROUGH ROBOT_R(0.15)
+/*
+ * Below the largest force so far only what comes later counts: these shares of half the second difference, and of half
+ * the third, stand for the former from the fourth node of a contact on.
+ */
+#define BENDS_BELOW ROBOT_R(0.3)
+#define TWISTS_BELOW ROBOT_R(0.8)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT ROBOT_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
@@ -105,12 +111,24 @@ static void see_top(const robot_state *s, const robot_trial *t, robot_peak *peak
     see(s, force, since, peak);
 }
 
+/* By how much the force bends over a step, as far as that matters. */
+static robot_real bend_of(const robot_state *s, const robot_trial *t, const robot_peak *peak)
+{
+    const robot_real bent = ROBOT_R(6.0)*ROBOT_FABS(t->bump);
+    if (s->past <= 2 || !(s->f < peak->force)) {
+        return bent;
+    }
+    const robot_real ratio = s->pace.ratio;
+    const robot_real twisted = ROBOT_R(6.0)*ROBOT_FABS(t->bump - ratio*ratio*s->bump);
+    return ROBOT_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted);
+}
+
 /* A step in contact. */
 static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, int shortest, robot_peak *peak)
 {
     robot_press(s, t);
     const robot_real allowed = bends*ROBOT_FMAX(s->scale, peak->force);
-    const robot_real bent = ROBOT_R(6.0)*ROBOT_FABS(t->bump);
+    const robot_real bent = bend_of(s, t, peak);
     const robot_real rise = t->f - s->f;
     const bool parts = !(t->f > ROBOT_R(0.0));
     robot_real between = ROBOT_R(0.0); /* nodes of a law through points, where it leaps there */
@@ -141,7 +159,8 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
         s->rest = ROBOT_FMAX(t->x, (s->x - s->u)*s->step->relax);
     }
     const robot_real most = STRAIGHT*allowed;
-    const bool straight = s->past > 0 && bent <= most && ROBOT_R(6.0)*ROBOT_FABS(s->bump) <= most;
+    const bool straight = s->past > 0 && bent <= most && s->bent <= most;
+    s->bent = bent;
     s->bump = t->bump;
     s->rise = rise;
     s->f = t->f;
@@ -165,6 +184,7 @@ static void touch(robot_state *s)
     s->f = ROBOT_R(0.0);
     s->rise = ROBOT_R(0.0);
     s->bump = ROBOT_R(0.0);
+    s->bent = ROBOT_R(0.0);
     s->now = ROBOT_R(0.0);
     s->root = ROBOT_R(0.0);
 }

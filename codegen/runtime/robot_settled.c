@@ -15,24 +15,35 @@
  */
 #include "robot_state.h"
 
-bool robot_is_settled(robot_state *s, robot_real force, robot_real depth, robot_real share)
+/* Place and velocity of the contact point by a mode, after the force that is due. */
+static robot_real place_of(const robot_state *s, int mode)
+{
+    const robot_mode_step *const step = &s->due.level->mode[mode];
+    return s->motion[s->at].place[mode] - step->push*s->due.mean - step->late*s->due.rise;
+}
+
+static robot_real rate_of(const robot_state *s, int mode)
+{
+    const robot_mode_step *const step = &s->due.level->mode[mode];
+    return s->motion[s->at].rate[mode] - step->kick*s->due.mean - step->push*s->due.rise*s->due.level->per;
+}
+
+bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share)
 {
     const robot_impact *const impact = s->impact;
     const robot_phase *const phase = s->phase;
     const robot_modes *const modes = &phase->modes;
     const robot_region *const region = impact->region;
     const int body = phase->active - (impact->gives_way ? 1 : 0);
-    robot_feel(s);
-    const robot_motion *const motion = &s->motion[s->at];
     robot_real r = s->drifted;
     robot_real away = phase->drift*s->speed;
     for (int i = 0; i < modes->rigid; ++i) {
-        r += motion->place[i];
-        away += motion->rate[i];
+        r += place_of(s, i);
+        away += rate_of(s, i);
     }
     if (impact->gives_way && body >= 0) { /* it always is */
-        r += motion->place[body];
-        away += motion->rate[body];
+        r += place_of(s, body);
+        away += rate_of(s, body);
     }
     if (!phase->settles || !(away < ROBOT_R(0.0))) {
         return false;
@@ -42,8 +53,8 @@ bool robot_is_settled(robot_state *s, robot_real force, robot_real depth, robot_
     robot_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
         + (is_hertz ? ROBOT_R(0.8) : ROBOT_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
-        const robot_real place = motion->place[i];
-        const robot_real rate = motion->rate[i];
+        const robot_real place = place_of(s, i);
+        const robot_real rate = rate_of(s, i);
         twice += (rate*rate + modes->squared[i]*place*place)/(modes->row[i]*modes->row[i]);
     }
     if (phase == &impact->phase[ROBOT_LED] && impact->last == ROBOT_LOOSE

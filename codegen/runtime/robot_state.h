@@ -45,7 +45,7 @@ typedef struct {
     bool touching;
     int past; /* steps since the touch */
     robot_real h, h_before, per, x; /* last steps, contact point */
-    robot_real bump; /* what the bend adds to the force on average of the last step */
+    robot_real bump, bent; /* what the bend adds to the force on average of the last step; the bend as it matters */
     robot_real f, rise; /* force, and by how much it grew in the last step */
     robot_real u, u_before, u_third; /* deformation of the skin and of what stands */
     robot_real now, root; /* depth of the skin, and its root under Hertz's law */
@@ -69,7 +69,7 @@ struct robot_watch {
 };
 
 /* Notes a step that was taken: the late force; says whether none that matters can come. */
-bool robot_pass(robot_state *s, robot_watch *watch);
+bool robot_pass(const robot_state *s, robot_watch *watch);
 
 /* A step on trial. */
 typedef struct {
@@ -114,6 +114,6 @@ void robot_release(robot_state *s);
  * Whether no later force exceeds one, the present one being less, under which the skin is so deep: proven,
  * but for a share by which the energy may exceed what that takes.
  */
-bool robot_is_settled(robot_state *s, robot_real force, robot_real depth, robot_real share);
+bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share);
 
 #endif

@@ -12,7 +12,7 @@
 /* Steps after which it is looked whether the rest matters. */
 #define LOOKS_LATE 2
 
-bool robot_pass(robot_state *s, robot_watch *watch)
+bool robot_pass(const robot_state *s, robot_watch *watch)
 {
     watch->apart = s->touching ? watch->apart : s->time;
     const robot_real from = watch->slower && watch->apart > ROBOT_R(0.0) ? AGAIN : LATE;
