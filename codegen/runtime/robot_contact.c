@@ -25,7 +25,7 @@
 
 void robot_feel(robot_state *s)
 {
-    robot_motion *const motion = &s->motion[s->at];
+    robot_motion *const motion = s->motion;
     const robot_level *const level = s->due.level;
     const robot_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
@@ -46,9 +46,9 @@ void robot_glide(robot_state *s, robot_trial *t)
         robot_feel(s);
         robot_damp_ahead(s, damped);
     }
-    const robot_motion *const motion = &s->motion[s->at];
+    const robot_motion *const motion = s->motion;
     const robot_real *const rate = phase->damped ? damped : motion->rate;
-    robot_motion *const next = &s->motion[1 - s->at];
+    robot_motion *const next = s->trial;
     const robot_level *const felt = s->due.level;
     const robot_real mean = s->due.mean;
     const robot_real rise = s->due.rise;
@@ -100,7 +100,7 @@ static robot_real root_of(robot_real depth, robot_real cubic, robot_real guess)
  */
 static void set_pace(robot_state *s)
 {
-    const robot_region *const region = s->impact->region;
+    const robot_region *const region = s->region;
     const robot_level *const level = s->step;
     const robot_real one = ROBOT_R(1.0);
     const robot_real h = level->h;
@@ -144,7 +144,7 @@ static void set_pace(robot_state *s)
 
 void robot_press(robot_state *s, robot_trial *t)
 {
-    const robot_region *const region = s->impact->region;
+    const robot_region *const region = s->region;
     const robot_level *const level = s->step;
     const robot_pace *const pace = &s->pace;
     if (s->even < LIKE) {
@@ -180,17 +180,19 @@ void robot_press(robot_state *s, robot_trial *t)
     }
 }
 
-void robot_take(const robot_trial *t, robot_state *s)
+void robot_take(robot_state *s, robot_real mean, robot_real rise)
 {
-    s->at = 1 - s->at;
+    robot_motion *const before = s->motion;
+    s->motion = s->trial;
+    s->trial = before;
     s->due.level = s->step;
-    s->due.mean = t->mean;
-    s->due.rise = t->f - s->f;
+    s->due.mean = mean;
+    s->due.rise = rise;
 }
 
 robot_real robot_force_between(robot_state *s, const robot_trial *t)
 {
-    const robot_region *const region = s->impact->region;
+    const robot_region *const region = s->region;
     const robot_phase *const phase = s->phase;
     const robot_level *const level = s->step;
     const robot_real h = level->h;
@@ -198,7 +200,7 @@ robot_real robot_force_between(robot_state *s, const robot_trial *t)
     robot_real before = s->drift;
     robot_feel(s);
     for (int i = 0; i < phase->active; ++i) {
-        before += s->motion[s->at].rate[i];
+        before += s->motion->rate[i];
     }
     before *= h;
     robot_real most = ROBOT_R(0.0);
@@ -223,5 +225,5 @@ robot_real robot_slip_off(const robot_state *s, const robot_trial *t)
 {
     const robot_real rate = (t->u - s->u)*s->step->per;
     const robot_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
-    return s->impact->region->damping*ROBOT_FABS(rate - before);
+    return s->region->damping*ROBOT_FABS(rate - before);
 }

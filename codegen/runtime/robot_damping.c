@@ -66,7 +66,7 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
 void robot_damp_ahead(const robot_state *s, robot_real *rate)
 {
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion[s->at].rate[i];
+        rate[i] = s->motion->rate[i];
     }
     robot_damp(s->phase, s->speed, s->owed + ROBOT_R(0.5)*s->step->h, rate);
 }

@@ -19,7 +19,7 @@ static void coordinates_of(const robot_state *s, int size, robot_real *place, ro
     for (int i = 0; i < modes->count; ++i) {
         const bool moves = i < s->phase->active;
         const robot_real led = modes->start[i]*s->speed;
-        const robot_motion *const motion = &s->motion[s->at];
+        const robot_motion *const motion = s->motion;
         const robot_real per = ROBOT_R(1.0)/modes->row[i];
         const robot_real a = moves ? per*motion->place[i] - led*s->time : -modes->row[i]/modes->squared[i]*s->f;
         const robot_real b = moves ? per*motion->rate[i] - led : ROBOT_R(0.0);
@@ -60,7 +60,7 @@ void robot_release(robot_state *s)
     robot_real a[ROBOT_MODES];
     robot_real b[ROBOT_MODES];
     robot_feel(s);
-    robot_motion *const motion = &s->motion[s->at];
+    robot_motion *const motion = s->motion;
     if (s->phase->damped) {
         robot_damp(s->phase, s->speed, s->owed, motion->rate);
     }

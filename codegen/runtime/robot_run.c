@@ -82,15 +82,17 @@ static void tick(robot_state *s, bool longer)
     }
 }
 
-/* Notes a force; `since` is its time less that of the last node. */
-static void see(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
+/* Notes a force if it is the largest; `since` is its time less that of the last node. */
+static bool see(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
 {
     const robot_real most = force + s->swings;
-    if (most > peak->force) {
+    const bool largest = most > peak->force;
+    if (largest) {
         peak->force = most;
         peak->time = s->time + since;
         peak->contact = peak->contacts;
     }
+    return largest;
 }
 
 /* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
@@ -108,7 +110,7 @@ static void see_top(const robot_state *s, const robot_trial *t, robot_peak *peak
         const robot_real twist = (bend - bent)/(h + s->h + s->h_before);
         force += twist*since*(since + s->h)*(since - h);
     }
-    see(s, force, since, peak);
+    (void)see(s, force, since, peak);
 }
 
 /* By how much the force bends over a step, as far as that matters. */
@@ -133,7 +135,7 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
     const bool parts = !(t->f > ROBOT_R(0.0));
     robot_real between = ROBOT_R(0.0); /* nodes of a law through points, where it leaps there */
     bool slips = false;
-    if (s->impact->region->law != NULL) {
+    if (s->region->law != NULL) {
         const robot_real force = robot_force_between(s, t);
         between = force > ROBOT_FMAX(s->f, t->f) + LEAPS*allowed ? force : ROBOT_R(0.0);
         slips = between > ROBOT_R(0.0) || robot_slip_off(s, t) > LEAPS*allowed;
@@ -142,11 +144,10 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
         change_level(s, s->level + 1);
         return TO_BE_SHORTER;
     }
-    robot_take(t, s);
+    robot_take(s, t->mean, rise);
     const bool rises = rise >= ROBOT_R(0.0);
-    if (rises) {
-        s->depth = t->f > peak->force ? t->depth : s->depth;
-        see(s, t->f, s->step->h, peak);
+    if (rises && see(s, t->f, s->step->h, peak)) {
+        s->depth = t->depth;
     }
     if (!rises && s->past > 0 && s->rise >= ROBOT_R(0.0)) {
         see_top(s, t, peak);
@@ -159,7 +160,7 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
         s->rest = ROBOT_FMAX(t->x, (s->x - s->u)*s->step->relax);
     }
     const robot_real most = STRAIGHT*allowed;
-    const bool straight = s->past > 0 && bent <= most && s->bent <= most;
+    const bool straight = bent <= most && s->bent <= most && s->past > 0;
     s->bent = bent;
     s->bump = t->bump;
     s->rise = rise;
@@ -208,9 +209,7 @@ static outcome step_apart(robot_state *s, const robot_trial *t, int shortest, ro
         }
         return TO_BE_SHORTER;
     }
-    s->at = 1 - s->at;
-    s->due.mean = ROBOT_R(0.0);
-    s->due.rise = ROBOT_R(0.0);
+    robot_take(s, ROBOT_R(0.0), ROBOT_R(0.0));
     s->rest = rest;
     s->x = t->x;
     return TAKEN_AND_STRAIGHT;
@@ -240,17 +239,19 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     const robot_phase *const phase = &impact->phase[impact->first];
     const robot_real zero = ROBOT_R(0.0);
     s->impact = impact;
+    s->region = impact->region;
     s->speed = speed;
     s->scale = impact->scale;
     robot_phase_begin(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
-    s->at = 0;
+    s->motion = &s->motions[0];
+    s->trial = &s->motions[1];
     s->due.level = s->step;
     s->due.mean = zero;
     s->due.rise = zero;
     for (int i = 0; i < phase->active; ++i) {
-        s->motion[0].place[i] = zero;
-        s->motion[0].rate[i] = phase->modes.row[i]*phase->modes.start[i]*speed;
+        s->motion->place[i] = zero;
+        s->motion->rate[i] = phase->modes.row[i]*phase->modes.start[i]*speed;
     }
     s->h = zero;
     s->h_before = zero;
@@ -275,7 +276,7 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
     robot_trial t;
     int falls = 0; /* steps of a falling force, or of none, since it was looked whether the rest matters */
     while (s->ticks > 0) {
-        if (budget->steps <= 0 || peak->contacts > MOST_CONTACTS) {
+        if (budget->steps <= 0) {
             return false;
         }
         --budget->steps;
@@ -291,15 +292,20 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
         const outcome was = s->touching ? step_pressed(s, &t, bends, shortest, peak)
             : step_apart(s, &t, rough ? SHORTEST_ROUGH : SHORTEST_APART, peak);
         if (was == TO_BE_SHORTER) {
+            if (peak->contacts > MOST_CONTACTS) {
+                return false;
+            }
             continue;
         }
         const bool is_longest = s->touching && !rough && s->level <= s->phase->longest_pressed;
         tick(s, was == TAKEN_AND_STRAIGHT && !is_longest);
-        const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
-        falls += fell && s->phase->settles && !(s->rise > ROBOT_R(0.0)) ? 1 : 0;
-        peak->ended = fell && (peak->force > budget->stop_above || (rough && !s->touching));
         if (budget->watch != NULL) {
             peak->ended = robot_pass(s, budget->watch);
+        } else if (s->f + s->swings < peak->force) {
+            falls += s->phase->settles && !(s->rise > ROBOT_R(0.0)) ? 1 : 0;
+            peak->ended = peak->force > budget->stop_above || (rough && !s->touching);
+        } else {
+            peak->ended = false;
         }
         if (peak->ended) {
             return true;

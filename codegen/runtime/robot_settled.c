@@ -19,13 +19,13 @@
 static robot_real place_of(const robot_state *s, int mode)
 {
     const robot_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion[s->at].place[mode] - step->push*s->due.mean - step->late*s->due.rise;
+    return s->motion->place[mode] - step->push*s->due.mean - step->late*s->due.rise;
 }
 
 static robot_real rate_of(const robot_state *s, int mode)
 {
     const robot_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion[s->at].rate[mode] - step->kick*s->due.mean - step->push*s->due.rise*s->due.level->per;
+    return s->motion->rate[mode] - step->kick*s->due.mean - step->push*s->due.rise*s->due.level->per;
 }
 
 bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share)

@@ -28,6 +28,7 @@ typedef struct {
 
 typedef struct {
     robot_impact *impact;
+    const robot_region *region;
     const robot_phase *phase;
     robot_real speed;
     robot_real scale; /* of forces, N */
@@ -38,8 +39,8 @@ typedef struct {
     int ticks; /* of the shortest step, until the phase is over */
     robot_real time;
     robot_real drift, drifted; /* by the motors, m/s and m */
-    robot_motion motion[2]; /* one at the last node, but for what is due; and a place for a step on trial */
-    int at; /* which is which */
+    robot_motion *motion, *trial; /* at the last node, but for what is due; and after a step on trial */
+    robot_motion motions[2]; /* where they are */
     robot_due due;
     robot_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
@@ -104,8 +105,8 @@ robot_real robot_force_between(robot_state *s, const robot_trial *t);
 /* What the damper's force at the end may be off where the skin gets stiff within the step, as u' is a difference. */
 robot_real robot_slip_off(const robot_state *s, const robot_trial *t);
 
-/* Takes the step: its force, linear with the mean of what the bend adds, is due. */
-void robot_take(const robot_trial *t, robot_state *s);
+/* Takes the step: its force, `mean` less half its rise on average, is due. */
+void robot_take(robot_state *s, robot_real mean, robot_real rise);
 
 /* Goes over from motors that drive or servo to loose ones. */
 void robot_release(robot_state *s);
