@@ -4,8 +4,8 @@
  *
  * Skin and body in series: f(d) = k_h s + c_h s' with s = x - u, where x is how far the contact point
  * has come, u = d + (compliance of modes that stand) f, and f(d) = k_f d^1.5 or a law of robot_law.c. x' is
- * exact at every node and u' a backward difference, so that no damping makes it unstable. The force is
- * quadratic between nodes; steps are halved where it bends too much for that.
+ * exact at every node and u' a difference of the last four nodes, so that no damping makes it unstable. The force
+ * is quadratic between nodes; steps are halved where it bends too much for that.
  */
 #include "robot_state.h"
 

@@ -31,6 +31,8 @@
 /* Level of such a first step. */
 #define LONGEST 4
 #define LONGEST_ROUGH 1
+/* Share of the largest force below which a rough run ends: what it finds is a guess. */
+#define GUESSED ROBOT_R(0.5)
 /* Share of what a harder contact takes up to which rough runs take it to be out of reach. */
 #define ROUGHLY ROBOT_R(3.0)
 /*
@@ -266,7 +268,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
 }
 
-/* Steps through a phase, a rough run until they part; false if the steps do not do. */
+/* Steps through a phase, a rough run until its force has fallen; false if the steps do not do. */
 static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
 {
     const bool rough = budget->rough;
@@ -303,7 +305,7 @@ static bool run_phase(robot_state *s, robot_budget *budget, robot_peak *peak)
             peak->ended = robot_pass(s, budget->watch);
         } else if (s->f + s->swings < peak->force) {
             falls += s->phase->settles && !(s->rise > ROBOT_R(0.0)) ? 1 : 0;
-            peak->ended = peak->force > budget->stop_above || (rough && !s->touching);
+            peak->ended = peak->force > budget->stop_above || (rough && s->f < GUESSED*peak->force);
         } else {
             peak->ended = false;
         }

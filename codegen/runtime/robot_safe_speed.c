@@ -3,7 +3,7 @@
 #include "robot_impact.h"
 
 /* Share of the limit at which trials aim, below ROBOT_KEPT, and from which on one is near enough. */
-#define AIM ROBOT_R(0.984)
+#define AIM ROBOT_R(0.9825)
 #define NEAR_ENOUGH ROBOT_R(0.977)
 /*
  * Smoothness below which a body damps harder than it springs back, or above which it hardly damps, so that errors grow
