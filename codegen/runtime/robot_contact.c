@@ -42,9 +42,11 @@ void robot_glide(robot_state *s, robot_trial *t)
     const robot_phase *const phase = s->phase;
     const robot_level *const level = s->step;
     robot_real damped[ROBOT_MODES];
+    robot_real v = s->drift;
     if (phase->damped) {
         robot_feel(s);
         robot_damp_ahead(s, damped);
+        v -= robot_owed_slip(s, damped);
     }
     const robot_motion *const motion = s->motion;
     const robot_real *const rate = phase->damped ? damped : motion->rate;
@@ -54,7 +56,6 @@ void robot_glide(robot_state *s, robot_trial *t)
     const robot_real rise = s->due.rise;
     const robot_real slope = rise*felt->per;
     robot_real x = s->drifted + s->drift*level->h;
-    robot_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
         const robot_mode_step *const due = &felt->mode[i];
         const robot_mode_step *const step = &level->mode[i];
@@ -134,7 +135,7 @@ static void set_pace(robot_state *s)
     pace->u_third = damping*third;
     pace->u = damping*lag + pace->u_before - pace->u_third;
     pace->stays = region->stiffness*level->push + damping*level->kick;
-    pace->grows = region->stiffness*level->late + damping*level->push*rate;
+    pace->grows = region->stiffness*level->late + damping*level->grow;
     pace->yields = level->late - pace->whole*level->push;
     pace->hold = region->stiffness + damping*lag;
     pace->soft = one + pace->grows - pace->whole*pace->stays + pace->hold*s->phase->compliance;
@@ -196,7 +197,7 @@ robot_real robot_force_between(robot_state *s, const robot_trial *t)
     const robot_phase *const phase = s->phase;
     const robot_level *const level = s->step;
     const robot_real h = level->h;
-    const robot_real after = h*(t->v - level->kick*t->mean) - level->push*(t->f - s->f);
+    const robot_real after = h*(t->v - level->kick*t->mean - level->grow*(t->f - s->f));
     robot_real before = s->drift;
     robot_feel(s);
     for (int i = 0; i < phase->active; ++i) {

@@ -7,9 +7,33 @@
  */
 #include "robot_state.h"
 
+/* What dampers do to the contact point by each mode's part of its velocity: row S'DS over the mode's own row. */
+static void slow_contact(robot_phase *phase)
+{
+    const robot_modes *const modes = &phase->modes;
+    robot_real held[ROBOT_DAMPERS];
+    for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+        robot_real sum = ROBOT_R(0.0);
+        for (int k = 0; k < modes->count; ++k) {
+            sum += modes->row[k]*modes->shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS + j];
+        }
+        held[j] = phase->damping[j]*sum;
+    }
+    for (int k = 0; k < modes->count; ++k) {
+        phase->slows[k] = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+            phase->slows[k] += modes->shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS + j]*held[j];
+        }
+        phase->slows[k] /= modes->row[k];
+    }
+}
+
 robot_real robot_damping_rate(robot_phase *phase)
 {
     robot_real rate = ROBOT_R(0.0);
+    if (phase->damped) {
+        slow_contact(phase);
+    }
     for (int i = 0; i < ROBOT_DAMPERS && phase->damped; ++i) {
         for (int j = 0; j <= i; ++j) {
             robot_real sum = ROBOT_R(0.0);
@@ -69,4 +93,16 @@ void robot_damp_ahead(const robot_state *s, robot_real *rate)
         rate[i] = s->motion->rate[i];
     }
     robot_damp(s->phase, s->speed, s->owed + ROBOT_R(0.5)*s->step->h, rate);
+}
+
+robot_real robot_owed_slip(const robot_state *s, const robot_real *rate)
+{
+    const robot_phase *const phase = s->phase;
+    const robot_level *const level = s->step;
+    robot_real slowed = ROBOT_R(0.0);
+    for (int i = 0; i < phase->active; ++i) {
+        const robot_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
+        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+    }
+    return ROBOT_R(0.5)*level->h*slowed;
 }

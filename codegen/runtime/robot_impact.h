@@ -61,7 +61,8 @@ typedef struct {
     robot_real h; /* s */
     robot_real relax; /* what is left of the body's own deflection after a step out of contact */
     robot_real per; /* 1/h */
-    robot_real push, late, kick; /* of all modes */
+    robot_real push, late, kick; /* of all modes, the kick less what dampers take of it within the step */
+    robot_real grow; /* kick of a force that grows from none */
     robot_mode_step mode[ROBOT_MODES];
 } robot_level;
 
@@ -70,6 +71,7 @@ typedef struct {
     bool known; /* modes are those of this arrival; the body is one of them if it `has_body` */
     bool has_body;
     bool ready; /* steps are */
+    robot_real blur; /* share of an approach that rounding may change */
     bool blurred; /* too few digits to integrate it */
     bool settles; /* motors do not push on and on, nothing else brings energy: see robot_settled.c */
     robot_modes modes; /* the first `active` ones move, the others stand, bent by the force */
@@ -79,11 +81,15 @@ typedef struct {
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     robot_real damping[ROBOT_DAMPERS];
+    robot_real slows[ROBOT_MODES]; /* the contact point, by each mode's part of its velocity, 1/s */
     robot_real together[ROBOT_DAMPERS][ROBOT_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     int longest_pressed; /* level of the longest step in contact */
     robot_level level[ROBOT_LEVELS];
 } robot_phase;
+
+/* Smoothness below which a body's damper makes forces ripple with modes that steps pass over. */
+#define ROBOT_HARD ROBOT_R(0.4)
 
 /* Everything that does not depend on the speed. */
 typedef struct {
@@ -98,6 +104,7 @@ typedef struct {
     robot_real skin_rate; /* squared frequency of the contact with a stiff body, 1/s^2 */
     robot_real scale; /* of forces, N: what bends are measured by */
     robot_real smooth; /* 1, or less where the damper makes forces jump */
+    int sure; /* contacts before forces are in doubt: errors grow from one to the next */
     int first, last; /* phases of an impact */
     int status; /* of what was prepared */
     robot_phase phase[2]; /* ROBOT_LED and ROBOT_LOOSE */
@@ -117,13 +124,15 @@ typedef struct robot_watch robot_watch;
 typedef struct {
     int steps; /* that are left */
     bool rough; /* longer steps do */
+    bool fine; /* only shorter ones do */
     robot_real stop_above; /* force after whose passing the rest does not matter, N */
     robot_watch *watch; /* who sees each step and ends the impact, or NULL; robot_state.h */
 } robot_budget;
 
 typedef struct {
     robot_real force; /* largest, N */
-    robot_real time; /* of it since first touch, s */
+    robot_real later; /* the same of contacts in doubt */
+    robot_real time; /* of the largest since first touch, s */
     int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */

@@ -128,6 +128,12 @@ static void mode_steps(robot_phase *phase)
         robot_real pushes = ROBOT_R(0.0);
         robot_real lates = ROBOT_R(0.0);
         robot_real kicks = ROBOT_R(0.0);
+        robot_real slowed = ROBOT_R(0.0); /* by dampers, over half a step */
+        robot_real slowed_late = ROBOT_R(0.0);
+        for (int i = 0; phase->damped && i < phase->active; ++i) {
+            slowed += ROBOT_R(0.5)*phase->slows[i]*modes->row[i]*modes->row[i]*sine[i];
+            slowed_late += ROBOT_R(0.5)*phase->slows[i]*modes->row[i]*modes->row[i]*push[i];
+        }
         for (int i = 0; i < phase->active; ++i) {
             robot_mode_step *const step = &level->mode[i];
             const robot_real weight = modes->row[i]*modes->row[i];
@@ -148,7 +154,8 @@ static void mode_steps(robot_phase *phase)
         level->per = per;
         level->push = pushes;
         level->late = lates;
-        level->kick = kicks;
+        level->kick = kicks - h*slowed;
+        level->grow = pushes*per - slowed_late;
         h += h;
     }
 }
