@@ -15,14 +15,14 @@ static void slow_contact(robot_phase *phase)
     for (int j = 0; j < ROBOT_DAMPERS; ++j) {
         robot_real sum = ROBOT_R(0.0);
         for (int k = 0; k < modes->count; ++k) {
-            sum += modes->row[k]*modes->shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS + j];
+            sum += modes->row[k]*modes->shape[modes->from[k]][ROBOT_SYSTEM - ROBOT_DAMPERS + j];
         }
         held[j] = phase->damping[j]*sum;
     }
     for (int k = 0; k < modes->count; ++k) {
         phase->slows[k] = ROBOT_R(0.0);
         for (int j = 0; j < ROBOT_DAMPERS; ++j) {
-            phase->slows[k] += modes->shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS + j]*held[j];
+            phase->slows[k] += modes->shape[modes->from[k]][ROBOT_SYSTEM - ROBOT_DAMPERS + j]*held[j];
         }
         phase->slows[k] /= modes->row[k];
     }
@@ -38,7 +38,8 @@ robot_real robot_damping_rate(robot_phase *phase)
         for (int j = 0; j <= i; ++j) {
             robot_real sum = ROBOT_R(0.0);
             for (int k = 0; k < phase->modes.count; ++k) {
-                const robot_real *const shape = &phase->modes.shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS];
+                const int from = phase->modes.from[k];
+                const robot_real *const shape = &phase->modes.shape[from][ROBOT_SYSTEM - ROBOT_DAMPERS];
                 sum += shape[i]*shape[j];
             }
             phase->together[i][j] = sum;
@@ -58,7 +59,7 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
         turned[j] = ROBOT_R(0.0);
     }
     for (int i = 0; i < phase->active; ++i) {
-        const robot_real *const shape = &modes->shape[i][ROBOT_SYSTEM - ROBOT_DAMPERS];
+        const robot_real *const shape = &modes->shape[modes->from[i]][ROBOT_SYSTEM - ROBOT_DAMPERS];
         const robot_real led = rate[i]/modes->row[i] - speed*modes->start[i];
         for (int j = 0; j < ROBOT_DAMPERS; ++j) {
             turned[j] += shape[j]*led;
@@ -78,7 +79,7 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
         impulse[j] = time*phase->damping[j]*turned[j];
     }
     for (int i = 0; i < phase->active; ++i) {
-        const robot_real *const shape = &modes->shape[i][ROBOT_SYSTEM - ROBOT_DAMPERS];
+        const robot_real *const shape = &modes->shape[modes->from[i]][ROBOT_SYSTEM - ROBOT_DAMPERS];
         robot_real change = ROBOT_R(0.0);
         for (int j = 0; j < ROBOT_DAMPERS; ++j) {
             change += shape[j]*impulse[j];
