@@ -8,7 +8,7 @@
 /* Share of it that is allowed where contacts before may have left an error. */
 #define BENDS_FINE ROBOT_R(0.1)
 /*
- * Below the largest force so far only what comes later counts: these shares of half the second difference, and of half
+ * Below the largest force so far mostly only what comes later counts: these shares of half the second difference, and of half
  * the third, stand for the former from the fourth node of a contact on.
  */
 #define BENDS_BELOW ROBOT_R(0.3)
@@ -129,7 +129,7 @@ static void see_top(const robot_state *s, const robot_trial *t, robot_peak *peak
 static robot_real bend_of(const robot_state *s, const robot_trial *t, const robot_peak *peak)
 {
     const robot_real bent = ROBOT_R(6.0)*ROBOT_FABS(t->bump);
-    if (s->past <= 2 || !(s->f < peak->force)) {
+    if (s->all_count || s->past <= 2 || !(s->f < peak->force)) {
         return bent;
     }
     const robot_real ratio = s->pace.ratio;
@@ -253,6 +253,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->impact = impact;
     s->region = impact->region;
     s->speed = speed;
+    s->all_count = false;
     s->scale = impact->scale;
     robot_phase_begin(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
@@ -341,6 +342,7 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
         return;
     }
     start(impact, speed, budget->rough, &s);
+    s.all_count = budget->fine || budget->watch != NULL;
     bool goes_on = run_phase(&s, budget, peak);
     if (goes_on && !peak->ended && impact->last > impact->first) {
         robot_impact_let_go(impact);

@@ -31,6 +31,7 @@ typedef struct {
     const robot_region *region;
     const robot_phase *phase;
     robot_real speed;
+    bool all_count; /* forces below the largest so far, too */
     robot_real scale; /* of forces, N */
     const robot_level *step; /* of the next one's length */
     int level;
