@@ -9,6 +9,8 @@
  * where they cannot and a pivot of rounding says that they can.
  */
 #define ASTRAY ROBOT_R(1e-3)
+/* Share of all squared motions of the contact point from which on no pivot is weak enough for that. */
+#define WEAK ROBOT_R(1e-3)
 /* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
 #define ROUNDING (ROBOT_R(8.0)*ROBOT_EPSILON)
 #define MOST_STEPS 1000000
@@ -86,10 +88,12 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
     if (!(within > ROBOT_R(1.0) - OUTSIDE) || !robot_cholesky(ROBOT_REACH, square)) {
         return ROBOT_SINGULAR;
     }
+    robot_real least = whole;
     for (int k = 0; k < ROBOT_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
-            return ROBOT_SINGULAR;
-        }
+        least = ROBOT_FMIN(least, square[k][k]*square[k][k]);
+    }
+    if (!(least > ROUNDING*whole)) {
+        return ROBOT_SINGULAR;
     }
     robot_forward(ROBOT_REACH, square, share);
     robot_backward(ROBOT_REACH, square, share);
@@ -103,7 +107,7 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
         arrival->rates[i] = rate;
         fast += rate*rate;
     }
-    for (int k = 0; k < ROBOT_REACH; ++k) {
+    for (int k = 0; k < ROBOT_REACH && least < WEAK*whole; ++k) {
         robot_real missed = wanted[k];
         for (int i = 0; i < ROBOT_N; ++i) {
             missed -= moved[k][i]*arrival->rates[i];

@@ -7,33 +7,9 @@
  */
 #include "robot_state.h"
 
-/* What dampers do to the contact point by each mode's part of its velocity: row S'DS over the mode's own row. */
-static void slow_contact(robot_phase *phase)
-{
-    const robot_modes *const modes = &phase->modes;
-    robot_real held[ROBOT_DAMPERS];
-    for (int j = 0; j < ROBOT_DAMPERS; ++j) {
-        robot_real sum = ROBOT_R(0.0);
-        for (int k = 0; k < modes->count; ++k) {
-            sum += modes->row[k]*modes->shape[modes->from[k]][ROBOT_SYSTEM - ROBOT_DAMPERS + j];
-        }
-        held[j] = phase->damping[j]*sum;
-    }
-    for (int k = 0; k < modes->count; ++k) {
-        phase->slows[k] = ROBOT_R(0.0);
-        for (int j = 0; j < ROBOT_DAMPERS; ++j) {
-            phase->slows[k] += modes->shape[modes->from[k]][ROBOT_SYSTEM - ROBOT_DAMPERS + j]*held[j];
-        }
-        phase->slows[k] /= modes->row[k];
-    }
-}
-
 robot_real robot_damping_rate(robot_phase *phase)
 {
     robot_real rate = ROBOT_R(0.0);
-    if (phase->damped) {
-        slow_contact(phase);
-    }
     for (int i = 0; i < ROBOT_DAMPERS && phase->damped; ++i) {
         for (int j = 0; j <= i; ++j) {
             robot_real sum = ROBOT_R(0.0);
@@ -48,6 +24,33 @@ robot_real robot_damping_rate(robot_phase *phase)
         rate = ROBOT_FMAX(rate, phase->damping[i]*phase->together[i][i]);
     }
     return rate;
+}
+
+void robot_slow_contact(robot_phase *phase)
+{
+    const robot_modes *const modes = &phase->modes;
+    robot_real held[ROBOT_DAMPERS];
+    for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+        robot_real sum = ROBOT_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            sum += modes->row[i]*modes->shape[modes->from[i]][ROBOT_SYSTEM - ROBOT_DAMPERS + j];
+        }
+        held[j] = phase->damping[j]*sum;
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        robot_real sum = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+            sum += modes->shape[modes->from[i]][ROBOT_SYSTEM - ROBOT_DAMPERS + j]*held[j];
+        }
+        phase->slows[i] = ROBOT_R(0.5)*sum/modes->row[i];
+    }
+    for (int k = 0; k < ROBOT_LEVELS; ++k) {
+        robot_level *const level = &phase->level[k];
+        for (int i = 0; i < phase->active; ++i) {
+            level->kick -= level->h*phase->slows[i]*level->mode[i].kick;
+            level->grow -= phase->slows[i]*level->mode[i].push;
+        }
+    }
 }
 
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate)
@@ -105,5 +108,5 @@ robot_real robot_owed_slip(const robot_state *s, const robot_real *rate)
         const robot_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
         slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
     }
-    return ROBOT_R(0.5)*level->h*slowed;
+    return level->h*slowed;
 }

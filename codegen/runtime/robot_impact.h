@@ -108,7 +108,7 @@ typedef struct {
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     robot_real damping[ROBOT_DAMPERS];
-    robot_real slows[ROBOT_MODES]; /* the contact point, by each mode's part of its velocity, 1/s */
+    robot_real slows[ROBOT_MODES]; /* half of what they do to the contact point by each mode's part of its velocity, 1/s */
     robot_real together[ROBOT_DAMPERS][ROBOT_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     int longest_pressed; /* level of the longest step in contact */
@@ -276,6 +276,8 @@ robot_real robot_together(const robot_arrival *arrival, const robot_params *p);
 
 /* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
 robot_real robot_damping_rate(robot_phase *phase);
+/* Takes from the contact point's velocity after steps what is damped in their other half. */
+void robot_slow_contact(robot_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase *phase);
 

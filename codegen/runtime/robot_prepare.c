@@ -100,6 +100,7 @@ static robot_real blur_of(const robot_impact *impact, const robot_phase *phase, 
     return rows*ROBOT_FMAX(starts, rows/impact->mobility);
 }
 
+#if !ROBOT_STRUCTURED
 /* What rounding may change of how far the contact point gives way to a force within a time, as a share of it. */
 static robot_real blur_of_spring(const robot_modes *modes, robot_real time)
 {
@@ -116,7 +117,6 @@ static robot_real blur_of_spring(const robot_modes *modes, robot_real time)
     return off/gives;
 }
 
-#if !ROBOT_STRUCTURED
 static robot_real mobility_of(const robot_modes *modes)
 {
     robot_real sum = ROBOT_R(0.0);
@@ -140,8 +140,10 @@ static void steps_of(robot_impact *impact, int which)
     robot_phase *const phase = &impact->phase[which];
     const robot_real time = time_of(impact, which);
     phase->blur = blur_of(impact, phase, time);
-    phase->blurred = phase->blur > BLURS
-        || (phase->blur > ROBOT_R(0.0) && blur_of_spring(&phase->modes, time) > BLURS_SPRING);
+    phase->blurred = phase->blur > BLURS;
+#if !ROBOT_STRUCTURED
+    phase->blurred = phase->blurred || blur_of_spring(&phase->modes, time) > BLURS_SPRING;
+#endif
     robot_phase_steps(impact, time, phase);
     const robot_real numbers[2] = {phase->level[0].h, phase->level[ROBOT_LEVELS - 1].h};
     if (robot_check_positive(numbers, 2) != ROBOT_OK) {

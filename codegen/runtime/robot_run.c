@@ -19,6 +19,8 @@
 #define PARTS ROBOT_R(4.0)
 /* Share of that by which the force may be larger within a step than at its ends. */
 #define LEAPS ROBOT_R(0.5)
+/* Bend over the shortest step, over what is allowed, from which on the force of a law through points is unknown. */
+#define TORN ROBOT_R(16.0)
 /* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
 #define BEYOND 2
 /* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
@@ -95,16 +97,29 @@ static void tick(robot_state *s, bool longer)
 static bool see(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
 {
     const robot_real most = force + s->swings;
+<<<<<<< HEAD
     const bool largest = most > peak->force;
     if (peak->contacts > s->impact->sure) {
         peak->later = ROBOT_FMAX(peak->later, most);
     }
     if (largest) {
+=======
+    if (most > peak->force) {
+>>>>>>> guard
         peak->force = most;
         peak->time = s->time + since;
         peak->contact = peak->contacts;
     }
     return largest;
+}
+
+/* Notes the force at a top, or where the horizon cuts it off. */
+static void see_most(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
+{
+    see(s, force, since, peak);
+    if (peak->contacts > s->impact->sure) {
+        peak->later = ROBOT_FMAX(peak->later, force + s->swings);
+    }
 }
 
 /* Notes a top of the cubic through the last four forces, near that of the parabola through three. */
@@ -122,6 +137,7 @@ static void see_top(const robot_state *s, const robot_trial *t, robot_peak *peak
         const robot_real twist = (bend - bent)/(h + s->h + s->h_before);
         force += twist*since*(since + s->h)*(since - h);
     }
+<<<<<<< HEAD
     (void)see(s, force, since, peak);
 }
 
@@ -135,6 +151,9 @@ static robot_real bend_of(const robot_state *s, const robot_trial *t, const robo
     const robot_real ratio = s->pace.ratio;
     const robot_real twisted = ROBOT_R(6.0)*ROBOT_FABS(t->bump - ratio*ratio*s->bump);
     return ROBOT_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted);
+=======
+    see_most(s, force, since, peak);
+>>>>>>> guard
 }
 
 /* A step in contact. */
@@ -151,6 +170,7 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
         const robot_real force = robot_force_between(s, t);
         between = force > ROBOT_FMAX(s->f, t->f) + LEAPS*allowed ? force : ROBOT_R(0.0);
         slips = between > ROBOT_R(0.0) || robot_slip_off(s, t) > LEAPS*allowed;
+        s->torn = s->torn || (s->level >= SHORTEST && bent > TORN*allowed);
     }
     if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
@@ -276,6 +296,7 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     touch(s);
     s->depth = zero;
     s->swings = zero;
+    s->torn = false;
     begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
 }
 
@@ -358,7 +379,7 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
         goes_on = run_phase(&s, budget, peak);
     }
     if (goes_on && !peak->ended && s.rise > ROBOT_R(0.0)) { /* cut off by the horizon */
-        see(&s, s.f + SHIFTS*s.phase->blur*s.time*s.rise/s.h, ROBOT_R(0.0), peak);
+        see_most(&s, s.f + SHIFTS*s.phase->blur*s.time*s.rise/s.h, ROBOT_R(0.0), peak);
     }
-    peak->ended = goes_on;
+    peak->ended = goes_on && !s.torn;
 }

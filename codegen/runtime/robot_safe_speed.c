@@ -84,33 +84,34 @@ static bool is_found(const search *s, robot_real cap)
     return s->low > ROBOT_R(0.0) && (near || jumps || (cap > ROBOT_R(0.0) && s->low >= cap));
 }
 
-/* Searches; false if the steps do not do. */
+/* Searches, in finer steps at last where contacts in doubt matter; false if the steps do not do. */
 static bool find(robot_impact *impact, robot_real guess, robot_real cap, search *s,
     robot_budget *budget)
 {
-    robot_real v = guess;
-    robot_real force;
-    if (cap > ROBOT_R(0.0) && !(guess < cap)) {
-        v = cap;
-    } else {
-        if (!try_speed(impact, v, true, s, budget, &force)) {
-            return false;
-        }
-        v = next_speed(impact, s, v, force);
-        v = cap > ROBOT_R(0.0) ? ROBOT_FMIN(v, cap) : v;
-    }
-    for (int k = 1; k < TRIALS; ++k) {
+    robot_real most = cap;
+    bool rough = guess < cap || !(cap > ROBOT_R(0.0));
+    robot_real v = rough ? guess : cap;
+    for (int k = 0; k < TRIALS; ++k) {
+        robot_real force;
         if (!(v > ROBOT_R(0.0) && v < ROBOT_R(0.01)*ROBOT_REAL_MAX)) {
             return false;
         }
-        if (!try_speed(impact, v, false, s, budget, &force)) {
+        if (!try_speed(impact, v, rough, s, budget, &force)) {
             return false;
         }
-        if (is_found(s, cap)) {
+        rough = false;
+        if (!is_found(s, most)) {
+            v = next_speed(impact, s, v, force);
+            v = most > ROBOT_R(0.0) ? ROBOT_FMIN(v, most) : v;
+        } else if (!budget->fine && s->later > LATER*s->limit) { /* once more */
+            budget->fine = true;
+            most = s->low;
+            v = most;
+            s->low = ROBOT_R(0.0);
+            s->high = ROBOT_R(0.0);
+        } else {
             return true;
         }
-        v = next_speed(impact, s, v, force);
-        v = cap > ROBOT_R(0.0) ? ROBOT_FMIN(v, cap) : v;
     }
     return false;
 }
@@ -183,16 +184,8 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
         search s = {counts, ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
         budget.fine = false;
         bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
-        const bool is_late = is_known && s.later > LATER*counts;
         const bool all_slower = region->law != NULL || hardly_damps;
-        if (is_late) {
-            const robot_real most = s.low;
-            s.low = ROBOT_R(0.0);
-            s.high = ROBOT_R(0.0);
-            budget.fine = true;
-            is_known = find(impact, most, most, &s, &budget);
-        }
-        if (all_slower || is_late) {
+        if (all_slower || budget.fine) {
             const robot_real share = region->law == NULL ? ROBOT_R(1.0) : SHORT_OF_JUMP;
             s.low = is_known ? share*s.low : ROBOT_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, all_slower ? 0 : NEAREST, &s, &budget);
