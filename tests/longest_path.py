@@ -25,6 +25,8 @@ NAME = re.compile(r"^([0-9a-f]+) <(.+)>:$")
 LOOP = re.compile(r" *(for|while|do|} while)\b")
 CONDITIONS = "eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 JUMP = re.compile(rf"^b({CONDITIONS})?(\.[nw])?$")
+LEADS_BACK = re.compile(r"^pc\b|\{.*\bpc\b.*\}")
+"""Operands that hold the program counter as what is loaded; a constant is loaded from beside it."""
 BACK = re.compile(rf"^(bx|pop|ldmia|ldr)({CONDITIONS})?(\.[nw])?$")
 
 
@@ -81,7 +83,7 @@ class Instruction:
         found = BACK.match(self.word)
         if not found:
             return False
-        return self.rest == "lr" if found[1] == "bx" else "pc" in self.rest
+        return self.rest == "lr" if found[1] == "bx" else bool(LEADS_BACK.search(self.rest))
 
     @property
     def conditional(self) -> bool:
