@@ -59,7 +59,7 @@ def bound_of_driven_safe_speed(package: Generated, image: Path, steps: int) -> i
 def rounds(line: str, name: str, n: int) -> Rounds:
     """Return the rounds of a loop by its source and line."""
     rows, squares = sum(range(2, n)), sum(m * m for m in range(2, n))
-    qr_steps, qr_turns = 2 * n, n * (n + 2)  # MOST_STEPS, MOST_TURNS
+    qr_steps, qr_turns = 2 * n + 2, n * (n + 2)  # MOST_STEPS, MOST_TURNS
     N, modes = name.upper(), n + 2  # one of links and rotors together, one of the body
     table: list[tuple[str, Rounds]] = [
         (r"ticks > 0", Budget()),
