@@ -64,7 +64,6 @@ def rounds(line: str, name: str, n: int) -> Rounds:
     table: list[tuple[str, Rounds]] = [
         (r"ticks > 0", Budget()),
         (r"sines.*(while \(more|k = doubled)", 25),  # doublings, of a float
-        (r"sines.*i < count && !few", n),
         (r"k < TRIALS", Budget(STEPS_OF_RUN)),
         (r"k < SHARES", Budget(STEPS_OF_RUN)),
         (r"motors >= first", 1),
