@@ -108,7 +108,7 @@ typedef struct {
     robot_real drift; /* velocity of the contact point that motors keep up, over the speed */
     bool damped; /* by joints of their own, or by a servo on its motors' rates, N m s/rad */
     robot_real damping[ROBOT_DAMPERS];
-    robot_real slows[ROBOT_MODES]; /* half of what they do to the contact point by each mode's part of its velocity, 1/s */
+    robot_real slows[ROBOT_MODES]; /* half of what they do to the contact point by each mode's velocity, 1/s */
     robot_real together[ROBOT_DAMPERS][ROBOT_DAMPERS]; /* rate of one damper by an impulse on another, 1/(kg m^2) */
     int steps; /* of the longest level until the time is over */
     int longest_pressed; /* level of the longest step in contact */

@@ -8,8 +8,8 @@
 /* Share of it that is allowed where contacts before may have left an error. */
 #define BENDS_FINE ROBOT_R(0.1)
 /*
- * Below the largest force so far mostly only what comes later counts: these shares of half the second difference, and of half
- * the third, stand for the former from the fourth node of a contact on.
+ * Below the largest force so far mostly only what comes later counts: these shares of half the second difference, and
+ * of half the third, stand for the former from the fourth node of a contact on.
  */
 #define BENDS_BELOW ROBOT_R(0.3)
 #define TWISTS_BELOW ROBOT_R(0.8)
@@ -97,15 +97,8 @@ static void tick(robot_state *s, bool longer)
 static bool see(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
 {
     const robot_real most = force + s->swings;
-<<<<<<< HEAD
     const bool largest = most > peak->force;
-    if (peak->contacts > s->impact->sure) {
-        peak->later = ROBOT_FMAX(peak->later, most);
-    }
     if (largest) {
-=======
-    if (most > peak->force) {
->>>>>>> guard
         peak->force = most;
         peak->time = s->time + since;
         peak->contact = peak->contacts;
@@ -116,7 +109,7 @@ static bool see(const robot_state *s, robot_real force, robot_real since, robot_
 /* Notes the force at a top, or where the horizon cuts it off. */
 static void see_most(const robot_state *s, robot_real force, robot_real since, robot_peak *peak)
 {
-    see(s, force, since, peak);
+    (void)see(s, force, since, peak);
     if (peak->contacts > s->impact->sure) {
         peak->later = ROBOT_FMAX(peak->later, force + s->swings);
     }
@@ -137,8 +130,7 @@ static void see_top(const robot_state *s, const robot_trial *t, robot_peak *peak
         const robot_real twist = (bend - bent)/(h + s->h + s->h_before);
         force += twist*since*(since + s->h)*(since - h);
     }
-<<<<<<< HEAD
-    (void)see(s, force, since, peak);
+    see_most(s, force, since, peak);
 }
 
 /* By how much the force bends over a step, as far as that matters. */
@@ -151,9 +143,6 @@ static robot_real bend_of(const robot_state *s, const robot_trial *t, const robo
     const robot_real ratio = s->pace.ratio;
     const robot_real twisted = ROBOT_R(6.0)*ROBOT_FABS(t->bump - ratio*ratio*s->bump);
     return ROBOT_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted);
-=======
-    see_most(s, force, since, peak);
->>>>>>> guard
 }
 
 /* A step in contact. */

@@ -77,7 +77,7 @@ bool robot_pass(const robot_state *s, robot_watch *watch);
 /* A step on trial. */
 typedef struct {
     robot_real x, v; /* of the contact point without the force at the end */
-    robot_real f, bump, mean; /* force at the end; what its bend adds on the way; force on average, less half its rise */
+    robot_real f, bump, mean; /* force at the end; what its bend adds; force on average, less half its rise */
     robot_real u, depth, root;
 } robot_trial;
 

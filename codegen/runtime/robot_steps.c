@@ -140,43 +140,7 @@ static void mode_steps(robot_phase *phase)
     }
     for (int k = 0; k < ROBOT_LEVELS; ++k) {
         robot_level *const level = &phase->level[k];
-<<<<<<< HEAD
-        robot_real slowed = ROBOT_R(0.0); /* by dampers, over half a step, over its length */
-        robot_real slowed_late = ROBOT_R(0.0);
-        for (int i = 0; phase->damped && i < phase->active; ++i) {
-            slowed += ROBOT_R(0.5)*phase->slows[i]*level->mode[i].kick;
-            slowed_late += ROBOT_R(0.5)*phase->slows[i]*level->mode[i].push;
-        }
-        level->grow = level->push*level->per - slowed_late;
-        level->kick -= level->h*slowed;
-=======
-        const robot_real per = one/h;
-        robot_real pushes = ROBOT_R(0.0);
-        robot_real lates = ROBOT_R(0.0);
-        robot_real kicks = ROBOT_R(0.0);
-        for (int i = 0; i < phase->active; ++i) {
-            robot_mode_step *const step = &level->mode[i];
-            const robot_real row = modes->row[i];
-            const robot_real cosine = one - modes->squared[i]*push[i];
-            step->cosine = cosine;
-            step->sine = sine[i];
-            step->back = -modes->squared[i]*sine[i];
-            step->push = row*push[i];
-            step->late = row*late[i];
-            pushes += row*step->push;
-            lates += row*step->late;
-            kicks += row*row*sine[i];
-            late[i] += sine[i]*push[i]*per;
-            push[i] = ROBOT_R(2.0)*sine[i]*sine[i];
-            sine[i] *= ROBOT_R(2.0)*cosine;
-        }
-        level->per = per;
-        level->push = pushes;
-        level->late = lates;
-        level->kick = kicks;
-        level->grow = pushes*per;
-        h += h;
->>>>>>> guard
+        level->grow = level->push*level->per;
     }
 }
 
