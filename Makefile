@@ -10,7 +10,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 PYTEST ?=
 # robots whose packages are in the repository
 ROBOTS := $(notdir $(wildcard generated/*))
-# of make fuzz, a build: some 20 minutes for a robot with seven joints
+# of make fuzz, all builds together: some 10 minutes of two idle cores
 EXECUTIONS ?= 10000000
 # of make adversarial, inputs in all
 N ?= 1000000
@@ -70,9 +70,9 @@ bench-c: $(VENV)/installed-test $(OTHERS)/installed
 bench-opt: $(VENV)/installed-test
 	$(BIN)/python benchmarks/design/run.py --budget 1500 --out docs/benchmarks-design.md
 
-# libFuzzer on every package, float and double; needs clang
+# libFuzzer on packages of seven robots, float and double; needs clang
 fuzz: $(VENV)/installed-test
-	FUZZ_EXECUTIONS=$(EXECUTIONS) $(BIN)/pytest -n 2 --slow tests/codegen/test_verification.py -k fuzzer $(PYTEST)
+	FUZZ_EXECUTIONS=$(EXECUTIONS) $(BIN)/pytest -n 2 --slow tests/codegen/test_fuzzing.py $(PYTEST)
 
 # safe speeds of nine robots, float and double, against the tests' own integrator: a ms an input; goes on
 # from where it was stopped

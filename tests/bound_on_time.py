@@ -59,20 +59,26 @@ def bound_of_driven_safe_speed(package: Generated, image: Path, steps: int) -> i
 def rounds(line: str, name: str, n: int) -> Rounds:
     """Return the rounds of a loop by its source and line."""
     rows, squares = sum(range(2, n)), sum(m * m for m in range(2, n))
-    qr_steps = 2 * n + 2  # MOST_STEPS
+    qr_steps, qr_turns = 2 * n + 2, n * (n + 2)  # MOST_STEPS, MOST_TURNS
     N, modes = name.upper(), n + 2  # one of links and rotors together, one of the body
     table: list[tuple[str, Rounds]] = [
         (r"ticks > 0", Budget()),
+        (r"sines.*(while \(more|k = doubled)", 25),  # doublings, of a float
         (r"k < TRIALS", Budget(STEPS_OF_RUN)),
         (r"k < SHARES", Budget(STEPS_OF_RUN)),
         (r"motors >= first", 1),
         (r"step <= most", qr_steps + 1),
         (r"spectrum.*last > 0", n / (qr_steps + 1)),
         (r"spectrum.*first > 0", n - 2),
-        (r"spectrum.*k = first; k < last", n - 1),
+        (r"spectrum.*k = (first; k < last|last - 1; k >= first)", qr_turns / qr_steps),
+        (r"spectrum.*step (< turns->steps|>= 0)", qr_steps),
+        (r"spectrum.*m < count", 1),
         (r"spectrum.*k \+ 1 < size", n - 1),
+        (r"spectrum.*k (\+ 2 < |= ).*_N", n - 2),
+        (r"spectrum.*i = k \+ 1", n / 2),
         (r"spectrum.*i = k \+ 2", (n - 2) / 2),
         (r"spectrum.*i = first; i < size", rows / (n - 1)),
+        (r"spectrum.*i = first; i < .*_N", rows / (n - 2)),
         (r"spectrum.*j = first; j < size", squares / rows),
         (r"spectrum.*j = first; j <= i", (squares + rows) / 2 / rows),
         (r"spectrum.*k = size - 3", n - 2),

@@ -23,6 +23,23 @@ CPP_KEYWORDS = frozenset((
 ))  # fmt: skip
 """What no namespace can be called; words with an underscore are left out."""
 
+C_FUNCTIONS = frozenset((
+    "abort", "abs", "acos", "asctime", "asin", "atan", "atexit", "atof", "atoi", "atol",
+    "bsearch", "calloc", "cbrt", "ceil", "clock", "copysign", "cos", "cosh", "ctime", "difftime",
+    "div", "environ", "erf", "erfc", "exit", "exp", "fabs", "fdim", "floor", "fma", "fmax",
+    "fmin", "fmod", "fopen", "free", "frexp", "getc", "getchar", "getenv", "gets", "gmtime",
+    "hypot", "labs", "ldexp", "ldiv", "lgamma", "localtime", "log", "lrint", "lround", "main",
+    "malloc", "memchr", "memcmp", "memcpy", "memmove", "memset", "mktime", "modf", "nan",
+    "nearbyint", "pow", "printf", "putc", "putchar", "puts", "qsort", "raise", "rand", "realloc",
+    "remainder", "remove", "remquo", "rename", "rewind", "rint", "round", "scanf", "signal",
+    "sin", "sinh", "sqrt", "srand", "strcat", "strchr", "strcmp", "strcpy", "strlen", "strstr",
+    "strtod", "strtol", "system", "tan", "tanh", "tgamma", "time", "trunc", "ungetc", "accept",
+    "access", "alarm", "bind", "close", "connect", "daemon", "dup", "fork", "index", "kill",
+    "link", "listen", "mount", "nice", "open", "pause", "pipe", "poll", "random", "read", "recv",
+    "select", "send", "shutdown", "sleep", "stat", "sync", "write",
+))  # fmt: skip
+"""What C and POSIX declare outside of any namespace and a robot may be called."""
+
 RUST = {
     "int": "c_int",
     "unsigned int": "c_uint",
@@ -54,7 +71,7 @@ def _cpp(interface: Interface) -> dict[str, Any]:
     functions = [_cpp_function(name, e) for e in interface.entries.values() if _is_wrapped(e)]
     shown = next(f for f in reversed(functions) if f["name"] in ("safe_speed", "reflected_mass"))
     return {
-        "namespace": f"{name}_" if name in CPP_KEYWORDS else name,
+        "namespace": f"{name}_" if name in CPP_KEYWORDS | C_FUNCTIONS else name,
         "functions": functions,
         "params": "params" in interface.structs,
         "region": "body_region" in interface.entries,

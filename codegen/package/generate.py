@@ -226,8 +226,9 @@ def package_of(
         poses=checked,
         contacts=bodies,
     )
-    for field in ("poses", "contacts"):
-        if getattr(package, field) and not package.impact:
+    asked = {"poses": poses, "contacts": contacts, "points": points}
+    for field, given in asked.items():
+        if given and not package.impact:
             raise InvalidValue(field, f"robot '{robot.name}' has no impacts to use them in")
     return with_stages(package, symbols)
 

@@ -29,9 +29,7 @@ static void take_body_out(robot_phase *phase)
         modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
-        for (int k = 0; k < ROBOT_SYSTEM; ++k) {
-            modes->shape[body][k] = modes->shape[last][k];
-        }
+        modes->from[body] = modes->from[last];
         modes->count = last;
     }
     phase->has_body = false;
@@ -70,7 +68,7 @@ static int modes_of(robot_impact *impact, int which)
     }
 #endif
     const int status = which == ROBOT_LED ? led_modes(impact, phase)
-        : robot_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
+        : robot_free_modes(&impact->arrival, impact->p, &phase->modes);
     phase->known = status == ROBOT_OK;
     impact->led = which == ROBOT_LED ? impact->motors : impact->led;
     return status;
@@ -169,7 +167,8 @@ static void weigh(robot_impact *impact)
     const robot_real body = impact->gives_way ? ROBOT_R(1.0)/impact->region->effective_mass : ROBOT_R(0.0);
     robot_real mobility = ROBOT_R(0.0);
 #if ROBOT_STRUCTURED
-    impact->status = robot_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
+    impact->status = robot_mobilities(
+        &impact->arrival, impact->p, impact->phase[ROBOT_LOOSE].modes.shape, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == ROBOT_OK; ++k) {
         impact->status = modes_of(impact, k);

@@ -70,7 +70,7 @@ static bool keeps(robot_pressing *k, const robot_region *region, robot_real spee
         kept = robot_impact_prepare(region, &k->p, motors, limit, &k->impact) == ROBOT_OK;
         const robot_real late = kept ? pressed_by(k, speed, CALM*limit) : ROBOT_REAL_MAX;
         kept = late <= ROBOT_KEPT*limit - OF_PEAK*k->peak;
-        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
+        k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }

@@ -3,7 +3,7 @@
 #include "robot_impact.h"
 
 /* Share of the limit at which trials aim, below ROBOT_KEPT, and from which on one is near enough. */
-#define AIM ROBOT_R(0.984)
+#define AIM ROBOT_R(0.9825)
 #define NEAR_ENOUGH ROBOT_R(0.977)
 /*
  * Smoothness above which a body hardly damps, so that errors grow from contact to contact, and the share of the limit

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -86,6 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         _refuse_empty(words)
         _refuse_repeated(words)
+        _refuse_underscores(words)
         with interruptible():
             code = app(args=words, prog_name="softimpact", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
@@ -111,8 +112,7 @@ def _refuse_empty(words: Sequence[str]) -> None:
 
 def _refuse_repeated(words: Sequence[str]) -> None:
     """Raise a usage error if an option that takes one value is given twice: the first is lost."""
-    group = typer.main.get_command(app)
-    command = getattr(group, "commands", {}).get(words[0]) if words else None
+    command = _command(words)
     if command is None:
         return
     once = {
@@ -127,6 +127,34 @@ def _refuse_repeated(words: Sequence[str]) -> None:
         raise typer.BadParameter(
             "is given twice; only one of them could count", param_hint=twice[0]
         )
+
+
+def _refuse_underscores(words: Sequence[str]) -> None:
+    """Raise a usage error for a number as only Python's programs have it: 1_0 is 10 there."""
+    command = _command(words)
+    numbers = {
+        name
+        for parameter in getattr(command, "params", [])
+        if _is_number(parameter)
+        for name in parameter.opts
+    }
+    for option, value in pairwise([*words, "end"]):
+        name, is_given, typed = option.partition("=")
+        if name in numbers and "_" in (typed if is_given else value):
+            raise typer.BadParameter("is no number; write it without '_'", param_hint=name)
+
+
+def _is_number(parameter: Any) -> bool:
+    """Whether an option takes one number; newer typer's own say so, click's otherwise."""
+    own, clicks = getattr(parameter, "type_descriptor", None), getattr(parameter, "type", None)
+    words = str(getattr(clicks, "name", ""))
+    return getattr(own, "annotation", None) in (float, int) or words.startswith(("float", "integer"))
+
+
+def _command(words: Sequence[str]) -> Any:
+    """Return click's command of this name; None for an unknown one."""
+    group = typer.main.get_command(app)
+    return getattr(group, "commands", {}).get(words[0]) if words else None
 
 
 def _exit_code(error: Exception) -> int | None:

@@ -155,12 +155,20 @@ def generate(
         manifest = write(on_step=show)
     if drives.joint_stiffness is not None and not all(known.elastic):
         print_warnings(["rigid joints have no default stiffness: joint_stiffness must be set"])
+    if manifest.impact is None:
+        print_warnings([NO_IMPACTS])
     if name is not None and name != manifest.name:
         print_warnings([f"'{name}' cannot begin C names; they begin with '{manifest.name}'"])
     if json:
         print_json({"out": out, **vars(manifest)})
     else:
         _print_table(manifest, out)
+
+
+NO_IMPACTS = (
+    "the package has no peak_force, safe_speed or speed_factor: these need motors on independent "
+    "joints that move the contact point in the same one, two or three directions whatever the pose"
+)
 
 
 def early_word(joints: int) -> str:

@@ -56,7 +56,7 @@ SpeedOption = Annotated[
     typer.Option(
         metavar="V",
         help="Speed of the contact point along the direction (m/s); default that of "
-        "--joint-velocity.",
+        "--joint-velocity, or of --safe-speed.",
     ),
 ]
 JointVelocityOption = Annotated[

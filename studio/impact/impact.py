@@ -103,11 +103,12 @@ def impact(where: Typed, how: TypedImpact) -> Answer:
     if how.pid is not None and where.drives.tell_motors:
         raise InvalidValue("pid", "excludes --motors and its reaction")
     scene = situation(where)
-    speed, velocity = _speed(scene, how)
+    typed, velocity = _speed(scene, how)
     horizon = HORIZON if how.horizon is None else how.horizon
     shape = None if how.body.shape is None else shape_from(how.body.shape)
-    with _naming_options():
-        found = assess_impact(
+
+    def assessed(speed: float) -> Assessment:
+        return assess_impact(
             scene.model,
             Approach(scene.q, scene.direction, speed, velocity),
             contact,
@@ -121,6 +122,14 @@ def impact(where: Typed, how: TypedImpact) -> Answer:
             safe_speed=how.safe_speed,
             tolerances=Tolerances() if how.band else None,
         )
+
+    with _naming_options():
+        speed = typed
+        if speed is None:
+            speed = assessed(ANY_SPEED).safe_speed
+            if not speed:
+                raise InvalidValue("speed", "is missing, and none is safe; give --speed")
+        found = assessed(speed)
     return Answer(scene, contact, how, speed, horizon, definition, found)
 
 
@@ -156,11 +165,20 @@ def controller_of(how: TypedImpact) -> Controller | None:
     return Controller(proportional, derivative, integral, reference)
 
 
-def _speed(scene: Situation, how: TypedImpact) -> tuple[float, Array | None]:
-    """Return the speed of the contact point, and the joint velocities for 1 m/s of it."""
+ANY_SPEED = 0.25
+"""Speed at which an impact is simulated of which only the safe speed matters [m/s]."""
+
+
+def _speed(scene: Situation, how: TypedImpact) -> tuple[float | None, Array | None]:
+    """Return the speed of the contact point, and the joint velocities for 1 m/s of it.
+
+    No speed, if it is the safe one.
+    """
     if how.joint_velocity is None:
-        if how.speed is None:
-            raise InvalidValue("speed", "is missing; give --speed, or --joint-velocity")
+        if how.speed is None and not how.safe_speed:
+            raise InvalidValue(
+                "speed", "is missing; give --speed, --joint-velocity or --safe-speed"
+            )
         return how.speed, None
     velocity = scene.model.vector(
         "joint_velocity", values.vector("joint_velocity", how.joint_velocity)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from softimpact.codegen import ForeignFolder
 from softimpact.codegen.package import folder as place
 
-from .printed import print_warnings
+from .printed import print_warnings, say_beside
 
 if TYPE_CHECKING:
     from softimpact.optimize.running.execution import Execution
@@ -53,10 +53,15 @@ def running(how: Execution, folder: Path) -> Iterator[Executor]:
     journal = folder.resolve().parent / f"{folder.resolve().name}.journal.jsonl"
     if journal.exists() and not how.resume:
         print_warnings([f"{journal}: results of a run that was ended; --resume would use them"])
-    with executing(how, journal) as pool:
-        if how.resume:
-            print_warnings([f"{pool.known} results of an earlier run are used again"])
-        yield pool
+    try:
+        with executing(how, journal) as pool:
+            if how.resume:
+                print_warnings([f"{pool.known} results of an earlier run are used again"])
+            yield pool
+    except KeyboardInterrupt:
+        if journal.exists():
+            say_beside(f"{journal}: what was found so far; the same command with --resume goes on")
+        raise
 
 
 def require_replaceable_results(folder: Path, generator: str) -> None:

@@ -133,6 +133,8 @@ def _parsed(field: str, text: str) -> object:
 
 
 def _is_number(text: str) -> bool:
+    if "_" in text:  # Python's 1_0 is 10; people may mean 1.0
+        return False
     try:
         float(text)
     except ValueError:

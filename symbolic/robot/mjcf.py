@@ -84,7 +84,10 @@ def _parsed(path: Path) -> mujoco.MjSpec:
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except ValueError as error:
-        raise ModelFileError(str(path), f"not a URDF or MJCF: {one_line(error)}") from None
+        words = one_line(error)
+        if "decoder" in words:  # MuJoCo goes by the name
+            words = "it is no XML, nor does its name end in .urdf, .xml or .xacro"
+        raise ModelFileError(str(path), f"not a URDF or MJCF: {words}") from None
     spec.compiler.fusestatic = False
     if hasattr(spec.compiler, "alignfree"):  # frames of bodies stay where the file has them
         spec.compiler.alignfree = False

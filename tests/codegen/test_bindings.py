@@ -77,12 +77,14 @@ def test_wrappers_compile_without_a_warning(
     run(tool(compiler), *told, *STRICT, include, "-fsyntax-only", source)
 
 
-def test_words_of_the_language_are_no_names() -> None:
+@pytest.mark.parametrize("word", ["class", "main", "sin", "link"])
+def test_words_of_the_language_and_functions_of_c_are_no_namespaces(word: str) -> None:
     header = (PANDA / "include/panda.h").read_text()
-    interface = interface_of(header.replace("panda", "class").replace("PANDA", "CLASS"), "class")
+    header = header.replace("panda", word).replace("PANDA", word.upper())
+    interface = interface_of(header, word)
     seen: dict[str, Any] = {}
     bindings(interface, lambda template, **more: seen.setdefault(template, more) and "")
-    assert seen["header.hpp"]["namespace"] == "class_"
+    assert seen["header.hpp"]["namespace"] == f"{word}_"
     assert seen["header.hpp"]["region"]  # and it has what makes a region
 
 

@@ -3,27 +3,15 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from compiled_packages import COMMITTED, Generated, missing, run, tool
+from compiled_packages import COMMITTED, Generated, run, tool
 
 pytestmark = pytest.mark.slow
 PAGE = Path(__file__).parents[2] / "docs/verification.md"
-
-
-def executions(robot: str, real: str) -> int:
-    """Return how often the fuzzer calls a build; ``make fuzz`` asks for more of each.
-
-    In float it begins with what it found in double: numbers have two bytes in either. The other
-    robots run the same sources, one for open and one for closed chains, with other joints.
-    """
-    first = robot in {"panda", "rmin"} and real == "double"
-    return int(os.environ.get("FUZZ_EXECUTIONS", "100000" if first else "25000"))
 
 
 @pytest.mark.parametrize("real", ["double", "float"])
@@ -63,30 +51,6 @@ def test_valgrind_finds_nothing(
     assert re.search(r"total heap usage: [12] allocs", said)  # printf's own
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("robot", COMMITTED)
-def test_fuzzer_finds_nothing(
-    package: Callable[[str], Generated], robot: str, tmp_path: Path
-) -> None:
-    generated, corpus = package(robot), tmp_path / "corpus"
-    corpus.mkdir()
-    probe = tmp_path / "probe.c"
-    probe.write_text("int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n);\n"
-                     "int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n)"
-                     "{ return d == 0 && n > 0; }\n")  # fmt: skip
-    command = [tool("clang"), "-fsanitize=fuzzer", str(probe), "-o", str(tmp_path / "probe")]
-    if subprocess.run(command, capture_output=True, check=False).returncode != 0:
-        missing("clang's libFuzzer")
-    sources = [*generated.folder.glob("src/*.c"), generated.folder / "fuzz/fuzz.c"]
-    checks = ["-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=all", "-g"]
-    for real in ("double", "float"):
-        binary, runs = tmp_path / real, executions(robot, real)
-        run("clang", *generated.flags(real), "-O2", *checks, *sources, "-o", binary, "-lm")
-        said = run(binary, f"-runs={runs}", "-seed=1", "-max_len=512", "-len_control=0",
-                   f"-artifact_prefix={tmp_path}/", corpus)  # fmt: skip
-        assert f"Done {runs} runs" in said
-
-
 @pytest.mark.parametrize("robot", COMMITTED)
 def test_every_loop_has_a_bound(package: Callable[[str], Generated], robot: str) -> None:
     for source in package(robot).folder.glob("src/*.[ch]"):
@@ -98,6 +62,7 @@ def test_every_loop_has_a_bound(package: Callable[[str], Generated], robot: str)
 def test_page_lists_the_checks() -> None:
     page = PAGE.read_text()
     for file in (
+        "test_fuzzing.py",
         "test_verification.py",
         "test_static_analysis.py",
         "test_linux_targets.py",

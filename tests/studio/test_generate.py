@@ -167,3 +167,19 @@ def test_a_package_has_the_whole_arm(tmp_path: Path) -> None:
     whole = run_json(*elbow, "--out", tmp_path / "whole")
     short = run_json(*elbow, "--end", "O3", "--out", tmp_path / "short")
     assert (len(whole["joints"]), len(short["joints"])) == (4, 2)
+
+
+ONE_JOINT = """<mujoco model="main"><worldbody><body name="lever">
+  <joint name="turn" axis="0 0 1" armature="0.1"/>
+  <inertial mass="3" pos="0.3 0 0" diaginertia="0.01 0.1 0.1"/><site name="tip" pos="0.6 0 0"/>
+</body></worldbody></mujoco>"""
+
+
+def test_a_package_without_impacts_says_so_and_takes_no_points(tmp_path: Path) -> None:
+    model = tmp_path / "lever.xml"
+    model.write_text(ONE_JOINT)
+    told = ("generate", model, "--tip", "tip", "--out", tmp_path / "c")
+    assert "points: robot 'main' has no impacts" in refusal(
+        *told, "--point", "middle=lever@0.2,0,0"
+    )
+    assert "warning: the package has no peak_force, safe_speed or speed_factor" in run(*told).err

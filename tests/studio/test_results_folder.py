@@ -10,10 +10,12 @@ from pathlib import Path
 import pytest
 
 from softimpact.codegen import FolderNotWritable, ForeignFolder
+from softimpact.optimize.running.execution import Execution
 from softimpact.studio.output.results_folder import (
     RESULTS,
     replaced_folder,
     require_replaceable_results,
+    running,
 )
 
 MINE = "softimpact test"
@@ -112,3 +114,18 @@ def test_folders_in_use_are_refused_before_the_work(
     monkeypatch.chdir(tmp_path / "here")
     with pytest.raises(FolderNotWritable, match="name one in it"):
         require_replaceable_results(Path(out), MINE)
+
+
+def test_an_interrupted_run_names_resume(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted() -> None:
+        with running(Execution(processes=1), tmp_path / "out") as pool:
+            pool.submit(abs, -1).result()
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert "out.journal.jsonl: what was found so far; the same command with --resume goes on" in (
+        capsys.readouterr().err
+    )

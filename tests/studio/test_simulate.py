@@ -90,6 +90,12 @@ def test_peak_by_either_definition() -> None:
     assert first["peak_definition"] == "first_peak"
 
 
+def test_without_a_speed_an_impact_is_at_the_safe_one() -> None:
+    found = simulate("--region", "chest", "--model", "chain", "--safe-speed")
+    assert found["speed"] == found["safe_speed"]
+    assert found["peak_force"] == pytest.approx(found["limit"], rel=1e-6)
+
+
 def test_safe_speed_meets_the_limit() -> None:
     impact = ("--region", "chest", "--model", "chain")
     safe = simulate(*impact, "--speed", 1, "--safe-speed")["safe_speed"]

@@ -123,6 +123,23 @@ def test_file_stands_alone_and_is_small(page: Path) -> None:
     assert sorted(path.name for path in page.parent.iterdir()) == ["index.html", "results.json"]
 
 
+WORDS_MEET = """(() => {
+  const texts = [...document.querySelectorAll("#force text")];
+  const boxes = texts.map((e) => [e.textContent, e.getBBox()]);
+  const meet = ([, a], [, b]) => a.x < b.x + b.width && b.x < a.x + a.width
+    && a.y + 4 < b.y + b.height && b.y + 4 < a.y + a.height;
+  const met = (a, i) => boxes.slice(i + 1).filter((b) => meet(a, b));
+  return boxes.flatMap((a, i) => met(a, i).map((b) => [a[0], b[0]]));
+})()"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [0.3, 0.5, 0.6, 0.8])
+def test_words_of_the_plot_do_not_meet(tab: Tab, speed: float) -> None:
+    set_to(tab, speed=speed)
+    assert tab.ask(WORDS_MEET) == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SITUATIONS)
 def test_numbers_are_pythons(wide: Tab, name: str) -> None:

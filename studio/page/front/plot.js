@@ -32,6 +32,7 @@ export function plotForce(svg, found, state, looks, band, at, kept) {
   const x = (ms) => box.left + ((box.right - box.left) * ms) / long;
   const y = (N) => box.bottom - ((box.bottom - box.top) * N) / high;
   const parts = [];
+  const taken = []; // heights of words on the right
   forces.forEach((N) => {
     parts.push(tag("line", { x1: box.left, x2: box.right, y1: y(N), y2: y(N), stroke: looks.line, "stroke-width": N ? 0.6 : 1 }));
     parts.push(tag("text", { x: box.left - 6, y: y(N) + 4, "text-anchor": "end", class: "tick" }, N));
@@ -42,6 +43,7 @@ export function plotForce(svg, found, state, looks, band, at, kept) {
   if (band) {
     parts.push(tag("rect", { x: box.left, width: box.right - box.left, y: y(Math.min(band.high, high)), height: y(band.low) - y(Math.min(band.high, high)), fill: looks.band }));
     const under = showLimit && Math.abs(y(band.low) - 10 - y(limit)) < 16 ? 13 : -5;
+    taken.push(y(band.low) + under);
     parts.push(tag("text", { x: box.right - 4, y: y(band.low) + under, "text-anchor": "end", class: "tick" }, "peak in 95 of 100 cases"));
   }
   const released = 1e3 * (state.reaction_time ?? Infinity);
@@ -49,11 +51,12 @@ export function plotForce(svg, found, state, looks, band, at, kept) {
     parts.push(tag("line", { x1: x(released), x2: x(released), y1: box.top, y2: box.bottom, stroke: looks.soft, "stroke-dasharray": "2 4" }));
     parts.push(tag("text", { x: Math.max(x(released), box.left + 52), y: box.top - 6, "text-anchor": "middle", class: "tick" }, "motors released"));
   }
+  if (showLimit) taken.push(y(limit) - 5, y(limit) + 9); // and the line
   if (showLimit) parts.push(limitLine(box, y(limit), looks, `limit ${limit.toFixed(0)} N`));
   if (state.clamped && long > 499 && pressed < high) parts.push(limitLine(box, y(pressed), looks, `from 500 ms on ${pressed.toFixed(0)} N`, "start"));
   if (kept) parts.push(curve(kept.worst, x, y, long, looks.soft, "5 3"));
   [...drawn].reverse().forEach((end) => parts.push(curve(end, x, y, long, looks[end.kind], end.kind === "two_mass" ? "1.5 3.5" : "none")));
-  parts.push(...labels(drawn, x, y, box, looks, long, showLimit ? y(limit) : -99));
+  parts.push(...labels(drawn, x, y, box, looks, long, taken));
   if (at !== null) parts.push(...reading(ends, at, box, x, y, long, looks));
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.innerHTML = parts.join("");
@@ -80,21 +83,16 @@ function curve({ time, over_time: force, count }, x, y, long, colour, dashes = "
   return tag("path", { d: path, fill: "none", stroke: colour, "stroke-width": 2.2, "stroke-linejoin": "round", "stroke-dasharray": dashes });
 }
 
-/* A dot at each peak, and its words where they meet neither the limit's line nor other words. */
-function labels(ends, x, y, box, looks, long, line) {
-  const taken = [];
+/* A dot at each peak; its words are in the corner that forces leave free, beside what else stands there. */
+function labels(ends, x, y, box, looks, long, taken) {
+  let at = box.top;
   return [...ends].sort((a, b) => b.force - a.force).map((end) => {
-    const [px, py] = [x(Math.min(1e3 * end.peak_time, long)), y(end.force)];
+    do at += 15;
+    while (taken.some((other) => Math.abs(at - other) < 14));
     const words = `${WORDS[end.kind]}: ${end.force.toFixed(0)} N`;
-    const half = 3.55 * words.length;
-    const middle = Math.min(box.right - half, Math.max(box.left + half + 2, px));
-    const meets = (at) => Math.abs(at - 4 - line) < 11 || at < box.top || taken.some((other) => Math.abs(at - other) < 15);
-    const places = [py - 9, py + 18, py - 26, py + 33, py + 48];
-    const at = places.find((place) => !meets(place)) ?? py - 9;
-    taken.push(at, py + 4);
     return (
-      tag("circle", { cx: px, cy: py, r: 4, fill: looks[end.kind] }) +
-      tag("text", { x: middle, y: at, "text-anchor": "middle", style: `fill:${looks[end.kind]};font-weight:600` }, words)
+      tag("circle", { cx: x(Math.min(1e3 * end.peak_time, long)), cy: y(end.force), r: 4, fill: looks[end.kind] }) +
+      tag("text", { x: box.right - 4, y: at, "text-anchor": "end", style: `fill:${looks[end.kind]};font-weight:600` }, words)
     );
   });
 }
