@@ -45,7 +45,6 @@ typedef struct {
     robot_due due;
     robot_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
-    bool torn; /* a law by table bent more over the shortest step than can be known */
     int past; /* steps since the touch */
     robot_real h, h_before, per, x; /* last steps, contact point */
     robot_real bump, bent; /* what the bend adds to the force on average of the last step; the bend as it matters */
