@@ -73,6 +73,9 @@ void robot_phase_begin(const robot_phase *phase, int level, robot_state *s)
     s->drifted = ROBOT_R(0.0);
     s->owed = ROBOT_R(0.0);
     change_level(s, level);
+    s->due.level = s->step; /* the former phase's may have fewer modes, whose rest no one wrote */
+    s->due.mean = ROBOT_R(0.0);
+    s->due.rise = ROBOT_R(0.0);
 }
 
 /* Advances the clock, and lengthens the next step where it may. */
@@ -268,9 +271,6 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     s->time = zero;
     s->motion = &s->motions[0];
     s->trial = &s->motions[1];
-    s->due.level = s->step;
-    s->due.mean = zero;
-    s->due.rise = zero;
     for (int i = 0; i < phase->active; ++i) {
         s->motion->place[i] = zero;
         s->motion->rate[i] = phase->modes.row[i]*phase->modes.start[i]*speed;
