@@ -20,7 +20,7 @@
 /* Share of that by which the force may be larger within a step than at its ends. */
 #define LEAPS ROBOT_R(0.5)
 /* Bend over the shortest step, over what is allowed, from which on the force of a law through points is unknown. */
-#define TORN ROBOT_R(16.0)
+#define TORN ROBOT_R(32.0)
 /* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
 #define BEYOND 2
 /* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
