@@ -253,7 +253,7 @@ def test_safe_speeds_against_a_cover_keep_the_limit(
             ).peak
             for kind in ("free", "driven")
         ]
-        assert 0.96 * 280 < max(peaks) <= 280  # 1 % of the speed is kept free of jumps
+        assert 0.95 * 280 < max(peaks) <= 280  # 1 % of the speed is kept free of jumps
         assert speed > compiled.call("safe_speed", case.sample, 280.0, bare, motion)[1][0]
     assert points.size
 
