@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -25,6 +25,8 @@ NAME = re.compile(r"^([0-9a-f]+) <(.+)>:$")
 LOOP = re.compile(r" *(for|while|do|} while)\b")
 CONDITIONS = "eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
 JUMP = re.compile(rf"^b({CONDITIONS})?(\.[nw])?$")
+LEADS_BACK = re.compile(r"^pc\b|\{.*\bpc\b.*\}")
+"""Operands that hold the program counter as what is loaded; a constant is loaded from beside it."""
 BACK = re.compile(rf"^(bx|pop|ldmia|ldr)({CONDITIONS})?(\.[nw])?$")
 
 
@@ -34,6 +36,9 @@ class Budget:
 
     steps: int = 1
 
+
+Line = tuple[str, int, str]
+"""Source, number and text of a line of C."""
 
 Rounds = float | Budget
 """Rounds of a loop, on average over the times that it is begun."""
@@ -81,7 +86,7 @@ class Instruction:
         found = BACK.match(self.word)
         if not found:
             return False
-        return self.rest == "lr" if found[1] == "bx" else "pc" in self.rest
+        return self.rest == "lr" if found[1] == "bx" else bool(LEADS_BACK.search(self.rest))
 
     @property
     def conditional(self) -> bool:
@@ -128,10 +133,11 @@ class LongestPath:
         """Names of functions by their addresses."""
         return {body[0].address: name for name, body in self.functions.items() if body}
 
-    def line_of(self, address: int) -> tuple[str, int, str]:
+    def line_of(self, address: int, inside: Collection[Line]) -> Line:
         """Return source, number and text of the line that begins the loop an address belongs to.
 
-        It may be in a function without a loop that was inlined into one with it.
+        It may be in a function without a loop that was inlined into one with it. A jump back to
+        the start of a loop may be told to be of another one inside it, which is passed over.
         """
         said = run("arm-none-eabi-addr2line", "-i", "-e", self.image, hex(address))
         for frame in said.splitlines():
@@ -141,10 +147,15 @@ class LongestPath:
             at = int(number) - 1
             indent = len(lines[at]) - len(lines[at].lstrip()) + 1
             while not lines[at].startswith("{"):
-                if LOOP.match(lines[at]) and len(lines[at]) - len(lines[at].lstrip()) < indent:
-                    return Path(file).name, at + 1, lines[at].strip()
+                here = len(lines[at]) - len(lines[at].lstrip())
+                if LOOP.match(lines[at]) and here < indent:
+                    line = Path(file).name, at + 1, lines[at].strip()
+                    if line not in inside:
+                        return line
+                    indent = here
                 at -= 1
-        raise AssertionError(hex(address), said)
+        assert inside, (hex(address), said)
+        return self.line_of(address, ())  # one loop of C that has become two
 
     def of(self, name: str) -> Cost:
         """Return the bound of a function, what it calls included."""
@@ -185,15 +196,20 @@ class LongestPath:
         except AssertionError as e:
             raise AssertionError(name, *e.args) from e
 
-    def _rounds_of(self, latches: Iterable[int]) -> Rounds:
-        """Return the rounds of a loop by the jumps back to its start; of two with one, both's."""
-        product = 1.0
-        for file, _, line in sorted({self.line_of(latch) for latch in latches}):
+    def _rounds_of(
+        self, latches: Iterable[int], inside: Collection[Line]
+    ) -> tuple[Rounds, set[Line]]:
+        """Return the rounds of a loop by the jumps back to its start, and its lines.
+
+        Of two with one start it is both's.
+        """
+        product, lines = 1.0, {self.line_of(latch, inside) for latch in latches}
+        for file, _, line in sorted(lines):
             found = self.rounds(file, line)
             if isinstance(found, Budget):
-                return found
+                return found, lines
             product *= found
-        return product
+        return product, lines
 
 
 class _Graph:
@@ -203,9 +219,10 @@ class _Graph:
         self,
         cost: dict[int, Cost],
         after: dict[int, set[int]],
-        rounds: Callable[[Iterable[int]], Rounds],
+        rounds: Callable[[Iterable[int], Collection[Line]], tuple[Rounds, set[Line]]],
     ) -> None:
         self.cost, self.after, self.rounds = cost, after, rounds
+        self.lines: dict[int, set[Line]] = defaultdict(set)  # of loops that became an instruction
 
         self.home: dict[int, int] = {}  # what has become of an instruction
 
@@ -232,7 +249,10 @@ class _Graph:
                 once, last = once.worse(paths[door]), last.worse(self._test(door, inside))
             if all(self.after[self.home.get(a, a)] - inside for a in latches):
                 last = Cost()  # it is asked at the end whether there is another round
-            total = once.times(self.rounds(latches)) + last
+            within = set[Line]().union(*(self.lines[a] for a in inside))
+            rounds, lines = self.rounds(latches, within)
+            self.lines[header] |= within | lines
+            total = once.times(rounds) + last
             for a in loop:
                 self.home[a] = header
             for a, home in self.home.items():

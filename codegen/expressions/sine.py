@@ -10,13 +10,17 @@ r² for |r| ≤ π/4.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 LIMIT = 200.0
-"""Angle [rad] from which on a package asks the C library instead."""
+"""Angle [rad] from which on a package takes whole turns off first."""
+
+TURN = math.tau
+"""What is taken off [rad]; rounding it is less than half a unit in the last place of the angle."""
 
 PER_QUARTER = 0.636619772
 """Quarter turns in a radian."""

@@ -8,8 +8,13 @@ up to a hundred thousand quarter turns are exact, and polynomials of (sin r − 
 
 from __future__ import annotations
 
+import math
+
 LIMIT = 1e5
-"""Angle [rad] from which on the C library is asked."""
+"""As in ``sine``."""
+
+TURN = math.tau
+"""As in ``sine``."""
 
 PER_QUARTER = 0.6366197723675814
 

@@ -4,8 +4,13 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE ROBOT_R(1e-6)
-/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+/*
+ * Most that the velocity may be off n where motors can hardly move the contact point that way: aside, too, which tells
+ * where they cannot and a pivot of rounding says that they can.
+ */
 #define ASTRAY ROBOT_R(1e-3)
+/* Share of all squared motions of the contact point from which on no pivot is weak enough for that. */
+#define WEAK ROBOT_R(1e-3)
 /* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
 #define ROUNDING (ROBOT_R(8.0)*ROBOT_EPSILON)
 #define MOST_STEPS 1000000
@@ -56,6 +61,7 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
     robot_matrix square;
     robot_real moved[ROBOT_REACH][ROBOT_N];
     robot_real share[ROBOT_SYSTEM];
+    robot_real wanted[ROBOT_REACH];
     robot_real within = ROBOT_R(0.0);
     robot_real whole = ROBOT_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < ROBOT_N; ++i) {
@@ -64,6 +70,7 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
     for (int k = 0; k < ROBOT_REACH; ++k) {
         const robot_real *const d = robot_directions[k];
         share[k] = d[0]*u[0] + d[1]*u[1] + d[2]*u[2];
+        wanted[k] = share[k];
         within += share[k]*share[k];
         for (int i = 0; i < ROBOT_N; ++i) {
             moved[k][i] = robot_has_motor[i] ? d[0]*J[0][i] + d[1]*J[1][i] + d[2]*J[2][i] : ROBOT_R(0.0);
@@ -81,15 +88,17 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
     if (!(within > ROBOT_R(1.0) - OUTSIDE) || !robot_cholesky(ROBOT_REACH, square)) {
         return ROBOT_SINGULAR;
     }
+    robot_real least = whole;
     for (int k = 0; k < ROBOT_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
-            return ROBOT_SINGULAR;
-        }
+        least = ROBOT_FMIN(least, square[k][k]*square[k][k]);
+    }
+    if (!(least > ROUNDING*whole)) {
+        return ROBOT_SINGULAR;
     }
     robot_forward(ROBOT_REACH, square, share);
     robot_backward(ROBOT_REACH, square, share);
     robot_real fast = ROBOT_R(0.0);
-    robot_real along = ROBOT_R(0.0);
+    robot_real astray = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_N; ++i) {
         robot_real rate = ROBOT_R(0.0);
         for (int k = 0; k < ROBOT_REACH; ++k) {
@@ -97,9 +106,15 @@ int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
-        along += rate*arrival->row[i];
     }
-    return fast < ROBOT_FASTEST && ROBOT_FABS(along - ROBOT_R(1.0)) < ASTRAY ? ROBOT_OK : ROBOT_SINGULAR;
+    for (int k = 0; k < ROBOT_REACH && least < WEAK*whole; ++k) {
+        robot_real missed = wanted[k];
+        for (int i = 0; i < ROBOT_N; ++i) {
+            missed -= moved[k][i]*arrival->rates[i];
+        }
+        astray += missed*missed;
+    }
+    return fast < ROBOT_FASTEST && astray < ASTRAY*ASTRAY ? ROBOT_OK : ROBOT_SINGULAR;
 }
 
 int robot_set_off(const robot_real q[ROBOT_JOINTS], const robot_real dq[ROBOT_JOINTS],

@@ -14,7 +14,8 @@ robot_real robot_damping_rate(robot_phase *phase)
         for (int j = 0; j <= i; ++j) {
             robot_real sum = ROBOT_R(0.0);
             for (int k = 0; k < phase->modes.count; ++k) {
-                const robot_real *const shape = &phase->modes.shape[k][ROBOT_SYSTEM - ROBOT_DAMPERS];
+                const int from = phase->modes.from[k];
+                const robot_real *const shape = &phase->modes.shape[from][ROBOT_SYSTEM - ROBOT_DAMPERS];
                 sum += shape[i]*shape[j];
             }
             phase->together[i][j] = sum;
@@ -23,6 +24,33 @@ robot_real robot_damping_rate(robot_phase *phase)
         rate = ROBOT_FMAX(rate, phase->damping[i]*phase->together[i][i]);
     }
     return rate;
+}
+
+void robot_slow_contact(robot_phase *phase)
+{
+    const robot_modes *const modes = &phase->modes;
+    robot_real held[ROBOT_DAMPERS];
+    for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+        robot_real sum = ROBOT_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            sum += modes->row[i]*modes->shape[modes->from[i]][ROBOT_SYSTEM - ROBOT_DAMPERS + j];
+        }
+        held[j] = phase->damping[j]*sum;
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        robot_real sum = ROBOT_R(0.0);
+        for (int j = 0; j < ROBOT_DAMPERS; ++j) {
+            sum += modes->shape[modes->from[i]][ROBOT_SYSTEM - ROBOT_DAMPERS + j]*held[j];
+        }
+        phase->slows[i] = ROBOT_R(0.5)*sum/modes->row[i];
+    }
+    for (int k = 0; k < ROBOT_LEVELS; ++k) {
+        robot_level *const level = &phase->level[k];
+        for (int i = 0; i < phase->active; ++i) {
+            level->kick -= level->h*phase->slows[i]*level->mode[i].kick;
+            level->grow -= phase->slows[i]*level->mode[i].push;
+        }
+    }
 }
 
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate)
@@ -34,8 +62,8 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
         turned[j] = ROBOT_R(0.0);
     }
     for (int i = 0; i < phase->active; ++i) {
-        const robot_real *const shape = &modes->shape[i][ROBOT_SYSTEM - ROBOT_DAMPERS];
-        const robot_real led = rate[i] - speed*modes->start[i];
+        const robot_real *const shape = &modes->shape[modes->from[i]][ROBOT_SYSTEM - ROBOT_DAMPERS];
+        const robot_real led = rate[i]/modes->row[i] - speed*modes->start[i];
         for (int j = 0; j < ROBOT_DAMPERS; ++j) {
             turned[j] += shape[j]*led;
         }
@@ -54,19 +82,31 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
         impulse[j] = time*phase->damping[j]*turned[j];
     }
     for (int i = 0; i < phase->active; ++i) {
-        const robot_real *const shape = &modes->shape[i][ROBOT_SYSTEM - ROBOT_DAMPERS];
+        const robot_real *const shape = &modes->shape[modes->from[i]][ROBOT_SYSTEM - ROBOT_DAMPERS];
         robot_real change = ROBOT_R(0.0);
         for (int j = 0; j < ROBOT_DAMPERS; ++j) {
             change += shape[j]*impulse[j];
         }
-        rate[i] -= change;
+        rate[i] -= modes->row[i]*change;
     }
 }
 
 void robot_damp_ahead(const robot_state *s, robot_real *rate)
 {
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->rate[i];
+        rate[i] = s->motion->rate[i];
     }
     robot_damp(s->phase, s->speed, s->owed + ROBOT_R(0.5)*s->step->h, rate);
+}
+
+robot_real robot_owed_slip(const robot_state *s, const robot_real *rate)
+{
+    const robot_phase *const phase = s->phase;
+    const robot_level *const level = s->step;
+    robot_real slowed = ROBOT_R(0.0);
+    for (int i = 0; i < phase->active; ++i) {
+        const robot_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
+        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+    }
+    return level->h*slowed;
 }

@@ -76,6 +76,7 @@ static bool find_modes(int size, const int *places, robot_matrix L, robot_matrix
             modes->shape[i][places[j]] = X[i][j];
             sum += row[j]*X[i][j];
         }
+        modes->from[i] = i;
         modes->noise[i] = ROBOT_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
@@ -262,9 +263,9 @@ static void sharpen(const robot_params *p, robot_matrix bent, robot_modes *modes
 int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
     robot_real *drift)
 {
-    robot_matrix mass; /* and then XKX' */
+    robot_matrix mass; /* and then XKX', and what modes move */
     robot_matrix X;
-    robot_real (*const K)[ROBOT_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    robot_real (*const K)[ROBOT_SYSTEM] = modes->shape; /* and then unit vectors in eigenvectors of XKX' */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < ROBOT_N; ++i) {
@@ -278,18 +279,28 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
     robot_real all = ROBOT_R(0.0);
     for (int i = 0; i < ROBOT_SYSTEM; ++i) {
         all += ROBOT_FABS(mass[i][i]);
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            K[i][j] = i == j ? ROBOT_R(1.0) : ROBOT_R(0.0);
+        }
     }
-    if (!robot_spectrum(ROBOT_SYSTEM, ROBOT_EPSILON*ROBOT_EPSILON, mass, modes->squared, K)) {
+    const robot_real none = ROBOT_EPSILON*ROBOT_EPSILON;
+    if (!robot_spectrum(ROBOT_SYSTEM, none, mass, modes->squared, ROBOT_SYSTEM, K, NULL)) {
         return ROBOT_SINGULAR;
     }
     for (int i = 0; i < ROBOT_SYSTEM; ++i) {
         for (int j = 0; j < ROBOT_SYSTEM; ++j) {
             robot_real shape = ROBOT_R(0.0);
             for (int k = j; k < ROBOT_SYSTEM; ++k) { /* X has nothing behind its diagonal */
-                shape += X[k][j]*K[i][k];
+                shape += X[k][j]*K[k][i];
             }
-            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            mass[i][j] = shape;
         }
+    }
+    for (int i = 0; i < ROBOT_SYSTEM; ++i) {
+        for (int j = 0; j < ROBOT_SYSTEM; ++j) {
+            modes->shape[i][j] = mass[i][j];
+        }
+        modes->from[i] = i;
         modes->noise[i] = ROBOT_EPSILON*all;
     }
 #if !ROBOT_POTENTIAL
@@ -312,8 +323,7 @@ int robot_servo_modes(const robot_arrival *arrival, const robot_params *p, robot
 }
 
 #if !ROBOT_STRUCTURED
-int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes,
-    robot_real carried[ROBOT_N])
+int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_modes *modes)
 {
     robot_matrix mass;
     robot_matrix kept;
@@ -323,7 +333,6 @@ int robot_free_modes(const robot_arrival *arrival, const robot_params *p, robot_
     int places[ROBOT_SYSTEM];
     robot_real row[ROBOT_SYSTEM];
     robot_real momentum[ROBOT_SYSTEM]; /* before, at 1 m/s */
-    (void)carried;
     whole(arrival, p, mass, K);
     whole(arrival, p, kept, K);
     for (int i = 0; i < ROBOT_SYSTEM; ++i) {

@@ -5,7 +5,7 @@
 int robot_find_peak(const robot_region *region, const robot_params *p, robot_real speed,
     robot_impact *impact, robot_peak_force_t *out)
 {
-    robot_budget budget = {p->steps, false, ROBOT_REAL_MAX, NULL};
+    robot_budget budget = {p->steps, false, false, ROBOT_REAL_MAX, NULL};
     robot_peak_force_t found = {ROBOT_R(0.0), ROBOT_R(0.0)};
     bool bounded = false;
     int first;

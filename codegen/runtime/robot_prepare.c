@@ -4,6 +4,8 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS ROBOT_R(1.6e-2)
+/* Share of how far the contact point gives way that rounding may change: a slow servo that pressed was 1.6 off. */
+#define BLURS_SPRING ROBOT_R(4e-3)
 /*
  * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
  * inputs, 4.6 % with this, errors as before).
@@ -27,9 +29,7 @@ static void take_body_out(robot_phase *phase)
         modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
-        for (int k = 0; k < ROBOT_SYSTEM; ++k) {
-            modes->shape[body][k] = modes->shape[last][k];
-        }
+        modes->from[body] = modes->from[last];
         modes->count = last;
     }
     phase->has_body = false;
@@ -68,7 +68,7 @@ static int modes_of(robot_impact *impact, int which)
     }
 #endif
     const int status = which == ROBOT_LED ? led_modes(impact, phase)
-        : robot_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
+        : robot_free_modes(&impact->arrival, impact->p, &phase->modes);
     phase->known = status == ROBOT_OK;
     impact->led = which == ROBOT_LED ? impact->motors : impact->led;
     return status;
@@ -101,6 +101,22 @@ static robot_real blur_of(const robot_impact *impact, const robot_phase *phase, 
 }
 
 #if !ROBOT_STRUCTURED
+/* What rounding may change of how far the contact point gives way to a force within a time, as a share of it. */
+static robot_real blur_of_spring(const robot_modes *modes, robot_real time)
+{
+    const robot_real square = time*time;
+    robot_real gives = ROBOT_R(0.0);
+    robot_real off = ROBOT_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const robot_real known = ROBOT_FMAX(ROBOT_FABS(modes->squared[i]) - modes->noise[i], ROBOT_R(0.0));
+        const robot_real turns = ROBOT_FMAX(known*square, ROBOT_R(2.0));
+        const robot_real bends = modes->row[i]*modes->row[i]*square/turns;
+        gives += bends;
+        off += bends*modes->noise[i]*square/ROBOT_FMAX(turns, ROBOT_R(12.0));
+    }
+    return off/gives;
+}
+
 static robot_real mobility_of(const robot_modes *modes)
 {
     robot_real sum = ROBOT_R(0.0);
@@ -123,7 +139,11 @@ static void steps_of(robot_impact *impact, int which)
 {
     robot_phase *const phase = &impact->phase[which];
     const robot_real time = time_of(impact, which);
-    phase->blurred = blur_of(impact, phase, time) > BLURS;
+    phase->blur = blur_of(impact, phase, time);
+    phase->blurred = phase->blur > BLURS;
+#if !ROBOT_STRUCTURED
+    phase->blurred = phase->blurred || blur_of_spring(&phase->modes, time) > BLURS_SPRING;
+#endif
     robot_phase_steps(impact, time, phase);
     const robot_real numbers[2] = {phase->level[0].h, phase->level[ROBOT_LEVELS - 1].h};
     if (robot_check_positive(numbers, 2) != ROBOT_OK) {
@@ -147,7 +167,8 @@ static void weigh(robot_impact *impact)
     const robot_real body = impact->gives_way ? ROBOT_R(1.0)/impact->region->effective_mass : ROBOT_R(0.0);
     robot_real mobility = ROBOT_R(0.0);
 #if ROBOT_STRUCTURED
-    impact->status = robot_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
+    impact->status = robot_mobilities(
+        &impact->arrival, impact->p, impact->phase[ROBOT_LOOSE].modes.shape, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == ROBOT_OK; ++k) {
         impact->status = modes_of(impact, k);
@@ -186,6 +207,7 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
     impact->smooth = ROBOT_FMAX(ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped), LEAST_SMOOTH);
+    impact->sure = impact->smooth < ROBOT_HARD ? 1 : 2;
     impact->skin_rate = robot_law_stiffness(region, size)*impact->mobility;
     const robot_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!robot_all_finite(numbers, 3) || robot_check_positive(numbers, 3) != ROBOT_OK) {

@@ -81,6 +81,7 @@ static void prepare_pressing(const robot_params *p, robot_real until, robot_pres
     k->p.horizon = ROBOT_FMAX(ROBOT_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
+    k->budget.fine = false;
     k->budget.stop_above = ROBOT_REAL_MAX;
     k->budget.watch = NULL;
     k->watch.slower = false;

@@ -29,6 +29,11 @@
  */
 #define JUMPS ROBOT_R(0.1)
 #define JUMP_STEP ROBOT_R(24.0)
+/*
+ * Least that a mode moves the contact point by, as a share of all that moves it: as modes are followed by that, one
+ * that hardly does must not be lost, and so little is not felt.
+ */
+#define LEAST_ROW ROBOT_R(1e-6)
 /* Steps counted; more than any budget has. */
 #define MOST ROBOT_R(1e6)
 
@@ -38,6 +43,7 @@ static void exchange(robot_modes *modes, int i, int j)
     const robot_real noise = modes->noise[i];
     const robot_real row = modes->row[i];
     const robot_real start = modes->start[i];
+    const int from = modes->from[i];
     modes->squared[i] = modes->squared[j];
     modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
@@ -46,11 +52,8 @@ static void exchange(robot_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < ROBOT_SYSTEM; ++k) {
-        const robot_real shape = modes->shape[i][k];
-        modes->shape[i][k] = modes->shape[j][k];
-        modes->shape[j][k] = shape;
-    }
+    modes->from[i] = modes->from[j];
+    modes->from[j] = from;
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
@@ -107,43 +110,37 @@ static void mode_steps(robot_phase *phase)
 {
     const robot_modes *const modes = &phase->modes;
     const robot_real one = ROBOT_R(1.0);
-    robot_real h = phase->level[ROBOT_LEVELS - 1].h;
-    robot_real sine[ROBOT_MODES]; /* sin(wh)/w */
-    robot_real push[ROBOT_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
-    robot_real late[ROBOT_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    const robot_real h = phase->level[ROBOT_LEVELS - 1].h;
     for (int i = 0; i < phase->active; ++i) {
-        const robot_real t = modes->squared[i]*h*h;
-        late[i] = h*h*(one/ROBOT_R(6.0) - t*(one/ROBOT_R(120.0) - t*(one/ROBOT_R(5040.0) - t/ROBOT_R(362880.0))));
-        push[i] = h*h*(ROBOT_R(0.5) - t*(one/ROBOT_R(24.0) - t*(one/ROBOT_R(720.0) - t/ROBOT_R(40320.0))));
-        sine[i] = h*(one - modes->squared[i]*late[i]);
-    }
-    for (int k = ROBOT_LEVELS - 1; k >= 0; --k) {
-        robot_level *const level = &phase->level[k];
-        const robot_real per = one/h;
-        robot_real pushes = ROBOT_R(0.0);
-        robot_real lates = ROBOT_R(0.0);
-        robot_real kicks = ROBOT_R(0.0);
-        for (int i = 0; i < phase->active; ++i) {
+        const robot_real squared = modes->squared[i];
+        const robot_real weight = modes->row[i]*modes->row[i];
+        const robot_real t = squared*h*h;
+        robot_real late = h*h*(one/ROBOT_R(6.0)
+            - t*(one/ROBOT_R(120.0) - t*(one/ROBOT_R(5040.0) - t/ROBOT_R(362880.0)))); /* (wh - sin(wh))/(w^3 h) */
+        robot_real push = h*h*(ROBOT_R(0.5)
+            - t*(one/ROBOT_R(24.0) - t*(one/ROBOT_R(720.0) - t/ROBOT_R(40320.0)))); /* (1 - cos(wh))/w^2 */
+        robot_real sine = h*(one - squared*late); /* sin(wh)/w */
+        for (int k = ROBOT_LEVELS - 1; k >= 0; --k) {
+            robot_level *const level = &phase->level[k];
             robot_mode_step *const step = &level->mode[i];
-            const robot_real row = modes->row[i];
-            const robot_real cosine = one - modes->squared[i]*push[i];
+            const robot_real cosine = one - squared*push;
             step->cosine = cosine;
-            step->sine = sine[i];
-            step->back = -modes->squared[i]*sine[i];
-            step->push = row*push[i];
-            step->late = row*late[i];
-            pushes += row*step->push;
-            lates += row*step->late;
-            kicks += row*row*sine[i];
-            late[i] += sine[i]*push[i]*per;
-            push[i] = ROBOT_R(2.0)*sine[i]*sine[i];
-            sine[i] *= ROBOT_R(2.0)*cosine;
+            step->sine = sine;
+            step->back = -squared*sine;
+            step->push = weight*push;
+            step->late = weight*late;
+            step->kick = weight*sine;
+            level->push += step->push;
+            level->late += step->late;
+            level->kick += step->kick;
+            late += sine*push*level->per;
+            push = ROBOT_R(2.0)*sine*sine;
+            sine *= ROBOT_R(2.0)*cosine;
         }
-        level->per = per;
-        level->push = pushes;
-        level->late = lates;
-        level->kick = kicks;
-        h += h;
+    }
+    for (int k = 0; k < ROBOT_LEVELS; ++k) {
+        robot_level *const level = &phase->level[k];
+        level->grow = level->push*level->per;
     }
 }
 
@@ -161,12 +158,17 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
         modes->noise[body] = ROBOT_R(0.0);
         modes->row[body] = ROBOT_R(1.0)/ROBOT_SQRT(region->effective_mass);
         modes->start[body] = ROBOT_R(0.0);
+        modes->from[body] = body;
         for (int k = 0; k < ROBOT_SYSTEM; ++k) {
             modes->shape[body][k] = ROBOT_R(0.0);
         }
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
+    const robot_real least = LEAST_ROW*ROBOT_SQRT(impact->mobility);
+    for (int i = 0; i < modes->count; ++i) {
+        modes->row[i] = ROBOT_FABS(modes->row[i]) > least ? modes->row[i] : least;
+    }
     const robot_real end = ROBOT_R(1.0)/ROBOT_HORIZON(impact->p);
     let_stand(impact, ROBOT_FMAX(contact, end*end), released, phase);
     robot_real moving = ROBOT_R(0.0);
@@ -186,11 +188,19 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const robot_real h = wanted < MOST ? time/(robot_real)phase->steps : ROBOT_R(1.0)/rate;
     phase->longest_pressed = share*contact*h*h > PRESSED_STEP*PRESSED_STEP ? 1 : 0;
-    phase->level[0].h = h;
-    for (int k = 1; k < ROBOT_LEVELS; ++k) {
-        phase->level[k].h = ROBOT_R(0.5)*phase->level[k - 1].h;
+    robot_real shortest = h;
+    robot_real per = ROBOT_R(1.0)/h;
+    for (int k = 0; k < ROBOT_LEVELS; ++k) {
+        robot_level *const level = &phase->level[k];
+        level->h = shortest;
+        level->per = per;
+        level->push = ROBOT_R(0.0);
+        level->late = ROBOT_R(0.0);
+        level->kick = ROBOT_R(0.0);
+        shortest *= ROBOT_R(0.5);
+        per += per;
     }
-    const robot_real shortest = region->stiffness*phase->level[ROBOT_LEVELS - 1].h;
+    shortest = region->stiffness*phase->level[ROBOT_LEVELS - 1].h;
     robot_real relax = region->damping > ROBOT_R(0.0)
         ? ROBOT_EXP(-ROBOT_FMIN(shortest/region->damping, ROBOT_R(80.0))) : ROBOT_R(0.0);
     for (int k = ROBOT_LEVELS - 1; k >= 0; --k) {
@@ -198,5 +208,8 @@ void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase 
         relax *= relax;
     }
     mode_steps(phase);
+    if (phase->damped) {
+        robot_slow_contact(phase);
+    }
     phase->ready = true;
 }

@@ -82,12 +82,14 @@ static void find_axes(hardest *w)
     const robot_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     robot_matrix square;
+    robot_real unit[ROBOT_REACH][ROBOT_SYSTEM]; /* vectors */
     robot_real values[ROBOT_SYSTEM];
     for (int k = 0; k < ROBOT_REACH; ++k) {
         for (int l = 0; l < ROBOT_REACH; ++l) {
             const robot_real *const a = robot_directions[k];
             const robot_real *const b = robot_directions[l];
             square[k][l] = ROBOT_R(0.0);
+            unit[k][l] = k == l ? ROBOT_R(1.0) : ROBOT_R(0.0);
             for (int i = 0; i < ROBOT_N; ++i) {
                 const robot_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
                 const robot_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
@@ -95,12 +97,15 @@ static void find_axes(hardest *w)
             }
         }
     }
-    if (!robot_spectrum(ROBOT_REACH, ROBOT_EPSILON*ROBOT_EPSILON, square, values, w->axes)) {
+    if (!robot_spectrum(ROBOT_REACH, ROBOT_EPSILON*ROBOT_EPSILON, square, values, ROBOT_REACH, unit, NULL)) {
         w->unknown = true;
         return;
     }
     w->least = 0;
-    for (int k = 1; k < ROBOT_REACH; ++k) {
+    for (int k = 0; k < ROBOT_REACH; ++k) {
+        for (int l = 0; l < ROBOT_REACH; ++l) {
+            w->axes[k][l] = unit[l][k];
+        }
         w->least = values[k] < values[w->least] ? k : w->least;
     }
 }

@@ -45,7 +45,7 @@ class Tabled:
 def depths_at(law: Law, forces: Array) -> Array:
     """Return the depths of forces [m], from what the law says of forces at depths."""
     own = law.depths if isinstance(law, Curve) else ()
-    depths = np.unique([0.0, *own, *np.geomspace(1e-9, 1.0, 20_000)])
+    depths = np.unique([0.0, *own, *np.geomspace(1e-9, 10.0, 22_000)])
     known = np.array(law.force(ca.DM(depths))).ravel()
     return np.asarray(np.interp(forces, known, depths))
 
