@@ -10,7 +10,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 PYTEST ?=
 # robots whose packages are in the repository
 ROBOTS := $(notdir $(wildcard generated/*))
-# of make fuzz, all builds together: some 10 minutes of two idle cores
+# of make fuzz, all builds together: some 15 minutes of one core, 8 of two
 EXECUTIONS ?= 10000000
 # of make adversarial, inputs in all
 N ?= 1000000

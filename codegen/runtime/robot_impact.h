@@ -144,7 +144,7 @@ typedef struct {
 typedef struct robot_watch robot_watch;
 
 /* Steps of the budget that a run takes before its first: it is prepared, and motors are let go. */
-#define ROBOT_STEPS_OF_RUN 6
+#define ROBOT_STEPS_OF_RUN 7
 
 /* What may be spent, and how exactly. */
 typedef struct {

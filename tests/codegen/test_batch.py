@@ -111,6 +111,35 @@ def test_covers_are_laws_of_the_region(rr: batch.CompiledPackage) -> None:
         rr.peak_force(q, n, 0.5, region={**soft, "law": [[0, 1]]}, horizon=0.1)
 
 
+def test_points_and_motors_have_names(rr: batch.CompiledPackage) -> None:
+    q, n, more = poses(3), [1.0, 0.5, 0.0], {"region": "hand", "horizon": 0.1}
+    by_name = rr.safe_speed_at(q, "tip", n, motors=["free", "driven", "free"], **more)
+    by_number = rr.safe_speed_at(q, 0, n, motors=[1, 2, 1], **more)
+    assert (by_name["speed"] > 0).all()
+    assert np.array_equal(by_name["speed"], by_number["speed"])
+    with pytest.raises(InvalidValue, match="point: must be one of tip, elbow, not 'knee'"):
+        rr.safe_speed_at(q, "knee", n, **more)
+    assert rr.reflected_mass(q[:0], n)["status"].shape == (0,)
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ({"point": "elbow"}, "point: is read by safe_speed_at; safe_speed is the tip's"),
+        ({"steps": 1.5}, "steps: needs whole numbers"),
+        ({"horizon": "long"}, "horizon: needs real numbers"),
+        ({"horizon": 0.1j}, "horizon: needs real numbers"),
+        ({"horizn": 0.1}, "horizn: is nothing that .* reads: .*horizon"),
+        ({"motors": ["free", "fast", "free"]}, "motors: must be one of .*, not 'fast'"),
+    ],
+)
+def test_what_is_given_is_never_bent(
+    rr: batch.CompiledPackage, given: dict[str, Any], reason: str
+) -> None:
+    with pytest.raises(InvalidValue, match=reason):
+        rr.safe_speed(poses(3), [1.0, 0.5, 0.0], region="hand", **given)
+
+
 def test_a_watched_elbow_can_bind(rr: batch.CompiledPackage) -> None:
     dq = np.zeros((50, 4))
     dq[:, 0], dq[:, 2] = 3.0, -3.0

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * Feeds panda any bits, or any numbers of a plausible size: whatever is PANDA_OK or a bound must be
- * finite, whatever is not must have written nothing. For libFuzzer:
- * clang -fsanitize=fuzzer,address,undefined -Iinclude fuzz/fuzz.c src/<all>.c -lm
+ * Feeds one function of panda, which the input chooses, numbers about those of a usual robot, or any bits. Whatever
+ * is PANDA_OK or a bound must be finite, and within what the header promises; whatever is not must have written
+ * nothing; a second call must say the same. For libFuzzer, to which comparisons tell nothing here:
+ * clang -fsanitize=fuzzer,address,undefined -fno-sanitize-coverage=trace-cmp -Iinclude fuzz/fuzz.c src/<all>.c -lm
  */
+#include <float.h>
+#include <limits.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -12,276 +16,632 @@
 
 #include "panda.h"
 
+#define FUNCTIONS 19u /* without impacts */
+#define UNWRITTEN 0xA5 /* each byte of outputs before a call */
+#define STALE 0xFF /* each byte of the stack before a second call: no number */
+#define DEEP 65536u /* bytes of it */
 #define LAW_POINTS 4 /* at most, of a law by table */
 
-/* Everything that functions read, as plain numbers. */
-typedef struct {
-    panda_real q[7];
-    panda_real n[3];
-    panda_params p;
-    panda_real speed;
-    panda_real restitution;
-    panda_real other_mobility;
-    panda_real duration;
-    panda_real region[4];
-    panda_real number;
-    panda_real dq[7];
-    panda_real place[3];
-    panda_law_point law[LAW_POINTS];
-} inputs;
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+/* The input, and its hash: what takes long is left to some inputs that no mutation can make more frequent. */
+static const uint8_t *data;
+static size_t size;
+static size_t at;
+static uint32_t hash;
 
-/* Stops the fuzzer unless memory holds finite numbers, or is as it was. */
-static void check(int status, const void *memory, size_t size)
+static bool any_bits; /* numbers are the input's own bits */
+
+/* Everything that functions read; each by itself, so that what is read beside it is noticed. */
+static panda_real q[7];
+static panda_real n[3];
+static panda_params p;
+static panda_real speed;
+static panda_real restitution;
+static panda_real other_mobility;
+static panda_real duration;
+static panda_real dq[7];
+static panda_real number; /* a speed or a limit */
+static panda_region region;
+static panda_law_point *law; /* NULL, or exactly its points */
+static int point;
+static int frame;
+static panda_real place[3];
+
+static uint32_t told; /* hash of all that was answered */
+
+static bool rare(uint32_t one_in)
 {
-    const int written = status == PANDA_OK || status == PANDA_BOUNDED;
-    for (size_t at = 0; at < size; at += sizeof(panda_real)) {
+    return hash % one_in == 0u;
+}
+
+static uint32_t mix(uint32_t h, const void *memory, size_t length)
+{
+    const unsigned char *const m = memory;
+    for (size_t i = 0; i < length; ++i) {
+        h = (h ^ m[i])*16777619u;
+    }
+    return h;
+}
+
+static void holds(bool promise)
+{
+    if (!promise) {
+        abort();
+    }
+}
+
+static bool is_written(int status)
+{
+    return status == PANDA_OK || status == PANDA_BOUNDED;
+}
+
+/* Numbers are finite, or as they were. */
+static void check(int status, const void *memory, size_t length)
+{
+    const unsigned char *const m = memory;
+    told = mix(mix(told, &status, sizeof status), memory, length);
+    for (size_t i = 0; i < length; i += sizeof(panda_real)) {
         panda_real x;
         unsigned char untouched[sizeof x];
-        memset(untouched, 0xA5, sizeof untouched);
-        memcpy(&x, (const unsigned char *)memory + at, sizeof x);
-        if (written ? !isfinite(x) : memcmp(&x, untouched, sizeof x) != 0) {
-            abort();
-        }
+        memset(untouched, UNWRITTEN, sizeof untouched);
+        memcpy(&x, m + i, sizeof x);
+        holds(is_written(status) ? isfinite(x) : memcmp(&x, untouched, sizeof x) == 0);
     }
 }
 
-/* Bits as they are, or two bytes a number: -8 to 8, or its square for what should be positive. */
-static void decode(const uint8_t *data, size_t size, inputs *in)
+/* A whole number is from low to high, or as it was. */
+static void check_int(int status, int x, int low, int high)
 {
-    memset(in, 0, sizeof *in);
-    if (size > 0 && (data[0] & 1u) != 0u) {
-        memcpy(in, data + 1, size - 1 < sizeof *in ? size - 1 : sizeof *in);
+    int untouched;
+    memset(&untouched, UNWRITTEN, sizeof untouched);
+    told = mix(told, &x, sizeof x);
+    holds(is_written(status) ? x >= low && x <= high : x == untouched);
+}
+
+/* The next byte, or what stands for one after the last. */
+static unsigned int next(unsigned int otherwise)
+{
+    const unsigned int byte = at < size ? data[at] : otherwise;
+    ++at;
+    return byte;
+}
+
+/* Any bits, or a number that is seldom thought of. */
+static panda_real strange(bool bits)
+{
+    static const panda_real numbers[16] = {0, -1, (panda_real)NAN, (panda_real)INFINITY, -(panda_real)INFINITY, (panda_real)FLT_MAX, -(panda_real)FLT_MAX, (panda_real)FLT_MIN,
+        (panda_real)1e-45, (panda_real)FLT_EPSILON, 1, (panda_real)1e30, (panda_real)1e-30, (panda_real)1e15, (panda_real)1e-15, (panda_real)-1e-9};
+    const unsigned int which = bits ? 0u : next(0);
+    panda_real x = numbers[which % 16u];
+    if (bits || which >= 128u) {
+        unsigned char raw[sizeof x] = {0};
+        for (size_t i = 0; i < sizeof raw; ++i) {
+            raw[i] = (unsigned char)next(0);
+        }
+        memcpy(&x, raw, sizeof x);
+    }
+    return x;
+}
+
+/* From -1 to 1, which is 0 after the input's end. */
+static panda_real part(bool *is_strange)
+{
+    const unsigned int high = any_bits ? 128u : next(128);
+    const unsigned int low = any_bits ? 255u : next(0);
+    *is_strange = low == 255u;
+    return (panda_real)((int)(256u*high + low) - 32768)/32768;
+}
+
+/* About a number, up to 65,536 times more or less. */
+static panda_real around(panda_real usual)
+{
+    bool is_strange;
+    const panda_real x = part(&is_strange);
+    return is_strange ? strange(any_bits) : usual*(panda_real)exp2(16*(double)x);
+}
+
+/* About a number, up to `most` more or less. */
+static panda_real beside(panda_real usual, panda_real most)
+{
+    bool is_strange;
+    const panda_real x = part(&is_strange);
+    return is_strange ? strange(any_bits) : usual + most*x;
+}
+
+static void draw_params(void)
+{
+    const unsigned int drawn = next(0); /* fields; the others are the usual ones */
+    const bool alike = (drawn & 128u) != 0u; /* all joints */
+    panda_default_params(&p);
+    for (int i = 0; i < 7; ++i) {
+        panda_real *const x = &p.joint_stiffness[i];
+        *x = *x > 0 ? *x : (panda_real)10000.0; /* else functions would refuse it */
+    }
+    for (int i = 0; i < 7; ++i) {
+        panda_real *const x = &p.rotor_inertia[i];
+        *x = *x > 0 ? *x : (panda_real)0.5; /* else functions would refuse it */
+    }
+    const size_t at_joint_stiffness = at;
+    for (int i = 0; i < 7; ++i) {
+        panda_real *const x = &p.joint_stiffness[i];
+        at = alike ? at_joint_stiffness : at;
+        if ((drawn >> 0 & 1u) != 0u) {
+            *x = around(*x > 0 ? *x : (panda_real)10000.0);
+        }
+    }
+    const size_t at_rotor_inertia = at;
+    for (int i = 0; i < 7; ++i) {
+        panda_real *const x = &p.rotor_inertia[i];
+        at = alike ? at_rotor_inertia : at;
+        if ((drawn >> 1 & 1u) != 0u) {
+            *x = around(*x > 0 ? *x : (panda_real)0.5);
+        }
+    }
+    const size_t at_position_gain = at;
+    for (int i = 0; i < 7; ++i) {
+        panda_real *const x = &p.position_gain[i];
+        at = alike ? at_position_gain : at;
+        if ((drawn >> 2 & 1u) != 0u) {
+            *x = around(*x > 0 ? *x : (panda_real)1000.0);
+        }
+    }
+    const size_t at_damping_gain = at;
+    for (int i = 0; i < 7; ++i) {
+        panda_real *const x = &p.damping_gain[i];
+        at = alike ? at_damping_gain : at;
+        if ((drawn >> 3 & 1u) != 0u) {
+            *x = around(*x > 0 ? *x : (panda_real)20.0);
+        }
+    }
+    const unsigned int motors = next(0);
+    const unsigned int steps = next(0);
+    p.motors = motors < 224u ? (int)(motors % 4u) : (int)motors - 228;
+    if (steps > 0u) {
+        p.steps = (int)steps; /* hardly any input needs the usual 800, which take long */
+    }
+    if (steps > 192u) {
+        static const int numbers[8] = {0, -1, INT_MIN, INT_MAX, 1000001, 2000, 1200, 400};
+        p.steps = rare(16) ? numbers[steps % 8u] : 1 + (int)(steps % 16u);
+    }
+    if ((drawn & 64u) != 0u) {
+        p.reaction_time = around(p.reaction_time);
+        p.horizon = around(p.horizon);
+    }
+    if (next(0) == 255u) {
+        p.layout ^= 1u + next(0);
+    }
+}
+
+static void draw_region(void)
+{
+    const unsigned int part_of_body = next(4);
+    const unsigned int drawn = next(0);
+    const unsigned int points = next(0);
+    if (panda_body_region((int)(part_of_body & 15u), (int)(part_of_body & 16u), &region) != PANDA_OK) {
+        panda_body_region(0, (int)(part_of_body & 16u), &region);
+    }
+    if ((drawn & 1u) != 0u) {
+        region.stiffness = around(region.stiffness);
+        region.damping = around(region.damping);
+        region.effective_mass = around(region.effective_mass);
+        region.hertz_stiffness = around(region.hertz_stiffness);
+    }
+    if ((drawn & 2u) != 0u) {
+        region.quasi_static_limit = around(region.quasi_static_limit);
+        region.force_limit = around(region.force_limit);
+    }
+    if ((drawn & 12u) == 4u) {
+        const int most = 1 + (int)(points % LAW_POINTS);
+        panda_real depth = 0;
+        panda_real force = 0;
+        law = malloc((size_t)most*sizeof *law);
+        holds(law != NULL);
+        for (int i = 0; i < most; ++i) {
+            law[i].depth = depth;
+            law[i].force = force;
+            depth += around((panda_real)4e-3);
+            force += around(50);
+            law[i].knee_depth = (points & 32u) == 0u ? (law[i].depth + depth)/2 : around((panda_real)2e-3);
+            law[i].knee_force = (points & 64u) == 0u ? (law[i].force + force)/2 : around(25);
+        }
+        region.law = law;
+        region.law_points = (points & 128u) == 0u ? most : (int)(points & 7u) - 8;
+    }
+}
+
+static void draw(void)
+{
+    static const panda_real usual_q[7] = { -2.1181640625, 1.2255859375, 1.5283203125, -2.3056640625, -0.0263671875, 1.677734375,
+    0.8779296875 };
+    static const panda_real usual_n[3] = { 1.15625, -1.625, -1.90625 };
+    const unsigned int flags = next(0);
+    const bool far = (flags & 8u) != 0u;
+    any_bits = (flags & 7u) == 7u;
+    draw_params();
+    draw_region();
+    point = (flags & 192u) != 0u ? 0 : (int)(next(1) % (PANDA_POINTS + 2u)) - 1;
+    number = around((flags & 32u) != 0u ? region.force_limit : 1);
+    for (int i = 0; i < 3; ++i) {
+        n[i] = beside(far ? 0 : usual_n[i], 1);
+    }
+    for (int i = 0; i < 7; ++i) {
+        q[i] = beside(far ? 0 : usual_q[i], 4);
+    }
+    speed = around((panda_real)1.0);
+    restitution = around((panda_real)0.25);
+    other_mobility = around((panda_real)0.25);
+    duration = around((panda_real)0.02);
+    for (int i = 0; i < 7; ++i) {
+        dq[i] = beside((panda_real)0.25, 4);
+    }
+    frame = (int)(next(1) % 14u) - 1;
+    for (int i = 0; i < 3; ++i) {
+        place[i] = beside(0, 1);
+    }
+}
+
+static void call_function(unsigned int which)
+{
+    switch (which) {
+    case 0u: {
+        panda_real M[7][7];
+        memset(&M, UNWRITTEN, sizeof M);
+        const int status = panda_mass_matrix(q, M);
+        check(status, &M, sizeof M);
+        break;
+    }
+    case 1u: {
+        panda_real J[3][7];
+        memset(&J, UNWRITTEN, sizeof J);
+        const int status = panda_jacobian(q, J);
+        check(status, &J, sizeof J);
+        break;
+    }
+    case 2u: {
+        panda_real M0[14][14];
+        memset(&M0, UNWRITTEN, sizeof M0);
+        const int status = panda_generalised_mass_matrix(q, &p, M0);
+        check(status, &M0, sizeof M0);
+        break;
+    }
+    case 3u: {
+        panda_real K0[14][14];
+        memset(&K0, UNWRITTEN, sizeof K0);
+        const int status = panda_stiffness_matrix(q, &p, K0);
+        check(status, &K0, sizeof K0);
+        break;
+    }
+    case 4u: {
+        panda_real J_c[14];
+        memset(&J_c, UNWRITTEN, sizeof J_c);
+        const int status = panda_contact_jacobian(q, n, J_c);
+        check(status, &J_c, sizeof J_c);
+        break;
+    }
+    case 5u: {
+        panda_real m_c;
+        memset(&m_c, UNWRITTEN, sizeof m_c);
+        const int status = panda_reflected_mass(q, n, &m_c);
+        check(status, &m_c, sizeof m_c);
+        break;
+    }
+    case 6u: {
+        panda_reduced_model_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = panda_reduced_model(q, n, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    case 7u: {
+        panda_chain_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = panda_chain(q, n, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    case 8u: {
+        panda_osim_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = panda_osim(q, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    case 9u: {
+        panda_giaf_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = panda_giaf(q, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    case 10u: {
+        panda_real giaf;
+        memset(&giaf, UNWRITTEN, sizeof giaf);
+        const int status = panda_directional_giaf(q, n, &p, &giaf);
+        check(status, &giaf, sizeof giaf);
+        break;
+    }
+    case 11u: {
+        panda_absorption_extremes_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = panda_absorption_extremes(q, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    case 12u: {
+        panda_manipulability_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = panda_manipulability(q, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    case 13u: {
+        panda_real omega_f;
+        memset(&omega_f, UNWRITTEN, sizeof omega_f);
+        const int status = panda_force_measure(q, &omega_f);
+        check(status, &omega_f, sizeof omega_f);
+        break;
+    }
+    case 14u: {
+        panda_impact_measure_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = panda_impact_measure(q, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    case 15u: {
+        panda_rotor_influence_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = panda_rotor_influence(q, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    case 16u: {
+        panda_real giaf[7];
+        memset(&giaf, UNWRITTEN, sizeof giaf);
+        const int status = panda_single_joint_giaf(q, &p, giaf);
+        check(status, &giaf, sizeof giaf);
+        break;
+    }
+    case 17u: {
+        panda_joint_impulse_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = panda_joint_impulse(q, n, speed, restitution, other_mobility, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    default: {
+        panda_real error;
+        memset(&error, UNWRITTEN, sizeof error);
+        const int status = panda_linear_error(q, n, speed, duration, &error);
+        check(status, &error, sizeof error);
+        break;
+    }
+    }
+}
+
+static void call_peak_force(bool on)
+{
+    panda_peak_force_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = on ? panda_peak_force_on(q, frame, place, n, number, &region, &p, &out)
+                          : panda_peak_force_at(q, point, n, number, &region, &p, &out);
+    check(status, &out, sizeof out);
+    holds(!is_written(status) || (out.force > 0 && out.time >= 0));
+}
+
+static void call_safe_speed(bool on)
+{
+    panda_safe_speed_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = on ? panda_safe_speed_on(q, frame, place, n, number, &region, &p, &out)
+                          : panda_safe_speed_at(q, point, n, number, &region, &p, &out);
+    check(status, &out, sizeof out);
+    holds(!is_written(status) || (out.speed > 0 && out.force > 0 && out.force <= number));
+    const bool is_usual = law == NULL && out.speed < 20; /* steps are fitted to another force: its errors may differ */
+    if (status == PANDA_OK && is_usual && !on && rare(4)) {
+        panda_peak_force_t peak;
+        const int known = panda_peak_force_at(q, point, n, out.speed, &region, &p, &peak);
+        holds(known != PANDA_OK || peak.force <= (panda_real)1.1*number);
+    }
+}
+
+static void call_speed_factor(void)
+{
+    panda_speed_factor_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = panda_speed_factor(q, dq, number, &region, &p, &out);
+    check(status, &out.factor, sizeof out.factor);
+    check(status, &out.speed, sizeof out.speed);
+    check(status, &out.force, sizeof out.force);
+    check_int(status, out.point, -1, PANDA_POINTS - 1);
+    holds(!is_written(status) || (out.factor >= 0 && out.factor <= 1 && out.force <= number));
+}
+
+static void call_speed_factor_over(void)
+{
+    const int entries = 1 + (int)(hash >> 8 & 1u);
+    int *const points = malloc((size_t)entries*sizeof *points);
+    panda_region *const regions = malloc((size_t)entries*sizeof *regions);
+    panda_real *const limits = malloc((size_t)entries*sizeof *limits);
+    holds(points != NULL && regions != NULL && limits != NULL);
+    for (int i = 0; i < entries; ++i) {
+        points[i] = i == 0 ? point : PANDA_POINTS - 1;
+        regions[i] = region;
+        limits[i] = i == 0 ? number : region.force_limit;
+    }
+    panda_speed_factor_over_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = panda_speed_factor_over(q, dq, points, regions, limits, entries, &p, &out);
+    check(status, &out.factor, sizeof out.factor);
+    check(status, &out.speed, sizeof out.speed);
+    check(status, &out.force, sizeof out.force);
+    check_int(status, out.entry, -1, entries - 1);
+    holds(!is_written(status) || (out.factor >= 0 && out.factor <= 1));
+    free(points);
+    free(regions);
+    free(limits);
+}
+
+/* What presses is followed to 0.62 s. */
+static void call_pressing_force(void)
+{
+    panda_real force;
+    memset(&force, UNWRITTEN, sizeof force);
+    const int status = panda_pressing_force_at(q, point, n, number, &region, &p, &force);
+    check(status, &force, sizeof force);
+    holds(!is_written(status) || force >= 0);
+}
+
+static void call_may_press(void)
+{
+    int may;
+    memset(&may, UNWRITTEN, sizeof may);
+    const int status = panda_may_press(q, dq, number, &region, &p, &may);
+    told = mix(told, &status, sizeof status);
+    check_int(status, may, 0, 1);
+}
+
+/* Up to 15 times as many steps. */
+static void call_allowed_speed(void)
+{
+    panda_allowed_speed_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = panda_allowed_speed_at(q, point, n, &region, &p, &out);
+    check(status, &out.speed, sizeof out.speed);
+    check(status, &out.force, sizeof out.force);
+    check_int(status, out.pressed, 0, 1);
+    holds(!is_written(status) || (out.speed > 0 && out.force <= region.force_limit));
+}
+
+static void call_allowed_factor(void)
+{
+    panda_allowed_factor_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = panda_allowed_factor(q, dq, &region, &p, &out);
+    check(status, &out.factor, sizeof out.factor);
+    check(status, &out.speed, sizeof out.speed);
+    check(status, &out.force, sizeof out.force);
+    check_int(status, out.point, -1, PANDA_POINTS - 1);
+    check_int(status, out.pressed, 0, 1);
+    holds(!is_written(status) || (out.factor >= 0 && out.factor <= 1));
+}
+
+/* Some 300 impacts. */
+static void call_worst_direction(bool on)
+{
+    panda_worst_direction_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = on ? panda_worst_direction_on(q, frame, place, number, &region, &p, &out)
+                          : panda_worst_direction_at(q, point, number, &region, &p, &out);
+    check(status, &out, sizeof out);
+    holds(!is_written(status) || (out.force > 0 && out.error >= 0));
+}
+
+static void call_select_configuration(void)
+{
+    panda_real poses[2][7];
+    const unsigned char allowed[2] = {(unsigned char)(hash >> 8 & 1u), (unsigned char)(hash >> 9 & 1u)};
+    panda_selection_t out;
+    for (int i = 0; i < 7; ++i) {
+        poses[0][i] = q[i];
+        poses[1][i] = -q[i];
+    }
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = panda_select_configuration((const panda_real (*)[7])poses, 2, rare(4) ? allowed : NULL, n, number, &region, &p, &out);
+    check(status, &out.force, sizeof out.force);
+    check(status, &out.margin, sizeof out.margin);
+    check_int(status, out.best, 0, 1);
+    check_int(status, out.second, -1, 1);
+    check_int(status, out.usable, 1, 2);
+    holds(!is_written(status) || (out.force > 0 && out.margin >= 0));
+}
+
+/* What takes long is asked of few inputs, the others in its place what it is made of. */
+static void call_impact(unsigned int which)
+{
+    const bool on = which % 2u != 0u;
+    switch (which/2u % 12u) {
+    case 0:
+        call_select_configuration();
+        break;
+    case 1:
+        call_speed_factor_over();
+        break;
+    case 2:
+        call_pressing_force();
+        break;
+    case 3:
+        call_may_press();
+        break;
+    case 4:
+    case 5:
+        call_speed_factor();
+        break;
+    case 6:
+        if (rare(64)) {
+            call_worst_direction(on);
+            break;
+        }
+        call_peak_force(on);
+        break;
+    case 7:
+        if (rare(8)) {
+            if (on) {
+                call_allowed_speed();
+            } else {
+                call_allowed_factor();
+            }
+            break;
+        }
+        call_safe_speed(on);
+        break;
+    case 8:
+    case 9:
+        call_peak_force(on);
+        break;
+    default:
+        call_safe_speed(on);
+        break;
+    }
+}
+
+static void call(unsigned int which)
+{
+    told = 2166136261u;
+    if (which >= 64u) {
+        call_impact(which - 64u);
         return;
     }
-    for (size_t i = 0; i < sizeof *in/sizeof(panda_real); ++i) {
-        const size_t at = 1 + 2*i;
-        const int low = at < size ? data[at] : 1;
-        const int high = at + 1 < size ? data[at + 1] : 144;
-        const panda_real x = (panda_real)(256*high + low - 32768)/(panda_real)4096;
-        const panda_real positive = x*x*x*x;
-        memcpy((unsigned char *)in + i*sizeof x, i < 10 ? &x : &positive, sizeof x);
+    call_function(which % FUNCTIONS);
+}
+
+/* Leaves no numbers where the next call's variables will be. */
+static void soil(void)
+{
+    volatile unsigned char below[DEEP];
+    for (size_t i = 0; i < sizeof below; ++i) {
+        below[i] = STALE;
     }
 }
 
-/* Makes points a law: each number is what it rises by. */
-static void rise(panda_law_point law[LAW_POINTS])
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
-    panda_real depth = 0;
-    panda_real force = 0;
-    for (int i = 0; i < LAW_POINTS; ++i) {
-        const panda_law_point by = law[i];
-        law[i].depth = depth;
-        law[i].force = force;
-        depth += (by.depth + by.knee_depth)/1024;
-        force += by.force + by.knee_force;
-        law[i].knee_depth = (law[i].depth + depth)/2;
-        law[i].knee_force = (law[i].force + force)/2;
+    data = bytes;
+    size = count;
+    at = 0;
+    hash = mix(2166136261u, bytes, count);
+    hash ^= hash >> 15;
+    const unsigned int which = next(0);
+    draw();
+    call(which);
+    if ((hash >> 16) % 8u == 0u) {
+        const uint32_t first = told;
+        soil();
+        call(which);
+        holds(told == first);
     }
-}
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
-{
-    inputs in;
-    decode(data, size, &in);
-    if (size % 16u != 15u) {
-        in.p.layout = PANDA_LAYOUT; /* else all that read p refuse */
-    }
-    if (size % 64u != 62u && in.p.steps > 256) {
-        in.p.steps = 1 + in.p.steps % 256; /* long ones take most of the time */
-    }
-    {
-        panda_real M[7][7];
-        memset(&M, 0xA5, sizeof M);
-        const int status = panda_mass_matrix(in.q, M);
-        check(status, &M, sizeof M);
-    }
-    {
-        panda_real J[3][7];
-        memset(&J, 0xA5, sizeof J);
-        const int status = panda_jacobian(in.q, J);
-        check(status, &J, sizeof J);
-    }
-    {
-        panda_real M0[14][14];
-        memset(&M0, 0xA5, sizeof M0);
-        const int status = panda_generalised_mass_matrix(in.q, &in.p, M0);
-        check(status, &M0, sizeof M0);
-    }
-    {
-        panda_real K0[14][14];
-        memset(&K0, 0xA5, sizeof K0);
-        const int status = panda_stiffness_matrix(in.q, &in.p, K0);
-        check(status, &K0, sizeof K0);
-    }
-    {
-        panda_real J_c[14];
-        memset(&J_c, 0xA5, sizeof J_c);
-        const int status = panda_contact_jacobian(in.q, in.n, J_c);
-        check(status, &J_c, sizeof J_c);
-    }
-    {
-        panda_real m_c;
-        memset(&m_c, 0xA5, sizeof m_c);
-        const int status = panda_reflected_mass(in.q, in.n, &m_c);
-        check(status, &m_c, sizeof m_c);
-    }
-    {
-        panda_reduced_model_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_reduced_model(in.q, in.n, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        panda_chain_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_chain(in.q, in.n, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        panda_osim_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_osim(in.q, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        panda_giaf_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_giaf(in.q, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        panda_real giaf;
-        memset(&giaf, 0xA5, sizeof giaf);
-        const int status = panda_directional_giaf(in.q, in.n, &in.p, &giaf);
-        check(status, &giaf, sizeof giaf);
-    }
-    {
-        panda_absorption_extremes_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_absorption_extremes(in.q, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        panda_manipulability_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_manipulability(in.q, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        panda_real omega_f;
-        memset(&omega_f, 0xA5, sizeof omega_f);
-        const int status = panda_force_measure(in.q, &omega_f);
-        check(status, &omega_f, sizeof omega_f);
-    }
-    {
-        panda_impact_measure_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_impact_measure(in.q, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        panda_rotor_influence_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_rotor_influence(in.q, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        panda_real giaf[7];
-        memset(&giaf, 0xA5, sizeof giaf);
-        const int status = panda_single_joint_giaf(in.q, &in.p, giaf);
-        check(status, &giaf, sizeof giaf);
-    }
-    {
-        panda_joint_impulse_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        panda_real error;
-        memset(&error, 0xA5, sizeof error);
-        const int status = panda_linear_error(in.q, in.n, in.speed, in.duration, &error);
-        check(status, &error, sizeof error);
-    }
-    panda_region region;
-    if (panda_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != PANDA_OK) {
-        return 0;
-    }
-    if (size > 0 && (data[0] & 4u) != 0u) {
-        region.stiffness = in.region[0];
-        region.damping = in.region[1];
-        region.effective_mass = in.region[2];
-        region.hertz_stiffness = in.region[3];
-    }
-    if (size > 1 && data[1] % 4u == 1u) {
-        region.law_points = data[1] >> 4 & 7u; /* more than there are: refused, as points are no law */
-        region.law = in.law;
-        if ((data[1] & 128u) != 0u) {
-            rise(in.law);
-            region.law_points = 1 + region.law_points % LAW_POINTS;
-        }
-        region.law_points = region.law_points < LAW_POINTS ? region.law_points : LAW_POINTS;
-    }
-    {
-        panda_peak_force_t out;
-        memset(&out, 0xA5, sizeof out);
-        check(panda_peak_force(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
-    }
-    {
-        panda_safe_speed_t out;
-        memset(&out, 0xA5, sizeof out);
-        check(panda_safe_speed(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
-    }
-    {
-        panda_speed_factor_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_speed_factor(in.q, in.dq, in.number, &region, &in.p, &out);
-        check(status, &out.factor, sizeof out.factor);
-        check(status, &out.speed, sizeof out.speed);
-        check(status, &out.force, sizeof out.force);
-        if (status == PANDA_OK && !(out.factor >= 0 && out.factor <= 1 && out.point >= -1 && out.point < PANDA_POINTS)) {
-            abort();
-        }
-    }
-    if (size % 4u == 2u) { /* until 0.6 s */
-        panda_real force;
-        memset(&force, 0xA5, sizeof force);
-        check(panda_pressing_force_at(in.q, 0, in.n, in.number, &region, &in.p, &force), &force, sizeof force);
-    }
-    if (size % 16u == 5u) { /* up to 15 times as long */
-        panda_allowed_speed_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_allowed_speed_at(in.q, 0, in.n, &region, &in.p, &out);
-        check(status, &out.speed, sizeof out.speed);
-        check(status, &out.force, sizeof out.force);
-    }
-    if (size % 64u == 7u) { /* a hundred impacts */
-        panda_worst_direction_t out;
-        memset(&out, 0xA5, sizeof out);
-        check(panda_worst_direction_at(in.q, 0, in.number, &region, &in.p, &out), &out, sizeof out);
-    }
-    if (size % 4u == 1u) {
-        panda_safe_speed_t out;
-        const int frame = size > 2 ? data[2] % 14 - 1 : 0;
-        memset(&out, 0xA5, sizeof out);
-        check(panda_safe_speed_on(in.q, frame, in.place, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
-    }
-    {
-        panda_real poses[2][7];
-        panda_selection_t out;
-        for (int i = 0; i < 7; ++i) {
-            poses[0][i] = in.q[i];
-            poses[1][i] = -in.q[i];
-        }
-        memset(&out, 0xA5, sizeof out);
-        const int status = panda_select_configuration((const panda_real (*)[7])poses, 2, NULL, in.n, in.number, &region, &in.p, &out);
-        check(status, &out.force, sizeof out.force);
-        check(status, &out.margin, sizeof out.margin);
-        if (status == PANDA_OK && !(out.best >= 0 && out.best < 2 && out.usable > 0 && out.margin >= 0)) {
-            abort();
-        }
-    }
+    free(law);
+    law = NULL;
     return 0;
 }

@@ -4,8 +4,13 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE PANDA_R(1e-6)
-/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+/*
+ * Most that the velocity may be off n where motors can hardly move the contact point that way: aside, too, which tells
+ * where they cannot and a pivot of rounding says that they can.
+ */
 #define ASTRAY PANDA_R(1e-3)
+/* Share of all squared motions of the contact point from which on no pivot is weak enough for that. */
+#define WEAK PANDA_R(1e-3)
 /* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
 #define ROUNDING (PANDA_R(8.0)*PANDA_EPSILON)
 #define MOST_STEPS 1000000
@@ -56,6 +61,7 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
     panda_matrix square;
     panda_real moved[PANDA_REACH][PANDA_N];
     panda_real share[PANDA_SYSTEM];
+    panda_real wanted[PANDA_REACH];
     panda_real within = PANDA_R(0.0);
     panda_real whole = PANDA_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < PANDA_N; ++i) {
@@ -64,6 +70,7 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
     for (int k = 0; k < PANDA_REACH; ++k) {
         const panda_real *const d = panda_directions[k];
         share[k] = d[0]*u[0] + d[1]*u[1] + d[2]*u[2];
+        wanted[k] = share[k];
         within += share[k]*share[k];
         for (int i = 0; i < PANDA_N; ++i) {
             moved[k][i] = panda_has_motor[i] ? d[0]*J[0][i] + d[1]*J[1][i] + d[2]*J[2][i] : PANDA_R(0.0);
@@ -81,15 +88,17 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
     if (!(within > PANDA_R(1.0) - OUTSIDE) || !panda_cholesky(PANDA_REACH, square)) {
         return PANDA_SINGULAR;
     }
+    panda_real least = whole;
     for (int k = 0; k < PANDA_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
-            return PANDA_SINGULAR;
-        }
+        least = PANDA_FMIN(least, square[k][k]*square[k][k]);
+    }
+    if (!(least > ROUNDING*whole)) {
+        return PANDA_SINGULAR;
     }
     panda_forward(PANDA_REACH, square, share);
     panda_backward(PANDA_REACH, square, share);
     panda_real fast = PANDA_R(0.0);
-    panda_real along = PANDA_R(0.0);
+    panda_real astray = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
         panda_real rate = PANDA_R(0.0);
         for (int k = 0; k < PANDA_REACH; ++k) {
@@ -97,9 +106,15 @@ int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
-        along += rate*arrival->row[i];
     }
-    return fast < PANDA_FASTEST && PANDA_FABS(along - PANDA_R(1.0)) < ASTRAY ? PANDA_OK : PANDA_SINGULAR;
+    for (int k = 0; k < PANDA_REACH && least < WEAK*whole; ++k) {
+        panda_real missed = wanted[k];
+        for (int i = 0; i < PANDA_N; ++i) {
+            missed -= moved[k][i]*arrival->rates[i];
+        }
+        astray += missed*missed;
+    }
+    return fast < PANDA_FASTEST && astray < ASTRAY*ASTRAY ? PANDA_OK : PANDA_SINGULAR;
 }
 
 int panda_set_off(const panda_real q[PANDA_JOINTS], const panda_real dq[PANDA_JOINTS],

@@ -8,8 +8,8 @@
  * motion of links and rotors together, whose mobility is b'(S + R)^-1 b.
  *
  * So the eigenvalues are 1/frequency^2, and what rounding costs it costs the fastest modes, which
- * stand. With S = L L' and G = I + L'(1/R) L, C = L G^-1 L' and g = L G^-1 L^-1 b: no difference of
- * what may be nearly the same, whether rotors are much lighter or heavier than links.
+ * stand. With M = L L' and G = I + L'(1/B) L, C = L G^-1 L' over sqrt(k k'), g = L G^-1 L^-1 J'n over sqrt(k): no
+ * difference of what may be nearly the same, whether rotors are much lighter or heavier than links.
  */
 #include "panda_impact.h"
 
@@ -20,39 +20,27 @@
 #define SMALL PANDA_R(1e-8)
 
 #if PANDA_STRUCTURED
-/* S, R and b. */
-typedef struct {
-    panda_matrix S;
-    panda_real R[PANDA_N];
-    panda_real b[PANDA_N];
-} spring_scaled;
-
-static void scale_by_springs(const panda_arrival *arrival, const panda_params *p, spring_scaled *out)
+/*
+ * Appends the modes of a compliance to those there are: of C over sqrt(k k'), of which C's part below its diagonal is
+ * given and lost, and of `moved` over sqrt(k).
+ */
+static int spring_modes(const panda_params *p, panda_matrix C, const panda_real moved[PANDA_N], panda_modes *modes)
 {
-    (void)p; /* whatever of it counts may be built in */
     panda_real soft[PANDA_N];
-    for (int i = 0; i < PANDA_N; ++i) {
-        const panda_real compliance = PANDA_R(1.0)/PANDA_SPRING(p, i);
-        soft[i] = PANDA_SQRT(compliance);
-        out->R[i] = PANDA_ROTOR(p, i)*compliance;
-        out->b[i] = arrival->row[i]*soft[i];
-        for (int j = 0; j <= i; ++j) {
-            out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
-            out->S[j][i] = out->S[i][j];
-        }
-    }
-}
-
-/* Appends the modes of a compliance, which is lost, to those there are. */
-static int spring_modes(panda_matrix C, const panda_real b[PANDA_N], panda_modes *modes)
-{
     panda_real squares[PANDA_N];
-    panda_real (*const vectors)[PANDA_SYSTEM] = &modes->shape[modes->rigid];
+    panda_real row[1][PANDA_SYSTEM];
     panda_real all = PANDA_R(0.0);
+    (void)p; /* whatever of it counts may be built in */
     for (int i = 0; i < PANDA_N; ++i) {
+        soft[i] = PANDA_SQRT(PANDA_R(1.0)/PANDA_SPRING(p, i));
+        row[0][i] = moved[i]*soft[i];
+        for (int j = 0; j <= i; ++j) {
+            C[i][j] *= soft[i]*soft[j];
+            C[j][i] = C[i][j];
+        }
         all += C[i][i];
     }
-    if (!panda_spectrum(PANDA_N, SMALL, C, squares, vectors)) {
+    if (!panda_spectrum(PANDA_N, SMALL, C, squares, 1, row, &modes->turns)) {
         return PANDA_SINGULAR;
     }
     const panda_real least = NOISE*all;
@@ -60,52 +48,59 @@ static int spring_modes(panda_matrix C, const panda_real b[PANDA_N], panda_modes
     for (int i = 0; i < PANDA_N; ++i) {
         const int at = modes->rigid + i;
         const panda_real squared = PANDA_R(1.0)/PANDA_FMAX(squares[i], least);
-        const panda_real rate = PANDA_SQRT(squared);
-        panda_real row = PANDA_R(0.0);
-        for (int j = 0; j < PANDA_N; ++j) {
-            row += vectors[i][j]*b[j];
-            vectors[i][j] *= rate;
-        }
         modes->squared[at] = squared;
         modes->noise[at] = PANDA_R(0.0);
-        modes->row[at] = row*rate;
+        modes->row[at] = row[0][i]*PANDA_SQRT(squared);
+        modes->from[at] = i;
         modes->start[at] = PANDA_R(0.0);
     }
     modes->count = modes->rigid + PANDA_N;
     return PANDA_OK;
 }
 
+/* Copies a symmetric matrix's part below its diagonal. */
+static void copy_below(const panda_real (*from)[PANDA_N], panda_matrix to)
+{
+    for (int i = 0; i < PANDA_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            to[i][j] = from[i][j];
+        }
+    }
+}
+
 int panda_driven_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift)
 {
-    spring_scaled s;
-    scale_by_springs(arrival, p, &s);
+    copy_below(arrival->links.M, modes->shape);
     *drift = PANDA_R(1.0);
     modes->rigid = 0;
-    return spring_modes(s.S, s.b, modes);
+    return spring_modes(p, modes->shape, arrival->row, modes);
 }
 
-int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
-    panda_real carried[PANDA_N])
+int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes)
 {
     const int end = PANDA_N - 1;
-    spring_scaled s;
+    panda_real (*const L)[PANDA_SYSTEM] = modes->shape; /* of panda_mobilities, and then U^-1 L' */
     panda_matrix G; /* and then C; from its end to its start: so Cholesky's factors are upper ones, G = U U' */
+    panda_real light[PANDA_N]; /* 1/rotors */
     panda_real z[PANDA_N];
-    scale_by_springs(arrival, p, &s);
-    if (!panda_cholesky(PANDA_N, s.S)) {
-        return PANDA_SINGULAR;
+    panda_real per[PANDA_N]; /* 1/the diagonal of U */
+    panda_real carried[PANDA_N]; /* g sqrt(k) */
+    panda_real pulled[PANDA_N];
+    (void)p; /* whatever of it counts may be built in */
+    for (int i = 0; i < PANDA_N; ++i) {
+        light[i] = PANDA_R(1.0)/PANDA_ROTOR(p, i);
+        z[i] = arrival->row[i];
+        pulled[i] = PANDA_R(0.0);
     }
     for (int i = 0; i < PANDA_N; ++i) {
-        z[i] = s.b[i];
-        panda_real stiff[PANDA_N];
-        for (int l = 0; l < PANDA_N; ++l) {
-            stiff[l] = l < i ? PANDA_R(0.0) : s.S[l][i]/s.R[l];
+        for (int l = i; l < PANDA_N; ++l) {
+            pulled[l] = L[l][i]*light[l];
         }
         for (int j = 0; j <= i; ++j) {
             panda_real sum = i == j ? PANDA_R(1.0) : PANDA_R(0.0);
             for (int l = i; l < PANDA_N; ++l) {
-                sum += stiff[l]*s.S[l][j];
+                sum += pulled[l]*L[l][j];
             }
             G[end - j][end - i] = sum;
         }
@@ -113,16 +108,19 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     if (!panda_cholesky(PANDA_N, G)) {
         return PANDA_SINGULAR;
     }
-    panda_forward(PANDA_N, s.S, z);
+    panda_forward(PANDA_N, L, z);
     for (int i = end; i >= 0; --i) {
+        const panda_real *const U = G[end - i];
+        panda_real rest = z[i];
         for (int m = i + 1; m < PANDA_N; ++m) {
-            z[i] -= G[end - i][end - m]*z[m];
+            rest -= U[end - m]*z[m];
         }
-        z[i] /= G[end - i][end - i];
+        per[i] = PANDA_R(1.0)/U[end - i];
+        z[i] = rest*per[i];
     }
     panda_real together = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
-        panda_real *const y = s.S[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
+        panda_real *const y = L[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
         panda_real sum = PANDA_R(0.0);
         for (int l = i; l >= 0; --l) {
             const panda_real *const U = G[end - l];
@@ -130,20 +128,19 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
             for (int m = l + 1; m <= i; ++m) {
                 rest -= U[end - m]*y[m];
             }
-            y[l] = rest/U[end - l];
+            y[l] = rest*per[l];
             sum += y[l]*z[l];
         }
         carried[i] = sum;
-        together += s.b[i]*sum/s.R[i];
+        together += arrival->row[i]*sum*light[i];
     }
     for (int i = 0; i < PANDA_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             panda_real entry = PANDA_R(0.0);
             for (int l = 0; l <= j; ++l) {
-                entry += s.S[i][l]*s.S[j][l];
+                entry += L[i][l]*L[j][l];
             }
             G[i][j] = entry;
-            G[j][i] = entry;
         }
     }
     if (!(together > PANDA_R(0.0) && together <= PANDA_REAL_MAX)) {
@@ -154,22 +151,23 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     modes->noise[0] = PANDA_R(0.0);
     modes->row[0] = PANDA_SQRT(together);
     modes->start[0] = PANDA_R(1.0)/modes->row[0];
-    for (int j = 0; j < PANDA_SYSTEM; ++j) {
-        modes->shape[0][j] = PANDA_R(0.0);
-    }
-    return spring_modes(G, carried, modes);
+    modes->from[0] = PANDA_N; /* none of them */
+    return spring_modes(p, G, carried, modes);
 }
 
-/* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
-static panda_real mobility_through(panda_matrix mass, const panda_real row[PANDA_N])
+/* Mobility of the contact point with links, whose mass becomes its L L', and rotors as one, if they count. */
+static panda_real mobility_of(const panda_arrival *arrival, const panda_params *p, panda_real rotors, panda_matrix L)
 {
     panda_real z[PANDA_N];
     panda_real sum = PANDA_R(0.0);
+    (void)p;
+    copy_below(arrival->links.M, L);
     for (int i = 0; i < PANDA_N; ++i) {
-        z[i] = row[i];
+        z[i] = arrival->row[i];
+        L[i][i] += rotors*PANDA_ROTOR(p, i);
     }
-    if (panda_cholesky(PANDA_N, mass)) {
-        panda_forward(PANDA_N, mass, z);
+    if (panda_cholesky(PANDA_N, L)) {
+        panda_forward(PANDA_N, L, z);
         for (int i = 0; i < PANDA_N; ++i) {
             sum += z[i]*z[i];
         }
@@ -177,32 +175,20 @@ static panda_real mobility_through(panda_matrix mass, const panda_real row[PANDA
     return sum;
 }
 
-int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_real *links,
+int panda_mobilities(const panda_arrival *arrival, const panda_params *p, panda_matrix L, panda_real *links,
     panda_real *rotors)
 {
-    panda_matrix mass;
     *rotors = PANDA_R(0.0);
     for (int i = 0; i < PANDA_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            mass[i][j] = arrival->links.M[i][j];
-        }
         *rotors += arrival->row[i]*arrival->row[i]/PANDA_ROTOR(p, i);
     }
-    (void)p;
-    *links = mobility_through(mass, arrival->row);
+    *links = mobility_of(arrival, p, PANDA_R(0.0), L);
     return *links > PANDA_LEAST_MOBILITY ? PANDA_OK : PANDA_SINGULAR;
 }
 
 panda_real panda_together(const panda_arrival *arrival, const panda_params *p)
 {
     panda_matrix mass;
-    for (int i = 0; i < PANDA_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            mass[i][j] = arrival->links.M[i][j];
-        }
-        mass[i][i] += PANDA_ROTOR(p, i);
-    }
-    (void)p;
-    return mobility_through(mass, arrival->row);
+    return mobility_of(arrival, p, PANDA_R(1.0), mass);
 }
 #endif

@@ -4,8 +4,8 @@
  *
  * Skin and body in series: f(d) = k_h s + c_h s' with s = x - u, where x is how far the contact point
  * has come, u = d + (compliance of modes that stand) f, and f(d) = k_f d^1.5 or a law of panda_law.c. x' is
- * exact at every node and u' a backward difference, so that no damping makes it unstable. The force is
- * quadratic between nodes; steps are halved where it bends too much for that.
+ * exact at every node and u' a difference of the last four nodes, so that no damping makes it unstable. The force
+ * is quadratic between nodes; steps are halved where it bends too much for that.
  */
 #include "panda_state.h"
 
@@ -23,26 +23,49 @@
 /* Parts of a step between which a law through points is looked at. */
 #define PLACES 4
 
-void panda_glide(const panda_state *s, panda_trial *t)
+void panda_feel(panda_state *s)
+{
+    panda_motion *const motion = s->motion;
+    const panda_level *const level = s->due.level;
+    const panda_real slope = s->due.rise*level->per;
+    for (int i = 0; i < s->phase->active; ++i) {
+        const panda_mode_step *const step = &level->mode[i];
+        motion->place[i] -= step->push*s->due.mean + step->late*s->due.rise;
+        motion->rate[i] -= step->kick*s->due.mean + step->push*slope;
+    }
+    s->due.mean = PANDA_R(0.0);
+    s->due.rise = PANDA_R(0.0);
+}
+
+void panda_glide(panda_state *s, panda_trial *t)
 {
     const panda_phase *const phase = s->phase;
     const panda_level *const level = s->step;
-    const panda_real *rate = s->rate;
     panda_real damped[PANDA_MODES];
+    panda_real v = s->drift;
     if (phase->damped) {
         panda_damp_ahead(s, damped);
-        rate = damped;
+        v -= panda_owed_slip(s, damped);
     }
+    const panda_motion *const motion = s->motion;
+    const panda_real *const rate = phase->damped ? damped : motion->rate;
+    panda_motion *const next = s->trial;
+    const panda_level *const felt = s->due.level;
+    const panda_real mean = s->due.mean;
+    const panda_real rise = s->due.rise;
+    const panda_real slope = rise*felt->per;
     panda_real x = s->drifted + s->drift*level->h;
-    panda_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
+        const panda_mode_step *const due = &felt->mode[i];
         const panda_mode_step *const step = &level->mode[i];
-        const panda_real a = s->amplitude[i];
-        const panda_real b = rate[i];
-        t->amplitude[i] = step->cosine*a + step->sine*b;
-        t->rate[i] = step->back*a + step->cosine*b;
-        x += phase->modes.row[i]*t->amplitude[i];
-        v += phase->modes.row[i]*t->rate[i];
+        const panda_real a = motion->place[i] - due->push*mean - due->late*rise;
+        const panda_real b = rate[i] - due->kick*mean - due->push*slope;
+        const panda_real place = step->cosine*a + step->sine*b;
+        const panda_real velocity = step->back*a + step->cosine*b;
+        next->place[i] = place;
+        next->rate[i] = velocity;
+        x += place;
+        v += velocity;
     }
     t->x = x;
     t->v = v;
@@ -71,106 +94,116 @@ static panda_real root_of(panda_real depth, panda_real cubic, panda_real guess)
     return u;
 }
 
-/* What steps of one length have in common, as far as those before them were as long. */
+/*
+ * What steps of one length have in common, as far as those before them were as long. Of the skin's u the slope is that
+ * of the polynomial through the last four nodes, or three where there are no more since the touch or the step is the
+ * first of its length: just after a touch u is no cubic yet, and a later contact was 1.2 % too weak by that.
+ */
 static void set_pace(panda_state *s)
 {
-    const panda_region *const region = s->impact->region;
+    const panda_region *const region = s->region;
     const panda_level *const level = s->step;
     const panda_real one = PANDA_R(1.0);
+    const panda_real h = level->h;
+    const panda_real rate = level->per;
+    const panda_real damping = region->damping;
     panda_pace *const pace = &s->pace;
     panda_real ratio = PANDA_R(0.0);
     panda_real more = one; /* of the bend at the last node is that halfway, less that of the one before */
+    panda_real more_u = PANDA_R(0.0); /* of u' by a node of u more, 1/s: by what the end adds */
+    panda_real more_before = PANDA_R(0.0);
+    panda_real third = PANDA_R(0.0);
     pace->before = PANDA_R(0.0);
     if (s->past > 0) {
-        ratio = level->h/s->h;
+        ratio = h*s->per;
         if (s->past > 1) {
-            const panda_real lead = (PANDA_R(0.5)*level->h + s->h)/(level->h + s->h + s->h_before);
+            const panda_real both = s->h + s->h_before;
+            const panda_real lead = (PANDA_R(0.5)*h + s->h)/(h + both);
             more += lead;
             pace->before = lead*ratio*ratio;
+            if (s->even > 0) {
+                more_u = one/(h + both);
+                more_before = ratio/s->h_before;
+                third = h*(h + s->h)/((h + both)*both*s->h_before);
+            }
         }
     }
-    const panda_real rate = level->per;
     const panda_real early = ratio/(one + ratio);
+    const panda_real lag = (one + early)*rate + more_u;
     pace->ratio = ratio;
     pace->share = early/PANDA_R(6.0);
-    pace->more = more;
-    const panda_real lag = (one + early)*rate;
-    pace->u = (one + ratio)*rate;
-    pace->u_before = ratio*early*rate;
-    const panda_real share = pace->share*more;
-    pace->yields = level->late - share*level->push;
-    const panda_real slows = level->push*rate - share*level->kick;
-    pace->hold = region->stiffness + region->damping*lag;
-    pace->soft = one + region->stiffness*pace->yields + region->damping*slows + pace->hold*s->phase->compliance;
+    pace->whole = pace->share*more;
+    pace->u_before = damping*(ratio*early*rate + more_before);
+    pace->u_third = damping*third;
+    pace->u = damping*lag + pace->u_before - pace->u_third;
+    pace->stays = region->stiffness*level->push + damping*level->kick;
+    pace->grows = region->stiffness*level->late + damping*level->grow;
+    pace->yields = level->late - pace->whole*level->push;
+    pace->hold = region->stiffness + damping*lag;
+    pace->soft = one + pace->grows - pace->whole*pace->stays + pace->hold*s->phase->compliance;
+    pace->per_hold = one/pace->hold;
+    pace->cubic = region->hertz_stiffness*pace->soft*pace->per_hold;
 }
 
 void panda_press(panda_state *s, panda_trial *t)
 {
-    const panda_region *const region = s->impact->region;
-    const panda_phase *const phase = s->phase;
+    const panda_region *const region = s->region;
     const panda_level *const level = s->step;
     const panda_pace *const pace = &s->pace;
     if (s->even < LIKE) {
         set_pace(s);
     }
-    const panda_real plain = pace->share*(s->f + pace->ratio*s->rise);
-    t->share = pace->more*pace->share;
-    t->base = pace->more*plain - pace->before*s->bump;
-    const panda_real first = s->f + t->base;
-    const panda_real x = t->x - level->push*first + level->late*s->f; /* a force that falls to its base */
-    const panda_real v = t->v - level->kick*first + level->push*level->per*s->f;
-    const panda_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
-    const panda_real pressed = region->stiffness*x + region->damping*slip;
-    t->root = PANDA_R(0.0);
+    const panda_real straight_on = s->f + pace->ratio*s->rise;
+    const panda_real mean = s->f + pace->whole*straight_on - pace->before*s->bump; /* were there no force at the end */
+    const panda_real pressed = region->stiffness*t->x + region->damping*t->v - pace->stays*mean + pace->grows*s->f
+        + pace->u*s->u - pace->u_before*s->u_before + pace->u_third*s->u_third;
+    t->x += level->late*s->f;
     if (pressed > PANDA_R(0.0)) {
         if (region->law == NULL) {
-            const panda_real per = PANDA_R(1.0)/pace->hold;
-            t->root = root_of(pressed*per, region->hertz_stiffness*pace->soft*per, s->root);
+            t->root = root_of(pressed*pace->per_hold, pace->cubic, s->root);
             t->depth = t->root*t->root;
             t->f = region->hertz_stiffness*t->root*t->depth;
         } else {
+            t->root = PANDA_R(0.0);
             t->f = panda_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
         }
-        t->u = t->depth + phase->compliance*t->f;
-        t->x = x - pace->yields*t->f;
-        t->bump = plain - pace->share*t->f;
+        t->u = t->depth + s->phase->compliance*t->f;
+        t->x -= level->push*mean + pace->yields*t->f;
+        t->bump = pace->share*(straight_on - t->f);
+        t->mean = mean - pace->whole*t->f;
     } else { /* they part on the way: a force that falls evenly ends there */
         const panda_real from = pace->hold*s->now + pace->soft*s->f;
-        t->base = from > PANDA_R(0.0) ? PANDA_R(0.5)*s->f*pressed/(from - pressed) : PANDA_R(0.0);
-        t->share = PANDA_R(0.0);
-        t->x -= level->push*(s->f + t->base) - level->late*s->f;
+        t->mean = s->f + (from > PANDA_R(0.0) ? PANDA_R(0.5)*s->f*pressed/(from - pressed) : PANDA_R(0.0));
+        t->x -= level->push*t->mean;
         t->bump = PANDA_R(0.0);
         t->f = PANDA_R(0.0);
         t->u = PANDA_R(0.0);
         t->depth = PANDA_R(0.0);
+        t->root = PANDA_R(0.0);
     }
 }
 
-void panda_take(const panda_trial *t, panda_state *s)
+void panda_take(panda_state *s, panda_real mean, panda_real rise)
 {
-    const panda_phase *const phase = s->phase;
-    const panda_level *const level = s->step;
-    const panda_real first = s->f + t->base - t->share*t->f;
-    const panda_real rise = t->f - s->f;
-    const panda_real slope = rise*level->per;
-    for (int i = 0; i < phase->active; ++i) {
-        const panda_mode_step *const step = &level->mode[i];
-        s->amplitude[i] = t->amplitude[i] - step->push*first - step->late*rise;
-        s->rate[i] = t->rate[i] - phase->modes.row[i]*step->sine*first - step->push*slope;
-    }
+    panda_motion *const before = s->motion;
+    s->motion = s->trial;
+    s->trial = before;
+    s->due.level = s->step;
+    s->due.mean = mean;
+    s->due.rise = rise;
 }
 
-panda_real panda_force_between(const panda_state *s, const panda_trial *t)
+panda_real panda_force_between(panda_state *s, const panda_trial *t)
 {
-    const panda_region *const region = s->impact->region;
+    const panda_region *const region = s->region;
     const panda_phase *const phase = s->phase;
     const panda_level *const level = s->step;
     const panda_real h = level->h;
-    const panda_real first = s->f + t->base - t->share*t->f;
-    const panda_real after = h*(t->v - level->kick*first) - level->push*(t->f - s->f);
+    const panda_real after = h*(t->v - level->kick*t->mean - level->grow*(t->f - s->f));
     panda_real before = s->drift;
+    panda_feel(s);
     for (int i = 0; i < phase->active; ++i) {
-        before += phase->modes.row[i]*s->rate[i];
+        before += s->motion->rate[i];
     }
     before *= h;
     panda_real most = PANDA_R(0.0);
@@ -195,5 +228,5 @@ panda_real panda_slip_off(const panda_state *s, const panda_trial *t)
 {
     const panda_real rate = (t->u - s->u)*s->step->per;
     const panda_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
-    return s->impact->region->damping*PANDA_FABS(rate - before);
+    return s->region->damping*PANDA_FABS(rate - before);
 }

@@ -14,7 +14,8 @@ panda_real panda_damping_rate(panda_phase *phase)
         for (int j = 0; j <= i; ++j) {
             panda_real sum = PANDA_R(0.0);
             for (int k = 0; k < phase->modes.count; ++k) {
-                const panda_real *const shape = &phase->modes.shape[k][PANDA_SYSTEM - PANDA_DAMPERS];
+                const int from = phase->modes.from[k];
+                const panda_real *const shape = &phase->modes.shape[from][PANDA_SYSTEM - PANDA_DAMPERS];
                 sum += shape[i]*shape[j];
             }
             phase->together[i][j] = sum;
@@ -23,6 +24,33 @@ panda_real panda_damping_rate(panda_phase *phase)
         rate = PANDA_FMAX(rate, phase->damping[i]*phase->together[i][i]);
     }
     return rate;
+}
+
+void panda_slow_contact(panda_phase *phase)
+{
+    const panda_modes *const modes = &phase->modes;
+    panda_real held[PANDA_DAMPERS];
+    for (int j = 0; j < PANDA_DAMPERS; ++j) {
+        panda_real sum = PANDA_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            sum += modes->row[i]*modes->shape[modes->from[i]][PANDA_SYSTEM - PANDA_DAMPERS + j];
+        }
+        held[j] = phase->damping[j]*sum;
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        panda_real sum = PANDA_R(0.0);
+        for (int j = 0; j < PANDA_DAMPERS; ++j) {
+            sum += modes->shape[modes->from[i]][PANDA_SYSTEM - PANDA_DAMPERS + j]*held[j];
+        }
+        phase->slows[i] = PANDA_R(0.5)*sum/modes->row[i];
+    }
+    for (int k = 0; k < PANDA_LEVELS; ++k) {
+        panda_level *const level = &phase->level[k];
+        for (int i = 0; i < phase->active; ++i) {
+            level->kick -= level->h*phase->slows[i]*level->mode[i].kick;
+            level->grow -= phase->slows[i]*level->mode[i].push;
+        }
+    }
 }
 
 void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, panda_real *rate)
@@ -34,8 +62,8 @@ void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, pan
         turned[j] = PANDA_R(0.0);
     }
     for (int i = 0; i < phase->active; ++i) {
-        const panda_real *const shape = &modes->shape[i][PANDA_SYSTEM - PANDA_DAMPERS];
-        const panda_real led = rate[i] - speed*modes->start[i];
+        const panda_real *const shape = &modes->shape[modes->from[i]][PANDA_SYSTEM - PANDA_DAMPERS];
+        const panda_real led = rate[i]/modes->row[i] - speed*modes->start[i];
         for (int j = 0; j < PANDA_DAMPERS; ++j) {
             turned[j] += shape[j]*led;
         }
@@ -54,19 +82,32 @@ void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, pan
         impulse[j] = time*phase->damping[j]*turned[j];
     }
     for (int i = 0; i < phase->active; ++i) {
-        const panda_real *const shape = &modes->shape[i][PANDA_SYSTEM - PANDA_DAMPERS];
+        const panda_real *const shape = &modes->shape[modes->from[i]][PANDA_SYSTEM - PANDA_DAMPERS];
         panda_real change = PANDA_R(0.0);
         for (int j = 0; j < PANDA_DAMPERS; ++j) {
             change += shape[j]*impulse[j];
         }
-        rate[i] -= change;
+        rate[i] -= modes->row[i]*change;
     }
 }
 
-void panda_damp_ahead(const panda_state *s, panda_real *rate)
+void panda_damp_ahead(panda_state *s, panda_real *rate)
 {
+    panda_feel(s);
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->rate[i];
+        rate[i] = s->motion->rate[i];
     }
     panda_damp(s->phase, s->speed, s->owed + PANDA_R(0.5)*s->step->h, rate);
+}
+
+panda_real panda_owed_slip(const panda_state *s, const panda_real *rate)
+{
+    const panda_phase *const phase = s->phase;
+    const panda_level *const level = s->step;
+    panda_real slowed = PANDA_R(0.0);
+    for (int i = 0; i < phase->active; ++i) {
+        const panda_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
+        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+    }
+    return level->h*slowed;
 }

@@ -76,6 +76,7 @@ static bool find_modes(int size, const int *places, panda_matrix L, panda_matrix
             modes->shape[i][places[j]] = X[i][j];
             sum += row[j]*X[i][j];
         }
+        modes->from[i] = i;
         modes->noise[i] = PANDA_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
@@ -262,9 +263,9 @@ static void sharpen(const panda_params *p, panda_matrix bent, panda_modes *modes
 int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
     panda_real *drift)
 {
-    panda_matrix mass; /* and then XKX' */
+    panda_matrix mass; /* and then XKX', and what modes move */
     panda_matrix X;
-    panda_real (*const K)[PANDA_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    panda_real (*const K)[PANDA_SYSTEM] = modes->shape; /* and then unit vectors in eigenvectors of XKX' */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < PANDA_N; ++i) {
@@ -278,18 +279,28 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
     panda_real all = PANDA_R(0.0);
     for (int i = 0; i < PANDA_SYSTEM; ++i) {
         all += PANDA_FABS(mass[i][i]);
+        for (int j = 0; j < PANDA_SYSTEM; ++j) {
+            K[i][j] = i == j ? PANDA_R(1.0) : PANDA_R(0.0);
+        }
     }
-    if (!panda_spectrum(PANDA_SYSTEM, PANDA_EPSILON*PANDA_EPSILON, mass, modes->squared, K)) {
+    const panda_real none = PANDA_EPSILON*PANDA_EPSILON;
+    if (!panda_spectrum(PANDA_SYSTEM, none, mass, modes->squared, PANDA_SYSTEM, K, NULL)) {
         return PANDA_SINGULAR;
     }
     for (int i = 0; i < PANDA_SYSTEM; ++i) {
         for (int j = 0; j < PANDA_SYSTEM; ++j) {
             panda_real shape = PANDA_R(0.0);
             for (int k = j; k < PANDA_SYSTEM; ++k) { /* X has nothing behind its diagonal */
-                shape += X[k][j]*K[i][k];
+                shape += X[k][j]*K[k][i];
             }
-            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            mass[i][j] = shape;
         }
+    }
+    for (int i = 0; i < PANDA_SYSTEM; ++i) {
+        for (int j = 0; j < PANDA_SYSTEM; ++j) {
+            modes->shape[i][j] = mass[i][j];
+        }
+        modes->from[i] = i;
         modes->noise[i] = PANDA_EPSILON*all;
     }
 #if !PANDA_POTENTIAL
@@ -312,8 +323,7 @@ int panda_servo_modes(const panda_arrival *arrival, const panda_params *p, panda
 }
 
 #if !PANDA_STRUCTURED
-int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes,
-    panda_real carried[PANDA_N])
+int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_modes *modes)
 {
     panda_matrix mass;
     panda_matrix kept;
@@ -323,7 +333,6 @@ int panda_free_modes(const panda_arrival *arrival, const panda_params *p, panda_
     int places[PANDA_SYSTEM];
     panda_real row[PANDA_SYSTEM];
     panda_real momentum[PANDA_SYSTEM]; /* before, at 1 m/s */
-    (void)carried;
     whole(arrival, p, mass, K);
     whole(arrival, p, kept, K);
     for (int i = 0; i < PANDA_SYSTEM; ++i) {

@@ -5,7 +5,7 @@
 int panda_find_peak(const panda_region *region, const panda_params *p, panda_real speed,
     panda_impact *impact, panda_peak_force_t *out)
 {
-    panda_budget budget = {p->steps, false, PANDA_REAL_MAX, NULL};
+    panda_budget budget = {p->steps, false, false, PANDA_REAL_MAX, NULL};
     panda_peak_force_t found = {PANDA_R(0.0), PANDA_R(0.0)};
     bool bounded = false;
     int first;
@@ -21,7 +21,7 @@ int panda_find_peak(const panda_region *region, const panda_params *p, panda_rea
         if (impact->status != PANDA_OK) {
             return impact->status;
         }
-        if (!peak.ended) {
+        if (!peak.ended || peak.torn) {
             const panda_real bound = panda_bound(impact);
             if (!(bound > PANDA_R(0.0))) {
                 return PANDA_UNRESOLVED;

@@ -4,6 +4,8 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS PANDA_R(1.6e-2)
+/* Share of how far robot and body give way that rounding may change: a slow servo that pressed was 1.6 off. */
+#define BLURS_SPRING PANDA_R(4e-3)
 /*
  * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
  * inputs, 4.6 % with this, errors as before).
@@ -27,9 +29,7 @@ static void take_body_out(panda_phase *phase)
         modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
-        for (int k = 0; k < PANDA_SYSTEM; ++k) {
-            modes->shape[body][k] = modes->shape[last][k];
-        }
+        modes->from[body] = modes->from[last];
         modes->count = last;
     }
     phase->has_body = false;
@@ -68,7 +68,7 @@ static int modes_of(panda_impact *impact, int which)
     }
 #endif
     const int status = which == PANDA_LED ? led_modes(impact, phase)
-        : panda_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
+        : panda_free_modes(&impact->arrival, impact->p, &phase->modes);
     phase->known = status == PANDA_OK;
     impact->led = which == PANDA_LED ? impact->motors : impact->led;
     return status;
@@ -101,6 +101,22 @@ static panda_real blur_of(const panda_impact *impact, const panda_phase *phase, 
 }
 
 #if !PANDA_STRUCTURED
+/* What rounding may change of how far contact point and body give way to a force within a time, as a share of it. */
+static panda_real blur_of_spring(const panda_region *region, const panda_modes *modes, panda_real time)
+{
+    const panda_real square = time*time;
+    panda_real gives = PANDA_R(1.0)/region->stiffness;
+    panda_real off = PANDA_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const panda_real known = PANDA_FMAX(PANDA_FABS(modes->squared[i]) - modes->noise[i], PANDA_R(0.0));
+        const panda_real turns = PANDA_FMAX(known*square, PANDA_R(2.0));
+        const panda_real bends = modes->row[i]*modes->row[i]*square/turns;
+        gives += bends;
+        off += bends*modes->noise[i]*square/PANDA_FMAX(turns, PANDA_R(12.0));
+    }
+    return off/gives;
+}
+
 static panda_real mobility_of(const panda_modes *modes)
 {
     panda_real sum = PANDA_R(0.0);
@@ -123,7 +139,11 @@ static void steps_of(panda_impact *impact, int which)
 {
     panda_phase *const phase = &impact->phase[which];
     const panda_real time = time_of(impact, which);
-    phase->blurred = blur_of(impact, phase, time) > BLURS;
+    phase->blur = blur_of(impact, phase, time);
+    phase->blurred = phase->blur > BLURS;
+#if !PANDA_STRUCTURED
+    phase->blurred = phase->blurred || blur_of_spring(impact->region, &phase->modes, time) > BLURS_SPRING;
+#endif
     panda_phase_steps(impact, time, phase);
     const panda_real numbers[2] = {phase->level[0].h, phase->level[PANDA_LEVELS - 1].h};
     if (panda_check_positive(numbers, 2) != PANDA_OK) {
@@ -147,7 +167,8 @@ static void weigh(panda_impact *impact)
     const panda_real body = impact->gives_way ? PANDA_R(1.0)/impact->region->effective_mass : PANDA_R(0.0);
     panda_real mobility = PANDA_R(0.0);
 #if PANDA_STRUCTURED
-    impact->status = panda_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
+    impact->status = panda_mobilities(
+        &impact->arrival, impact->p, impact->phase[PANDA_LOOSE].modes.shape, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == PANDA_OK; ++k) {
         impact->status = modes_of(impact, k);
@@ -186,6 +207,7 @@ int panda_impact_prepare(const panda_region *region, const panda_params *p, int 
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const panda_real damped = region->damping*PANDA_SQRT(impact->mobility/region->stiffness);
     impact->smooth = PANDA_FMAX(PANDA_R(1.0)/(PANDA_R(1.0) + PANDA_R(4.0)*damped), LEAST_SMOOTH);
+    impact->sure = impact->smooth < PANDA_HARD ? 1 : 2;
     impact->skin_rate = panda_law_stiffness(region, size)*impact->mobility;
     const panda_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!panda_all_finite(numbers, 3) || panda_check_positive(numbers, 3) != PANDA_OK) {

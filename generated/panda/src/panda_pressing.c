@@ -49,7 +49,7 @@ static panda_real pressed_by(panda_pressing *k, panda_real speed, panda_real mat
     k->budget.watch = &k->watch;
     panda_impact_run(&k->impact, speed, &k->budget, &peak);
     k->peak = peak.force;
-    if (peak.ended) {
+    if (peak.ended && !peak.torn) {
         return k->watch.late;
     }
     const panda_real bound = k->impact.status == PANDA_OK ? panda_bound(&k->impact) : PANDA_R(0.0);
@@ -70,7 +70,7 @@ static bool keeps(panda_pressing *k, const panda_region *region, panda_real spee
         kept = panda_impact_prepare(region, &k->p, motors, limit, &k->impact) == PANDA_OK;
         const panda_real late = kept ? pressed_by(k, speed, CALM*limit) : PANDA_REAL_MAX;
         kept = late <= PANDA_KEPT*limit - OF_PEAK*k->peak;
-        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
+        k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }
@@ -81,6 +81,7 @@ static void prepare_pressing(const panda_params *p, panda_real until, panda_pres
     k->p.horizon = PANDA_FMAX(PANDA_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
+    k->budget.fine = false;
     k->budget.stop_above = PANDA_REAL_MAX;
     k->budget.watch = NULL;
     k->watch.slower = false;

@@ -5,18 +5,33 @@
 /* Half the second difference of the force, over its size, above which a step is halved. */
 #define BENDS PANDA_R(0.025)
 #define BENDS_ROUGH PANDA_R(0.15)
+/* Share of it that is allowed where contacts before may have left an error. */
+#define BENDS_FINE PANDA_R(0.1)
+/*
+ * Below the largest force so far mostly only what comes later counts: these shares of half the second difference, and
+ * of half the third, stand for the former from the fourth node of a contact on.
+ */
+#define BENDS_BELOW PANDA_R(0.3)
+#define TWISTS_BELOW PANDA_R(0.8)
 /* Share of it below which the next step is doubled: a doubled one bends four times as much. */
 #define STRAIGHT PANDA_R(0.22)
 /* Force from which robot and body may part within a step, over the bend that is allowed. */
 #define PARTS PANDA_R(4.0)
 /* Share of that by which the force may be larger within a step than at its ends. */
 #define LEAPS PANDA_R(0.5)
+/* Bend over the shortest step, over what is allowed, from which on the force of a law through points is unknown. */
+#define TORN PANDA_R(16.0)
 /* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
 #define BEYOND 2
 /* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
 #define SHORTEST (PANDA_LEVELS - 1)
 #define SHORTEST_APART 4
 #define SHORTEST_ROUGH 2
+/*
+ * Share of the time that rounding may shift a force which still rises at the horizon by, over the share of an approach
+ * that it may change: a stiff body met again just before was 0.16 of it off, and its force by 2.5 %.
+ */
+#define SHIFTS PANDA_R(0.5)
 /* Steps of a falling force, or of none, after which it is looked whether the rest matters. */
 #define LOOKS 3
 /* Share of a first step within which the damper has to press the skin in, and the share of that time missed. */
@@ -25,6 +40,8 @@
 /* Level of such a first step. */
 #define LONGEST 4
 #define LONGEST_ROUGH 1
+/* Share of the largest force below which a rough run ends: what it finds is a guess. */
+#define GUESSED PANDA_R(0.5)
 /* Share of what a harder contact takes up to which rough runs take it to be out of reach. */
 #define ROUGHLY PANDA_R(3.0)
 /*
@@ -65,6 +82,7 @@ static void tick(panda_state *s, bool longer)
     const int ticks = s->ticks - (1 << (PANDA_LEVELS - 1 - s->level));
     s->h_before = s->h;
     s->h = h;
+    s->per = s->step->per;
     s->time += h;
     s->owed = PANDA_R(0.5)*h;
     s->drifted += s->drift*h;
@@ -75,14 +93,25 @@ static void tick(panda_state *s, bool longer)
     }
 }
 
-/* Notes a force; `since` is its time less that of the last node. */
-static void see(const panda_state *s, panda_real force, panda_real since, panda_peak *peak)
+/* Notes a force if it is the largest; `since` is its time less that of the last node. */
+static bool see(const panda_state *s, panda_real force, panda_real since, panda_peak *peak)
 {
     const panda_real most = force + s->swings;
-    if (most > peak->force) {
+    const bool largest = most > peak->force;
+    if (largest) {
         peak->force = most;
         peak->time = s->time + since;
         peak->contact = peak->contacts;
+    }
+    return largest;
+}
+
+/* Notes the force at a top, or where the horizon cuts it off. */
+static void see_most(const panda_state *s, panda_real force, panda_real since, panda_peak *peak)
+{
+    (void)see(s, force, since, peak);
+    if (peak->contacts > s->impact->sure) {
+        peak->later = PANDA_FMAX(peak->later, force + s->swings);
     }
 }
 
@@ -101,7 +130,19 @@ static void see_top(const panda_state *s, const panda_trial *t, panda_peak *peak
         const panda_real twist = (bend - bent)/(h + s->h + s->h_before);
         force += twist*since*(since + s->h)*(since - h);
     }
-    see(s, force, since, peak);
+    see_most(s, force, since, peak);
+}
+
+/* By how much the force bends over a step, as far as that matters. */
+static panda_real bend_of(const panda_state *s, const panda_trial *t, const panda_peak *peak)
+{
+    const panda_real bent = PANDA_R(6.0)*PANDA_FABS(t->bump);
+    if (s->all_count || s->past <= 2 || !(s->f < peak->force)) {
+        return bent;
+    }
+    const panda_real ratio = s->pace.ratio;
+    const panda_real twisted = PANDA_R(6.0)*PANDA_FABS(t->bump - ratio*ratio*s->bump);
+    return PANDA_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted);
 }
 
 /* A step in contact. */
@@ -109,25 +150,25 @@ static outcome step_pressed(panda_state *s, panda_trial *t, panda_real bends, in
 {
     panda_press(s, t);
     const panda_real allowed = bends*PANDA_FMAX(s->scale, peak->force);
-    const panda_real bent = PANDA_R(6.0)*PANDA_FABS(t->bump);
+    const panda_real bent = bend_of(s, t, peak);
     const panda_real rise = t->f - s->f;
     const bool parts = !(t->f > PANDA_R(0.0));
     panda_real between = PANDA_R(0.0); /* nodes of a law through points, where it leaps there */
     bool slips = false;
-    if (s->impact->region->law != NULL) {
+    if (s->region->law != NULL) {
         const panda_real force = panda_force_between(s, t);
         between = force > PANDA_FMAX(s->f, t->f) + LEAPS*allowed ? force : PANDA_R(0.0);
         slips = between > PANDA_R(0.0) || panda_slip_off(s, t) > LEAPS*allowed;
+        peak->torn = peak->torn || (s->level >= SHORTEST && bent > TORN*allowed);
     }
     if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
         return TO_BE_SHORTER;
     }
-    panda_take(t, s);
+    panda_take(s, t->mean, rise);
     const bool rises = rise >= PANDA_R(0.0);
-    if (rises) {
-        s->depth = t->f > peak->force ? t->depth : s->depth;
-        see(s, t->f, s->step->h, peak);
+    if (rises && see(s, t->f, s->step->h, peak)) {
+        s->depth = t->depth;
     }
     if (!rises && s->past > 0 && s->rise >= PANDA_R(0.0)) {
         see_top(s, t, peak);
@@ -140,10 +181,12 @@ static outcome step_pressed(panda_state *s, panda_trial *t, panda_real bends, in
         s->rest = PANDA_FMAX(t->x, (s->x - s->u)*s->step->relax);
     }
     const panda_real most = STRAIGHT*allowed;
-    const bool straight = s->past > 0 && bent <= most && PANDA_R(6.0)*PANDA_FABS(s->bump) <= most;
+    const bool straight = bent <= most && s->bent <= most && s->past > 0;
+    s->bent = bent;
     s->bump = t->bump;
     s->rise = rise;
     s->f = t->f;
+    s->u_third = s->u_before;
     s->u_before = s->u;
     s->u = t->u;
     s->now = t->depth;
@@ -163,6 +206,7 @@ static void touch(panda_state *s)
     s->f = PANDA_R(0.0);
     s->rise = PANDA_R(0.0);
     s->bump = PANDA_R(0.0);
+    s->bent = PANDA_R(0.0);
     s->now = PANDA_R(0.0);
     s->root = PANDA_R(0.0);
 }
@@ -186,10 +230,7 @@ static outcome step_apart(panda_state *s, const panda_trial *t, int shortest, pa
         }
         return TO_BE_SHORTER;
     }
-    for (int i = 0; i < s->phase->active; ++i) {
-        s->amplitude[i] = t->amplitude[i];
-        s->rate[i] = t->rate[i];
-    }
+    panda_take(s, PANDA_R(0.0), PANDA_R(0.0));
     s->rest = rest;
     s->x = t->x;
     return TAKEN_AND_STRAIGHT;
@@ -219,36 +260,46 @@ static void start(panda_impact *impact, panda_real speed, bool rough, panda_stat
     const panda_phase *const phase = &impact->phase[impact->first];
     const panda_real zero = PANDA_R(0.0);
     s->impact = impact;
+    s->region = impact->region;
     s->speed = speed;
+    s->all_count = false;
     s->scale = impact->scale;
     panda_phase_begin(phase, rough ? SHORTEST_ROUGH : SHORTEST, s);
     s->time = zero;
+    s->motion = &s->motions[0];
+    s->trial = &s->motions[1];
+    s->due.level = s->step;
+    s->due.mean = zero;
+    s->due.rise = zero;
     for (int i = 0; i < phase->active; ++i) {
-        s->amplitude[i] = zero;
-        s->rate[i] = phase->modes.start[i]*speed;
+        s->motion->place[i] = zero;
+        s->motion->rate[i] = phase->modes.row[i]*phase->modes.start[i]*speed;
     }
     s->h = zero;
     s->h_before = zero;
+    s->per = zero;
     s->x = zero;
     s->rest = zero;
     s->u_before = zero;
+    s->u_third = zero;
     touch(s);
     s->depth = zero;
     s->swings = zero;
     begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
 }
 
-/* Steps through a phase, a rough run until they part; false if the steps do not do. */
+/* Steps through a phase, a rough run until its force has fallen; false if the steps do not do. */
 static bool run_phase(panda_state *s, panda_budget *budget, panda_peak *peak)
 {
     const bool rough = budget->rough;
-    const panda_real bends = s->impact->smooth*(rough ? BENDS_ROUGH : BENDS);
+    const panda_real fine = budget->fine ? BENDS_FINE : PANDA_R(1.0);
+    const panda_real bends = fine*s->impact->smooth*(rough ? BENDS_ROUGH : BENDS);
     const panda_real share = rough ? ROUGHLY : PANDA_R(1.0);
     const int shortest = rough ? SHORTEST_ROUGH : SHORTEST;
     panda_trial t;
     int falls = 0; /* steps of a falling force, or of none, since it was looked whether the rest matters */
     while (s->ticks > 0) {
-        if (budget->steps <= 0 || peak->contacts > MOST_CONTACTS) {
+        if (budget->steps <= 0) {
             return false;
         }
         --budget->steps;
@@ -264,15 +315,20 @@ static bool run_phase(panda_state *s, panda_budget *budget, panda_peak *peak)
         const outcome was = s->touching ? step_pressed(s, &t, bends, shortest, peak)
             : step_apart(s, &t, rough ? SHORTEST_ROUGH : SHORTEST_APART, peak);
         if (was == TO_BE_SHORTER) {
+            if (peak->contacts > MOST_CONTACTS) {
+                return false;
+            }
             continue;
         }
         const bool is_longest = s->touching && !rough && s->level <= s->phase->longest_pressed;
         tick(s, was == TAKEN_AND_STRAIGHT && !is_longest);
-        const bool fell = budget->watch == NULL && s->f + s->swings < peak->force;
-        falls += fell && s->phase->settles && !(s->rise > PANDA_R(0.0)) ? 1 : 0;
-        peak->ended = fell && (peak->force > budget->stop_above || (rough && !s->touching));
         if (budget->watch != NULL) {
             peak->ended = panda_pass(s, budget->watch);
+        } else if (s->f + s->swings < peak->force) {
+            falls += s->phase->settles && !(s->rise > PANDA_R(0.0)) ? 1 : 0;
+            peak->ended = peak->force > budget->stop_above || (rough && s->f < GUESSED*peak->force);
+        } else {
+            peak->ended = false;
         }
         if (peak->ended) {
             return true;
@@ -285,6 +341,8 @@ void panda_impact_run(panda_impact *impact, panda_real speed, panda_budget *budg
 {
     panda_state s;
     peak->force = PANDA_R(0.0);
+    peak->later = PANDA_R(0.0);
+    peak->torn = false;
     peak->time = PANDA_R(0.0);
     peak->contact = 1;
     peak->contacts = 1;
@@ -294,6 +352,7 @@ void panda_impact_run(panda_impact *impact, panda_real speed, panda_budget *budg
         return;
     }
     start(impact, speed, budget->rough, &s);
+    s.all_count = budget->fine || budget->watch != NULL;
     bool goes_on = run_phase(&s, budget, peak);
     if (goes_on && !peak->ended && impact->last > impact->first) {
         panda_impact_let_go(impact);
@@ -307,6 +366,9 @@ void panda_impact_run(panda_impact *impact, panda_real speed, panda_budget *budg
         s.ticks = BEYOND;
         change_level(&s, SHORTEST);
         goes_on = run_phase(&s, budget, peak);
+    }
+    if (goes_on && !peak->ended && s.rise > PANDA_R(0.0)) { /* cut off by the horizon */
+        see_most(&s, s.f + SHIFTS*s.phase->blur*s.time*s.rise/s.h, PANDA_R(0.0), peak);
     }
     peak->ended = goes_on;
 }

@@ -5,7 +5,8 @@
 
 #if defined(PANDA_USE_FLOAT)
 /* Error < 1.2e-07. */
-#define LIMIT PANDA_R(200.0) /* rad; angles beyond are the C library's */
+#define LIMIT PANDA_R(200.0) /* rad; whole turns are taken off angles beyond */
+#define TURN PANDA_R(6.283185307179586) /* rad; less than half a unit in an angle's last place off, however many */
 #define PER_QUARTER PANDA_R(0.636619772) /* quarter turns in a radian */
 #define ADDED PANDA_R(128.0) /* whole turns, more than the limit has */
 #define QUARTER_1 PANDA_R(1.5703125) /* a quarter turn in three parts, rad */
@@ -22,7 +23,8 @@ static panda_real even(panda_real z) /* (cos r - 1 + r^2/2)/r^4 */
 }
 #else
 /* Error < 2e-16. */
-#define LIMIT PANDA_R(100000.0) /* rad; angles beyond are the C library's */
+#define LIMIT PANDA_R(100000.0) /* rad; whole turns are taken off angles beyond */
+#define TURN PANDA_R(6.283185307179586) /* rad; less than half a unit in an angle's last place off, however many */
 #define PER_QUARTER PANDA_R(0.6366197723675814) /* quarter turns in a radian */
 #define ADDED PANDA_R(65536.0) /* whole turns, more than the limit has */
 #define QUARTER_1 PANDA_R(1.5707963267341256) /* a quarter turn in three parts, rad */
@@ -39,12 +41,24 @@ static panda_real even(panda_real z) /* (cos r - 1 + r^2/2)/r^4 */
 }
 #endif
 
-static void ask_library(const panda_real *x, int count, panda_real *s, panda_real *c)
+/* An angle less whole turns, each difference exact; 0, which is as near, if half a unit in its last place is half a turn. */
+static panda_real unwound(panda_real x)
 {
-    for (int i = 0; i < count; ++i) {
-        s[i] = PANDA_SIN(x[i]);
-        c[i] = PANDA_COS(x[i]);
+    const panda_real size = PANDA_FABS(x);
+    panda_real rest = size < PANDA_R(2.0)*TURN/PANDA_EPSILON ? size : PANDA_R(0.0);
+    panda_real turns = TURN;
+    bool more = turns <= PANDA_R(0.5)*rest;
+    int doubled = 0;
+    while (more) {
+        turns += turns;
+        ++doubled;
+        more = turns <= PANDA_R(0.5)*rest;
     }
+    for (int k = doubled; k >= 0; --k) {
+        rest -= rest >= turns ? turns : PANDA_R(0.0);
+        turns *= PANDA_R(0.5);
+    }
+    return x < PANDA_R(0.0) ? -rest : rest;
 }
 
 /*
@@ -53,25 +67,25 @@ static void ask_library(const panda_real *x, int count, panda_real *s, panda_rea
  */
 void panda_sines_cosines(const panda_real *x, int count, panda_real *s, panda_real *c)
 {
+    bool few = true;
     for (int i = 0; i < count; ++i) {
-        if (!(PANDA_FABS(x[i]) < LIMIT)) {
-            ask_library(x, count, s, c);
-            return;
-        }
+        few = few && PANDA_FABS(x[i]) < LIMIT;
     }
     for (int i = 0; i < count; ++i) {
-        const panda_real quarters = x[i]*PER_QUARTER + (ADDED + PANDA_R(0.5));
+        const panda_real angle = few ? x[i] : unwound(x[i]);
+        const panda_real quarters = angle*PER_QUARTER + (ADDED + PANDA_R(0.5));
         const int nearest = (int)quarters;
         const unsigned int quarter = (unsigned int)nearest;
         const panda_real k = (panda_real)nearest - ADDED;
-        const panda_real about = (x[i] - k*QUARTER_1) - k*QUARTER_2;
+        const panda_real about = (angle - k*QUARTER_1) - k*QUARTER_2;
         const panda_real r = about - k*QUARTER_3;
         const panda_real z = r*r;
         const panda_real sine = r + r*z*odd(z);
         const panda_real cosine = PANDA_R(1.0) - PANDA_R(0.5)*z + z*z*even(z);
         const panda_real first = (quarter & 1u) != 0u ? cosine : sine;
         const panda_real second = (quarter & 1u) != 0u ? sine : cosine;
-        s[i] = (quarter & 2u) != 0u ? -first : first;
-        c[i] = ((quarter + 1u) & 2u) != 0u ? -second : second;
+        const panda_real end = few ? PANDA_R(0.0) : PANDA_R(0.0)*x[i]; /* not a number unless x is finite */
+        s[i] = ((quarter & 2u) != 0u ? -first : first) + end;
+        c[i] = (((quarter + 1u) & 2u) != 0u ? -second : second) + end;
     }
 }

@@ -10,11 +10,10 @@
 #include "panda_impact.h"
 
 /*
- * Steps of QR, which takes one an eigenvalue to four digits and two to all: of 60,000 compliances of seven joints
- * none took more than 13, of as many servos of 14 coordinates none more than 30. What is not done by then fails.
+ * Steps of QR to all digits, about two an eigenvalue: of 60,000 servos of 14 coordinates none took more than 30.
+ * What is not done by then fails.
  */
-#define MOST_STEPS(size) (2*(size) + 2)
-#define MOST_STEPS_TO_ALL_DIGITS(size) (3*(size))
+#define MOST_STEPS(size) (3*(size))
 
 /* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
 static void turn(int first, int size, const panda_real *v, panda_real scale, panda_matrix A)
@@ -42,62 +41,69 @@ static void turn(int first, int size, const panda_real *v, panda_real scale, pan
     }
 }
 
-/*
- * Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. Of each
- * reflection, v stays in A's own row.
- */
-static void reflect(int size, panda_matrix A, panda_real *d, panda_real *e, panda_matrix Q)
+/* The same of a vector. */
+static void mirror(int first, int size, const panda_real *v, panda_real scale, panda_real *x)
 {
-    panda_real scale[PANDA_SYSTEM]; /* 2/v'v */
+    panda_real along = PANDA_R(0.0);
+    for (int i = first; i < size; ++i) {
+        along += x[i]*v[i];
+    }
+    along *= scale;
+    for (int i = first; i < size; ++i) {
+        x[i] -= along*v[i];
+    }
+}
+
+/* Turns a vector by the rotations of one step. */
+static void turn_on(int first, int last, const panda_rotation *by, panda_real *x)
+{
+    panda_real here = x[first];
+    for (int k = first; k < last; ++k) {
+        const panda_real c = by[k - first].c;
+        const panda_real s = by[k - first].s;
+        const panda_real next = x[k + 1];
+        x[k] = c*here + s*next;
+        here = c*next - s*here;
+    }
+    x[last] = here;
+}
+
+/* Reflects A to three diagonals d and e, and vectors with it. Of each reflection, v stays in A's own row. */
+static void reflect(int size, panda_matrix A, panda_real *d, panda_real *e, int count, panda_vectors x,
+    panda_turns *turns)
+{
     for (int k = 0; k + 1 < size; ++k) {
         panda_real *const v = A[k];
         const panda_real first = v[k + 1];
         panda_real square = PANDA_R(0.0);
+        panda_real scale = PANDA_R(0.0); /* 2/v'v */
         for (int i = k + 2; i < size; ++i) {
             square += v[i]*v[i];
         }
         d[k] = v[k];
         e[k] = first;
-        scale[k] = PANDA_R(0.0);
         if (square > PANDA_R(0.0)) {
             const panda_real length = PANDA_SQRT(square + first*first);
             e[k] = first > PANDA_R(0.0) ? -length : length;
             v[k + 1] = first - e[k];
-            scale[k] = PANDA_R(1.0)/(length*(length + PANDA_FABS(first)));
-            turn(k + 1, size, v, scale[k], A);
+            scale = PANDA_R(1.0)/(length*(length + PANDA_FABS(first)));
+            turn(k + 1, size, v, scale, A);
+            for (int m = 0; m < count; ++m) {
+                mirror(k + 1, size, v, scale, x[m]);
+            }
+        }
+        if (turns != NULL) {
+            turns->scale[k] = scale;
+            for (int i = k + 1; i < size; ++i) {
+                turns->v[k][i] = v[i];
+            }
         }
     }
     d[size - 1] = A[size - 1][size - 1];
-    Q[size - 1][size - 1] = PANDA_R(1.0);
-    for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
-        const panda_real *const v = A[k];
-        const int next = k + 1; /* row and column that were none but for a 1 where they meet */
-        const panda_real lead = scale[k]*v[next];
-        Q[next][next] = PANDA_R(1.0) - lead*v[next];
-        for (int j = next + 1; j < size; ++j) {
-            Q[next][j] = -lead*v[j];
-        }
-        for (int i = next + 1; i < size; ++i) {
-            panda_real along = PANDA_R(0.0);
-            for (int j = next + 1; j < size; ++j) {
-                along += Q[i][j]*v[j];
-            }
-            along *= scale[k];
-            for (int j = next + 1; j < size; ++j) {
-                Q[i][j] -= along*v[j];
-            }
-            Q[i][next] = -along*v[next];
-        }
-    }
-    Q[0][0] = PANDA_R(1.0);
-    for (int i = 1; i < size; ++i) {
-        Q[0][i] = PANDA_R(0.0);
-        Q[i][0] = PANDA_R(0.0);
-    }
 }
 
-/* One QR step on rows first to last; turns the rows of Q, too. */
-static void chase(int first, int last, int size, panda_real *d, panda_real *e, panda_matrix Q)
+/* One QR step on rows first to last; writes its rotations. */
+static void chase(int first, int last, panda_real *d, panda_real *e, panda_rotation *by)
 {
     const panda_real end = e[last - 1];
     const panda_real half = PANDA_R(0.5)*(d[last - 1] - d[last]);
@@ -122,7 +128,8 @@ static void chase(int first, int last, int size, panda_real *d, panda_real *e, p
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        panda_turn(size, c, s, Q[k], Q[k + 1]);
+        by[k - first].c = c;
+        by[k - first].s = s;
     }
 }
 
@@ -132,29 +139,124 @@ static bool counts(int row, const panda_real *d, const panda_real *e, panda_real
     return e[row]*e[row] > noise + small*PANDA_FABS(d[row]*d[row + 1]);
 }
 
-bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *values, panda_matrix vectors)
+bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *values, int count, panda_vectors x,
+    panda_turns *turns)
 {
     panda_real e[PANDA_SYSTEM];
+    panda_rotation passing[PANDA_SYSTEM]; /* of a step, where they are not kept */
+    int kept = 0;
     panda_real all = PANDA_R(0.0);
-    reflect(size, A, values, e, vectors);
+    reflect(size, A, values, e, count, x, turns);
     for (int i = 0; i < size; ++i) {
         all += PANDA_FABS(values[i]);
     }
     const panda_real noise = PANDA_EPSILON*PANDA_EPSILON*all*all;
     int last = size - 1;
-    const int most = small > PANDA_EPSILON ? MOST_STEPS(size) : MOST_STEPS_TO_ALL_DIGITS(size);
+    const int most = turns != NULL ? PANDA_MOST_STEPS : MOST_STEPS(size);
     for (int step = 0; step <= most; ++step) {
         while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
         }
         if (last == 0) {
+            if (turns != NULL) {
+                turns->steps = step;
+                turns->count = kept;
+            }
             return true;
         }
         int first = last - 1;
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
-        chase(first, last, size, values, e, vectors);
+        panda_rotation *by = passing;
+        if (turns != NULL) {
+            if (step == most || kept + last - first > PANDA_MOST_TURNS) {
+                return false;
+            }
+            by = &turns->by[kept];
+            turns->first[step] = (unsigned char)first;
+            turns->last[step] = (unsigned char)last;
+            kept += last - first;
+        }
+        chase(first, last, values, e, by);
+        for (int m = 0; m < count; ++m) {
+            turn_on(first, last, by, x[m]);
+        }
     }
     return false;
 }
+
+#if PANDA_STRUCTURED
+/* x -= scale (v'x) v of two vectors. */
+static void mirror_both(int first, const panda_real *v, panda_real scale, panda_real *x, panda_real *y)
+{
+    panda_real along_x = PANDA_R(0.0);
+    panda_real along_y = PANDA_R(0.0);
+    for (int i = first; i < PANDA_N; ++i) {
+        const panda_real vi = v[i];
+        along_x += x[i]*vi;
+        along_y += y[i]*vi;
+    }
+    along_x *= scale;
+    along_y *= scale;
+    for (int i = first; i < PANDA_N; ++i) {
+        const panda_real vi = v[i];
+        x[i] -= along_x*vi;
+        y[i] -= along_y*vi;
+    }
+}
+
+void panda_to_modes(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
+{
+    const panda_rotation *by = turns->by;
+    for (int k = 0; k + 2 < PANDA_N; ++k) {
+        mirror_both(k + 1, turns->v[k], turns->scale[k], x, y);
+    }
+    for (int step = 0; step < turns->steps; ++step) {
+        const int first = turns->first[step];
+        const int last = turns->last[step];
+        panda_real x0 = x[first];
+        panda_real y0 = y[first];
+        for (int k = first; k < last; ++k) {
+            const panda_real c = by->c;
+            const panda_real s = by->s;
+            const panda_real x1 = x[k + 1];
+            const panda_real y1 = y[k + 1];
+            x[k] = c*x0 + s*x1;
+            y[k] = c*y0 + s*y1;
+            x0 = c*x1 - s*x0;
+            y0 = c*y1 - s*y0;
+            ++by;
+        }
+        x[last] = x0;
+        y[last] = y0;
+    }
+}
+
+void panda_from_modes(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
+{
+    const panda_rotation *by = &turns->by[turns->count];
+    for (int step = turns->steps - 1; step >= 0; --step) {
+        const int first = turns->first[step];
+        const int last = turns->last[step];
+        panda_real x1 = x[last];
+        panda_real y1 = y[last];
+        for (int k = last - 1; k >= first; --k) {
+            --by;
+            const panda_real c = by->c;
+            const panda_real s = by->s;
+            const panda_real x0 = x[k];
+            const panda_real y0 = y[k];
+            x[k + 1] = c*x1 + s*x0;
+            y[k + 1] = c*y1 + s*y0;
+            x1 = c*x0 - s*x1;
+            y1 = c*y0 - s*y1;
+        }
+        x[first] = x1;
+        y[first] = y1;
+    }
+    for (int k = PANDA_N - 3; k >= 0; --k) {
+        mirror_both(k + 1, turns->v[k], turns->scale[k], x, y);
+    }
+}
+#endif

@@ -8,15 +8,30 @@
 /* What the next step takes of those before it, and of its own length. */
 typedef struct {
     panda_real ratio; /* of its length to the last one's */
-    panda_real share, more, before; /* of the bend, see panda_press */
-    panda_real u, u_before; /* in u', 1/s */
+    panda_real share, whole, before; /* of the bend, see panda_press */
+    panda_real u, u_before, u_third; /* in c u' */
+    panda_real stays, grows; /* by how much less a force presses that stays, and more one that has not grown yet */
     panda_real hold, soft, yields; /* depth hold + soft f = what presses; x gives way by yields f */
+    panda_real per_hold, cubic; /* of Hertz's law, see root_of */
 } panda_pace;
+
+/* What each mode moves the contact point by, m, and how fast. */
+typedef struct {
+    panda_real place[PANDA_MODES], rate[PANDA_MODES];
+} panda_motion;
+
+/* The force over a step, on average and by how much it grew, which modes are yet to feel. */
+typedef struct {
+    const panda_level *level;
+    panda_real mean, rise;
+} panda_due;
 
 typedef struct {
     panda_impact *impact;
+    const panda_region *region;
     const panda_phase *phase;
     panda_real speed;
+    bool all_count; /* forces below the largest so far, too */
     panda_real scale; /* of forces, N */
     const panda_level *step; /* of the next one's length */
     int level;
@@ -25,14 +40,16 @@ typedef struct {
     int ticks; /* of the shortest step, until the phase is over */
     panda_real time;
     panda_real drift, drifted; /* by the motors, m/s and m */
-    panda_real amplitude[PANDA_MODES], rate[PANDA_MODES];
+    panda_motion *motion, *trial; /* at the last node, but for what is due; and after a step on trial */
+    panda_motion motions[2]; /* where they are */
+    panda_due due;
     panda_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
-    panda_real h, h_before, x; /* last steps, contact point */
-    panda_real bump; /* what the bend adds to the force on average of the last step */
+    panda_real h, h_before, per, x; /* last steps, contact point */
+    panda_real bump, bent; /* what the bend adds to the force on average of the last step; the bend as it matters */
     panda_real f, rise; /* force, and by how much it grew in the last step */
-    panda_real u, u_before; /* deformation of the skin and of what stands */
+    panda_real u, u_before, u_third; /* deformation of the skin and of what stands */
     panda_real now, root; /* depth of the skin, and its root under Hertz's law */
     panda_real rest; /* deflection of the body out of contact */
     panda_real depth; /* of the skin at the largest force so far */
@@ -58,9 +75,8 @@ bool panda_pass(const panda_state *s, panda_watch *watch);
 
 /* A step on trial. */
 typedef struct {
-    panda_real amplitude[PANDA_MODES], rate[PANDA_MODES];
     panda_real x, v; /* of the contact point without the force at the end */
-    panda_real f, bump, base, share; /* force at the end; what its bend adds on the way */
+    panda_real f, bump, mean; /* force at the end; what its bend adds; force on average, less half its rise */
     panda_real u, depth, root;
 } panda_trial;
 
@@ -69,11 +85,16 @@ void panda_phase_begin(const panda_phase *phase, int level, panda_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, panda_real *rate);
-/* Rates of modes, damped until halfway through the next step. */
-void panda_damp_ahead(const panda_state *s, panda_real *rate);
+/* Rates of modes after all that is due, damped until halfway through the next step. */
+void panda_damp_ahead(panda_state *s, panda_real *rate);
+/* What of the contact point's velocity is damped in the other half of a step, which begins with such rates. */
+panda_real panda_owed_slip(const panda_state *s, const panda_real *rate);
 
-/* Moves all modes by a step without forces. */
-void panda_glide(const panda_state *s, panda_trial *t);
+/* Moves all modes by a step without forces, on trial. */
+void panda_glide(panda_state *s, panda_trial *t);
+
+/* Lets modes feel what is due. */
+void panda_feel(panda_state *s);
 
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
 void panda_press(panda_state *s, panda_trial *t);
@@ -82,13 +103,13 @@ void panda_press(panda_state *s, panda_trial *t);
  * Largest force of a law through points within the step, as if it did not slow down robot and body more on the
  * way: a law that gets stiff between two nodes may press hard there and show at neither.
  */
-panda_real panda_force_between(const panda_state *s, const panda_trial *t);
+panda_real panda_force_between(panda_state *s, const panda_trial *t);
 
 /* What the damper's force at the end may be off where the skin gets stiff within the step, as u' is a difference. */
 panda_real panda_slip_off(const panda_state *s, const panda_trial *t);
 
-/* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
-void panda_take(const panda_trial *t, panda_state *s);
+/* Takes the step: its force, `mean` less half its rise on average, is due. */
+void panda_take(panda_state *s, panda_real mean, panda_real rise);
 
 /* Goes over from motors that drive or servo to loose ones. */
 void panda_release(panda_state *s);

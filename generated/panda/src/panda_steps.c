@@ -29,6 +29,11 @@
  */
 #define JUMPS PANDA_R(0.1)
 #define JUMP_STEP PANDA_R(24.0)
+/*
+ * Least that a mode moves the contact point by, as a share of all that moves it: as modes are followed by that, one
+ * that hardly does must not be lost, and so little is not felt.
+ */
+#define LEAST_ROW PANDA_R(1e-6)
 /* Steps counted; more than any budget has. */
 #define MOST PANDA_R(1e6)
 
@@ -38,6 +43,7 @@ static void exchange(panda_modes *modes, int i, int j)
     const panda_real noise = modes->noise[i];
     const panda_real row = modes->row[i];
     const panda_real start = modes->start[i];
+    const int from = modes->from[i];
     modes->squared[i] = modes->squared[j];
     modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
@@ -46,11 +52,8 @@ static void exchange(panda_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < PANDA_SYSTEM; ++k) {
-        const panda_real shape = modes->shape[i][k];
-        modes->shape[i][k] = modes->shape[j][k];
-        modes->shape[j][k] = shape;
-    }
+    modes->from[i] = modes->from[j];
+    modes->from[j] = from;
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
@@ -107,43 +110,37 @@ static void mode_steps(panda_phase *phase)
 {
     const panda_modes *const modes = &phase->modes;
     const panda_real one = PANDA_R(1.0);
-    panda_real h = phase->level[PANDA_LEVELS - 1].h;
-    panda_real sine[PANDA_MODES]; /* sin(wh)/w */
-    panda_real push[PANDA_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
-    panda_real late[PANDA_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    const panda_real h = phase->level[PANDA_LEVELS - 1].h;
     for (int i = 0; i < phase->active; ++i) {
-        const panda_real t = modes->squared[i]*h*h;
-        late[i] = h*h*(one/PANDA_R(6.0) - t*(one/PANDA_R(120.0) - t*(one/PANDA_R(5040.0) - t/PANDA_R(362880.0))));
-        push[i] = h*h*(PANDA_R(0.5) - t*(one/PANDA_R(24.0) - t*(one/PANDA_R(720.0) - t/PANDA_R(40320.0))));
-        sine[i] = h*(one - modes->squared[i]*late[i]);
-    }
-    for (int k = PANDA_LEVELS - 1; k >= 0; --k) {
-        panda_level *const level = &phase->level[k];
-        const panda_real per = one/h;
-        panda_real pushes = PANDA_R(0.0);
-        panda_real lates = PANDA_R(0.0);
-        panda_real kicks = PANDA_R(0.0);
-        for (int i = 0; i < phase->active; ++i) {
+        const panda_real squared = modes->squared[i];
+        const panda_real weight = modes->row[i]*modes->row[i];
+        const panda_real t = squared*h*h;
+        panda_real late = h*h*(one/PANDA_R(6.0)
+            - t*(one/PANDA_R(120.0) - t*(one/PANDA_R(5040.0) - t/PANDA_R(362880.0)))); /* (wh - sin(wh))/(w^3 h) */
+        panda_real push = h*h*(PANDA_R(0.5)
+            - t*(one/PANDA_R(24.0) - t*(one/PANDA_R(720.0) - t/PANDA_R(40320.0)))); /* (1 - cos(wh))/w^2 */
+        panda_real sine = h*(one - squared*late); /* sin(wh)/w */
+        for (int k = PANDA_LEVELS - 1; k >= 0; --k) {
+            panda_level *const level = &phase->level[k];
             panda_mode_step *const step = &level->mode[i];
-            const panda_real row = modes->row[i];
-            const panda_real cosine = one - modes->squared[i]*push[i];
+            const panda_real cosine = one - squared*push;
             step->cosine = cosine;
-            step->sine = sine[i];
-            step->back = -modes->squared[i]*sine[i];
-            step->push = row*push[i];
-            step->late = row*late[i];
-            pushes += row*step->push;
-            lates += row*step->late;
-            kicks += row*row*sine[i];
-            late[i] += sine[i]*push[i]*per;
-            push[i] = PANDA_R(2.0)*sine[i]*sine[i];
-            sine[i] *= PANDA_R(2.0)*cosine;
+            step->sine = sine;
+            step->back = -squared*sine;
+            step->push = weight*push;
+            step->late = weight*late;
+            step->kick = weight*sine;
+            level->push += step->push;
+            level->late += step->late;
+            level->kick += step->kick;
+            late += sine*push*level->per;
+            push = PANDA_R(2.0)*sine*sine;
+            sine *= PANDA_R(2.0)*cosine;
         }
-        level->per = per;
-        level->push = pushes;
-        level->late = lates;
-        level->kick = kicks;
-        h += h;
+    }
+    for (int k = 0; k < PANDA_LEVELS; ++k) {
+        panda_level *const level = &phase->level[k];
+        level->grow = level->push*level->per;
     }
 }
 
@@ -161,12 +158,17 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
         modes->noise[body] = PANDA_R(0.0);
         modes->row[body] = PANDA_R(1.0)/PANDA_SQRT(region->effective_mass);
         modes->start[body] = PANDA_R(0.0);
+        modes->from[body] = body;
         for (int k = 0; k < PANDA_SYSTEM; ++k) {
             modes->shape[body][k] = PANDA_R(0.0);
         }
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
+    const panda_real least = LEAST_ROW*PANDA_SQRT(impact->mobility);
+    for (int i = 0; i < modes->count; ++i) {
+        modes->row[i] = PANDA_FABS(modes->row[i]) > least ? modes->row[i] : least;
+    }
     const panda_real end = PANDA_R(1.0)/PANDA_HORIZON(impact->p);
     let_stand(impact, PANDA_FMAX(contact, end*end), released, phase);
     panda_real moving = PANDA_R(0.0);
@@ -186,11 +188,19 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const panda_real h = wanted < MOST ? time/(panda_real)phase->steps : PANDA_R(1.0)/rate;
     phase->longest_pressed = share*contact*h*h > PRESSED_STEP*PRESSED_STEP ? 1 : 0;
-    phase->level[0].h = h;
-    for (int k = 1; k < PANDA_LEVELS; ++k) {
-        phase->level[k].h = PANDA_R(0.5)*phase->level[k - 1].h;
+    panda_real shortest = h;
+    panda_real per = PANDA_R(1.0)/h;
+    for (int k = 0; k < PANDA_LEVELS; ++k) {
+        panda_level *const level = &phase->level[k];
+        level->h = shortest;
+        level->per = per;
+        level->push = PANDA_R(0.0);
+        level->late = PANDA_R(0.0);
+        level->kick = PANDA_R(0.0);
+        shortest *= PANDA_R(0.5);
+        per += per;
     }
-    const panda_real shortest = region->stiffness*phase->level[PANDA_LEVELS - 1].h;
+    shortest = region->stiffness*phase->level[PANDA_LEVELS - 1].h;
     panda_real relax = region->damping > PANDA_R(0.0)
         ? PANDA_EXP(-PANDA_FMIN(shortest/region->damping, PANDA_R(80.0))) : PANDA_R(0.0);
     for (int k = PANDA_LEVELS - 1; k >= 0; --k) {
@@ -198,5 +208,8 @@ void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase 
         relax *= relax;
     }
     mode_steps(phase);
+    if (phase->damped) {
+        panda_slow_contact(phase);
+    }
     phase->ready = true;
 }

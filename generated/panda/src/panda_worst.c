@@ -82,12 +82,14 @@ static void find_axes(hardest *w)
     const panda_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     panda_matrix square;
+    panda_real unit[PANDA_REACH][PANDA_SYSTEM]; /* vectors */
     panda_real values[PANDA_SYSTEM];
     for (int k = 0; k < PANDA_REACH; ++k) {
         for (int l = 0; l < PANDA_REACH; ++l) {
             const panda_real *const a = panda_directions[k];
             const panda_real *const b = panda_directions[l];
             square[k][l] = PANDA_R(0.0);
+            unit[k][l] = k == l ? PANDA_R(1.0) : PANDA_R(0.0);
             for (int i = 0; i < PANDA_N; ++i) {
                 const panda_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
                 const panda_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
@@ -95,12 +97,15 @@ static void find_axes(hardest *w)
             }
         }
     }
-    if (!panda_spectrum(PANDA_REACH, PANDA_EPSILON*PANDA_EPSILON, square, values, w->axes)) {
+    if (!panda_spectrum(PANDA_REACH, PANDA_EPSILON*PANDA_EPSILON, square, values, PANDA_REACH, unit, NULL)) {
         w->unknown = true;
         return;
     }
     w->least = 0;
-    for (int k = 1; k < PANDA_REACH; ++k) {
+    for (int k = 0; k < PANDA_REACH; ++k) {
+        for (int l = 0; l < PANDA_REACH; ++l) {
+            w->axes[k][l] = unit[l][k];
+        }
         w->least = values[k] < values[w->least] ? k : w->least;
     }
 }

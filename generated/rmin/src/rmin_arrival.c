@@ -4,8 +4,13 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE RMIN_R(1e-6)
-/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+/*
+ * Most that the velocity may be off n where motors can hardly move the contact point that way: aside, too, which tells
+ * where they cannot and a pivot of rounding says that they can.
+ */
 #define ASTRAY RMIN_R(1e-3)
+/* Share of all squared motions of the contact point from which on no pivot is weak enough for that. */
+#define WEAK RMIN_R(1e-3)
 /* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
 #define ROUNDING (RMIN_R(8.0)*RMIN_EPSILON)
 #define MOST_STEPS 1000000
@@ -56,6 +61,7 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
     rmin_matrix square;
     rmin_real moved[RMIN_REACH][RMIN_N];
     rmin_real share[RMIN_SYSTEM];
+    rmin_real wanted[RMIN_REACH];
     rmin_real within = RMIN_R(0.0);
     rmin_real whole = RMIN_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < RMIN_N; ++i) {
@@ -64,6 +70,7 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
     for (int k = 0; k < RMIN_REACH; ++k) {
         const rmin_real *const d = rmin_directions[k];
         share[k] = d[0]*u[0] + d[1]*u[1] + d[2]*u[2];
+        wanted[k] = share[k];
         within += share[k]*share[k];
         for (int i = 0; i < RMIN_N; ++i) {
             moved[k][i] = rmin_has_motor[i] ? d[0]*J[0][i] + d[1]*J[1][i] + d[2]*J[2][i] : RMIN_R(0.0);
@@ -81,15 +88,17 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
     if (!(within > RMIN_R(1.0) - OUTSIDE) || !rmin_cholesky(RMIN_REACH, square)) {
         return RMIN_SINGULAR;
     }
+    rmin_real least = whole;
     for (int k = 0; k < RMIN_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
-            return RMIN_SINGULAR;
-        }
+        least = RMIN_FMIN(least, square[k][k]*square[k][k]);
+    }
+    if (!(least > ROUNDING*whole)) {
+        return RMIN_SINGULAR;
     }
     rmin_forward(RMIN_REACH, square, share);
     rmin_backward(RMIN_REACH, square, share);
     rmin_real fast = RMIN_R(0.0);
-    rmin_real along = RMIN_R(0.0);
+    rmin_real astray = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
         rmin_real rate = RMIN_R(0.0);
         for (int k = 0; k < RMIN_REACH; ++k) {
@@ -97,9 +106,15 @@ int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
-        along += rate*arrival->row[i];
     }
-    return fast < RMIN_FASTEST && RMIN_FABS(along - RMIN_R(1.0)) < ASTRAY ? RMIN_OK : RMIN_SINGULAR;
+    for (int k = 0; k < RMIN_REACH && least < WEAK*whole; ++k) {
+        rmin_real missed = wanted[k];
+        for (int i = 0; i < RMIN_N; ++i) {
+            missed -= moved[k][i]*arrival->rates[i];
+        }
+        astray += missed*missed;
+    }
+    return fast < RMIN_FASTEST && astray < ASTRAY*ASTRAY ? RMIN_OK : RMIN_SINGULAR;
 }
 
 int rmin_set_off(const rmin_real q[RMIN_JOINTS], const rmin_real dq[RMIN_JOINTS],

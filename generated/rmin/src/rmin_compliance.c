@@ -8,8 +8,8 @@
  * motion of links and rotors together, whose mobility is b'(S + R)^-1 b.
  *
  * So the eigenvalues are 1/frequency^2, and what rounding costs it costs the fastest modes, which
- * stand. With S = L L' and G = I + L'(1/R) L, C = L G^-1 L' and g = L G^-1 L^-1 b: no difference of
- * what may be nearly the same, whether rotors are much lighter or heavier than links.
+ * stand. With M = L L' and G = I + L'(1/B) L, C = L G^-1 L' over sqrt(k k'), g = L G^-1 L^-1 J'n over sqrt(k): no
+ * difference of what may be nearly the same, whether rotors are much lighter or heavier than links.
  */
 #include "rmin_impact.h"
 
@@ -20,39 +20,27 @@
 #define SMALL RMIN_R(1e-8)
 
 #if RMIN_STRUCTURED
-/* S, R and b. */
-typedef struct {
-    rmin_matrix S;
-    rmin_real R[RMIN_N];
-    rmin_real b[RMIN_N];
-} spring_scaled;
-
-static void scale_by_springs(const rmin_arrival *arrival, const rmin_params *p, spring_scaled *out)
+/*
+ * Appends the modes of a compliance to those there are: of C over sqrt(k k'), of which C's part below its diagonal is
+ * given and lost, and of `moved` over sqrt(k).
+ */
+static int spring_modes(const rmin_params *p, rmin_matrix C, const rmin_real moved[RMIN_N], rmin_modes *modes)
 {
-    (void)p; /* whatever of it counts may be built in */
     rmin_real soft[RMIN_N];
-    for (int i = 0; i < RMIN_N; ++i) {
-        const rmin_real compliance = RMIN_R(1.0)/RMIN_SPRING(p, i);
-        soft[i] = RMIN_SQRT(compliance);
-        out->R[i] = RMIN_ROTOR(p, i)*compliance;
-        out->b[i] = arrival->row[i]*soft[i];
-        for (int j = 0; j <= i; ++j) {
-            out->S[i][j] = arrival->links.M[i][j]*soft[i]*soft[j];
-            out->S[j][i] = out->S[i][j];
-        }
-    }
-}
-
-/* Appends the modes of a compliance, which is lost, to those there are. */
-static int spring_modes(rmin_matrix C, const rmin_real b[RMIN_N], rmin_modes *modes)
-{
     rmin_real squares[RMIN_N];
-    rmin_real (*const vectors)[RMIN_SYSTEM] = &modes->shape[modes->rigid];
+    rmin_real row[1][RMIN_SYSTEM];
     rmin_real all = RMIN_R(0.0);
+    (void)p; /* whatever of it counts may be built in */
     for (int i = 0; i < RMIN_N; ++i) {
+        soft[i] = RMIN_SQRT(RMIN_R(1.0)/RMIN_SPRING(p, i));
+        row[0][i] = moved[i]*soft[i];
+        for (int j = 0; j <= i; ++j) {
+            C[i][j] *= soft[i]*soft[j];
+            C[j][i] = C[i][j];
+        }
         all += C[i][i];
     }
-    if (!rmin_spectrum(RMIN_N, SMALL, C, squares, vectors)) {
+    if (!rmin_spectrum(RMIN_N, SMALL, C, squares, 1, row, &modes->turns)) {
         return RMIN_SINGULAR;
     }
     const rmin_real least = NOISE*all;
@@ -60,52 +48,59 @@ static int spring_modes(rmin_matrix C, const rmin_real b[RMIN_N], rmin_modes *mo
     for (int i = 0; i < RMIN_N; ++i) {
         const int at = modes->rigid + i;
         const rmin_real squared = RMIN_R(1.0)/RMIN_FMAX(squares[i], least);
-        const rmin_real rate = RMIN_SQRT(squared);
-        rmin_real row = RMIN_R(0.0);
-        for (int j = 0; j < RMIN_N; ++j) {
-            row += vectors[i][j]*b[j];
-            vectors[i][j] *= rate;
-        }
         modes->squared[at] = squared;
         modes->noise[at] = RMIN_R(0.0);
-        modes->row[at] = row*rate;
+        modes->row[at] = row[0][i]*RMIN_SQRT(squared);
+        modes->from[at] = i;
         modes->start[at] = RMIN_R(0.0);
     }
     modes->count = modes->rigid + RMIN_N;
     return RMIN_OK;
 }
 
+/* Copies a symmetric matrix's part below its diagonal. */
+static void copy_below(const rmin_real (*from)[RMIN_N], rmin_matrix to)
+{
+    for (int i = 0; i < RMIN_N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            to[i][j] = from[i][j];
+        }
+    }
+}
+
 int rmin_driven_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift)
 {
-    spring_scaled s;
-    scale_by_springs(arrival, p, &s);
+    copy_below(arrival->links.M, modes->shape);
     *drift = RMIN_R(1.0);
     modes->rigid = 0;
-    return spring_modes(s.S, s.b, modes);
+    return spring_modes(p, modes->shape, arrival->row, modes);
 }
 
-int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
-    rmin_real carried[RMIN_N])
+int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes)
 {
     const int end = RMIN_N - 1;
-    spring_scaled s;
+    rmin_real (*const L)[RMIN_SYSTEM] = modes->shape; /* of rmin_mobilities, and then U^-1 L' */
     rmin_matrix G; /* and then C; from its end to its start: so Cholesky's factors are upper ones, G = U U' */
+    rmin_real light[RMIN_N]; /* 1/rotors */
     rmin_real z[RMIN_N];
-    scale_by_springs(arrival, p, &s);
-    if (!rmin_cholesky(RMIN_N, s.S)) {
-        return RMIN_SINGULAR;
+    rmin_real per[RMIN_N]; /* 1/the diagonal of U */
+    rmin_real carried[RMIN_N]; /* g sqrt(k) */
+    rmin_real pulled[RMIN_N];
+    (void)p; /* whatever of it counts may be built in */
+    for (int i = 0; i < RMIN_N; ++i) {
+        light[i] = RMIN_R(1.0)/RMIN_ROTOR(p, i);
+        z[i] = arrival->row[i];
+        pulled[i] = RMIN_R(0.0);
     }
     for (int i = 0; i < RMIN_N; ++i) {
-        z[i] = s.b[i];
-        rmin_real stiff[RMIN_N];
-        for (int l = 0; l < RMIN_N; ++l) {
-            stiff[l] = l < i ? RMIN_R(0.0) : s.S[l][i]/s.R[l];
+        for (int l = i; l < RMIN_N; ++l) {
+            pulled[l] = L[l][i]*light[l];
         }
         for (int j = 0; j <= i; ++j) {
             rmin_real sum = i == j ? RMIN_R(1.0) : RMIN_R(0.0);
             for (int l = i; l < RMIN_N; ++l) {
-                sum += stiff[l]*s.S[l][j];
+                sum += pulled[l]*L[l][j];
             }
             G[end - j][end - i] = sum;
         }
@@ -113,16 +108,19 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     if (!rmin_cholesky(RMIN_N, G)) {
         return RMIN_SINGULAR;
     }
-    rmin_forward(RMIN_N, s.S, z);
+    rmin_forward(RMIN_N, L, z);
     for (int i = end; i >= 0; --i) {
+        const rmin_real *const U = G[end - i];
+        rmin_real rest = z[i];
         for (int m = i + 1; m < RMIN_N; ++m) {
-            z[i] -= G[end - i][end - m]*z[m];
+            rest -= U[end - m]*z[m];
         }
-        z[i] /= G[end - i][end - i];
+        per[i] = RMIN_R(1.0)/U[end - i];
+        z[i] = rest*per[i];
     }
     rmin_real together = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
-        rmin_real *const y = s.S[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
+        rmin_real *const y = L[i]; /* column i of L' and then of U^-1 L', upper triangular as both are */
         rmin_real sum = RMIN_R(0.0);
         for (int l = i; l >= 0; --l) {
             const rmin_real *const U = G[end - l];
@@ -130,20 +128,19 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
             for (int m = l + 1; m <= i; ++m) {
                 rest -= U[end - m]*y[m];
             }
-            y[l] = rest/U[end - l];
+            y[l] = rest*per[l];
             sum += y[l]*z[l];
         }
         carried[i] = sum;
-        together += s.b[i]*sum/s.R[i];
+        together += arrival->row[i]*sum*light[i];
     }
     for (int i = 0; i < RMIN_N; ++i) {
         for (int j = 0; j <= i; ++j) {
             rmin_real entry = RMIN_R(0.0);
             for (int l = 0; l <= j; ++l) {
-                entry += s.S[i][l]*s.S[j][l];
+                entry += L[i][l]*L[j][l];
             }
             G[i][j] = entry;
-            G[j][i] = entry;
         }
     }
     if (!(together > RMIN_R(0.0) && together <= RMIN_REAL_MAX)) {
@@ -154,22 +151,23 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     modes->noise[0] = RMIN_R(0.0);
     modes->row[0] = RMIN_SQRT(together);
     modes->start[0] = RMIN_R(1.0)/modes->row[0];
-    for (int j = 0; j < RMIN_SYSTEM; ++j) {
-        modes->shape[0][j] = RMIN_R(0.0);
-    }
-    return spring_modes(G, carried, modes);
+    modes->from[0] = RMIN_N; /* none of them */
+    return spring_modes(p, G, carried, modes);
 }
 
-/* Row (mass)^-1 row of a symmetric matrix; 0 unless it is positive definite. */
-static rmin_real mobility_through(rmin_matrix mass, const rmin_real row[RMIN_N])
+/* Mobility of the contact point with links, whose mass becomes its L L', and rotors as one, if they count. */
+static rmin_real mobility_of(const rmin_arrival *arrival, const rmin_params *p, rmin_real rotors, rmin_matrix L)
 {
     rmin_real z[RMIN_N];
     rmin_real sum = RMIN_R(0.0);
+    (void)p;
+    copy_below(arrival->links.M, L);
     for (int i = 0; i < RMIN_N; ++i) {
-        z[i] = row[i];
+        z[i] = arrival->row[i];
+        L[i][i] += rotors*RMIN_ROTOR(p, i);
     }
-    if (rmin_cholesky(RMIN_N, mass)) {
-        rmin_forward(RMIN_N, mass, z);
+    if (rmin_cholesky(RMIN_N, L)) {
+        rmin_forward(RMIN_N, L, z);
         for (int i = 0; i < RMIN_N; ++i) {
             sum += z[i]*z[i];
         }
@@ -177,32 +175,20 @@ static rmin_real mobility_through(rmin_matrix mass, const rmin_real row[RMIN_N])
     return sum;
 }
 
-int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_real *links,
+int rmin_mobilities(const rmin_arrival *arrival, const rmin_params *p, rmin_matrix L, rmin_real *links,
     rmin_real *rotors)
 {
-    rmin_matrix mass;
     *rotors = RMIN_R(0.0);
     for (int i = 0; i < RMIN_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            mass[i][j] = arrival->links.M[i][j];
-        }
         *rotors += arrival->row[i]*arrival->row[i]/RMIN_ROTOR(p, i);
     }
-    (void)p;
-    *links = mobility_through(mass, arrival->row);
+    *links = mobility_of(arrival, p, RMIN_R(0.0), L);
     return *links > RMIN_LEAST_MOBILITY ? RMIN_OK : RMIN_SINGULAR;
 }
 
 rmin_real rmin_together(const rmin_arrival *arrival, const rmin_params *p)
 {
     rmin_matrix mass;
-    for (int i = 0; i < RMIN_N; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            mass[i][j] = arrival->links.M[i][j];
-        }
-        mass[i][i] += RMIN_ROTOR(p, i);
-    }
-    (void)p;
-    return mobility_through(mass, arrival->row);
+    return mobility_of(arrival, p, RMIN_R(1.0), mass);
 }
 #endif

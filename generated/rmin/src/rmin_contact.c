@@ -4,8 +4,8 @@
  *
  * Skin and body in series: f(d) = k_h s + c_h s' with s = x - u, where x is how far the contact point
  * has come, u = d + (compliance of modes that stand) f, and f(d) = k_f d^1.5 or a law of rmin_law.c. x' is
- * exact at every node and u' a backward difference, so that no damping makes it unstable. The force is
- * quadratic between nodes; steps are halved where it bends too much for that.
+ * exact at every node and u' a difference of the last four nodes, so that no damping makes it unstable. The force
+ * is quadratic between nodes; steps are halved where it bends too much for that.
  */
 #include "rmin_state.h"
 
@@ -23,26 +23,49 @@
 /* Parts of a step between which a law through points is looked at. */
 #define PLACES 4
 
-void rmin_glide(const rmin_state *s, rmin_trial *t)
+void rmin_feel(rmin_state *s)
+{
+    rmin_motion *const motion = s->motion;
+    const rmin_level *const level = s->due.level;
+    const rmin_real slope = s->due.rise*level->per;
+    for (int i = 0; i < s->phase->active; ++i) {
+        const rmin_mode_step *const step = &level->mode[i];
+        motion->place[i] -= step->push*s->due.mean + step->late*s->due.rise;
+        motion->rate[i] -= step->kick*s->due.mean + step->push*slope;
+    }
+    s->due.mean = RMIN_R(0.0);
+    s->due.rise = RMIN_R(0.0);
+}
+
+void rmin_glide(rmin_state *s, rmin_trial *t)
 {
     const rmin_phase *const phase = s->phase;
     const rmin_level *const level = s->step;
-    const rmin_real *rate = s->rate;
     rmin_real damped[RMIN_MODES];
+    rmin_real v = s->drift;
     if (phase->damped) {
         rmin_damp_ahead(s, damped);
-        rate = damped;
+        v -= rmin_owed_slip(s, damped);
     }
+    const rmin_motion *const motion = s->motion;
+    const rmin_real *const rate = phase->damped ? damped : motion->rate;
+    rmin_motion *const next = s->trial;
+    const rmin_level *const felt = s->due.level;
+    const rmin_real mean = s->due.mean;
+    const rmin_real rise = s->due.rise;
+    const rmin_real slope = rise*felt->per;
     rmin_real x = s->drifted + s->drift*level->h;
-    rmin_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
+        const rmin_mode_step *const due = &felt->mode[i];
         const rmin_mode_step *const step = &level->mode[i];
-        const rmin_real a = s->amplitude[i];
-        const rmin_real b = rate[i];
-        t->amplitude[i] = step->cosine*a + step->sine*b;
-        t->rate[i] = step->back*a + step->cosine*b;
-        x += phase->modes.row[i]*t->amplitude[i];
-        v += phase->modes.row[i]*t->rate[i];
+        const rmin_real a = motion->place[i] - due->push*mean - due->late*rise;
+        const rmin_real b = rate[i] - due->kick*mean - due->push*slope;
+        const rmin_real place = step->cosine*a + step->sine*b;
+        const rmin_real velocity = step->back*a + step->cosine*b;
+        next->place[i] = place;
+        next->rate[i] = velocity;
+        x += place;
+        v += velocity;
     }
     t->x = x;
     t->v = v;
@@ -71,106 +94,116 @@ static rmin_real root_of(rmin_real depth, rmin_real cubic, rmin_real guess)
     return u;
 }
 
-/* What steps of one length have in common, as far as those before them were as long. */
+/*
+ * What steps of one length have in common, as far as those before them were as long. Of the skin's u the slope is that
+ * of the polynomial through the last four nodes, or three where there are no more since the touch or the step is the
+ * first of its length: just after a touch u is no cubic yet, and a later contact was 1.2 % too weak by that.
+ */
 static void set_pace(rmin_state *s)
 {
-    const rmin_region *const region = s->impact->region;
+    const rmin_region *const region = s->region;
     const rmin_level *const level = s->step;
     const rmin_real one = RMIN_R(1.0);
+    const rmin_real h = level->h;
+    const rmin_real rate = level->per;
+    const rmin_real damping = region->damping;
     rmin_pace *const pace = &s->pace;
     rmin_real ratio = RMIN_R(0.0);
     rmin_real more = one; /* of the bend at the last node is that halfway, less that of the one before */
+    rmin_real more_u = RMIN_R(0.0); /* of u' by a node of u more, 1/s: by what the end adds */
+    rmin_real more_before = RMIN_R(0.0);
+    rmin_real third = RMIN_R(0.0);
     pace->before = RMIN_R(0.0);
     if (s->past > 0) {
-        ratio = level->h/s->h;
+        ratio = h*s->per;
         if (s->past > 1) {
-            const rmin_real lead = (RMIN_R(0.5)*level->h + s->h)/(level->h + s->h + s->h_before);
+            const rmin_real both = s->h + s->h_before;
+            const rmin_real lead = (RMIN_R(0.5)*h + s->h)/(h + both);
             more += lead;
             pace->before = lead*ratio*ratio;
+            if (s->even > 0) {
+                more_u = one/(h + both);
+                more_before = ratio/s->h_before;
+                third = h*(h + s->h)/((h + both)*both*s->h_before);
+            }
         }
     }
-    const rmin_real rate = level->per;
     const rmin_real early = ratio/(one + ratio);
+    const rmin_real lag = (one + early)*rate + more_u;
     pace->ratio = ratio;
     pace->share = early/RMIN_R(6.0);
-    pace->more = more;
-    const rmin_real lag = (one + early)*rate;
-    pace->u = (one + ratio)*rate;
-    pace->u_before = ratio*early*rate;
-    const rmin_real share = pace->share*more;
-    pace->yields = level->late - share*level->push;
-    const rmin_real slows = level->push*rate - share*level->kick;
-    pace->hold = region->stiffness + region->damping*lag;
-    pace->soft = one + region->stiffness*pace->yields + region->damping*slows + pace->hold*s->phase->compliance;
+    pace->whole = pace->share*more;
+    pace->u_before = damping*(ratio*early*rate + more_before);
+    pace->u_third = damping*third;
+    pace->u = damping*lag + pace->u_before - pace->u_third;
+    pace->stays = region->stiffness*level->push + damping*level->kick;
+    pace->grows = region->stiffness*level->late + damping*level->grow;
+    pace->yields = level->late - pace->whole*level->push;
+    pace->hold = region->stiffness + damping*lag;
+    pace->soft = one + pace->grows - pace->whole*pace->stays + pace->hold*s->phase->compliance;
+    pace->per_hold = one/pace->hold;
+    pace->cubic = region->hertz_stiffness*pace->soft*pace->per_hold;
 }
 
 void rmin_press(rmin_state *s, rmin_trial *t)
 {
-    const rmin_region *const region = s->impact->region;
-    const rmin_phase *const phase = s->phase;
+    const rmin_region *const region = s->region;
     const rmin_level *const level = s->step;
     const rmin_pace *const pace = &s->pace;
     if (s->even < LIKE) {
         set_pace(s);
     }
-    const rmin_real plain = pace->share*(s->f + pace->ratio*s->rise);
-    t->share = pace->more*pace->share;
-    t->base = pace->more*plain - pace->before*s->bump;
-    const rmin_real first = s->f + t->base;
-    const rmin_real x = t->x - level->push*first + level->late*s->f; /* a force that falls to its base */
-    const rmin_real v = t->v - level->kick*first + level->push*level->per*s->f;
-    const rmin_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
-    const rmin_real pressed = region->stiffness*x + region->damping*slip;
-    t->root = RMIN_R(0.0);
+    const rmin_real straight_on = s->f + pace->ratio*s->rise;
+    const rmin_real mean = s->f + pace->whole*straight_on - pace->before*s->bump; /* were there no force at the end */
+    const rmin_real pressed = region->stiffness*t->x + region->damping*t->v - pace->stays*mean + pace->grows*s->f
+        + pace->u*s->u - pace->u_before*s->u_before + pace->u_third*s->u_third;
+    t->x += level->late*s->f;
     if (pressed > RMIN_R(0.0)) {
         if (region->law == NULL) {
-            const rmin_real per = RMIN_R(1.0)/pace->hold;
-            t->root = root_of(pressed*per, region->hertz_stiffness*pace->soft*per, s->root);
+            t->root = root_of(pressed*pace->per_hold, pace->cubic, s->root);
             t->depth = t->root*t->root;
             t->f = region->hertz_stiffness*t->root*t->depth;
         } else {
+            t->root = RMIN_R(0.0);
             t->f = rmin_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
         }
-        t->u = t->depth + phase->compliance*t->f;
-        t->x = x - pace->yields*t->f;
-        t->bump = plain - pace->share*t->f;
+        t->u = t->depth + s->phase->compliance*t->f;
+        t->x -= level->push*mean + pace->yields*t->f;
+        t->bump = pace->share*(straight_on - t->f);
+        t->mean = mean - pace->whole*t->f;
     } else { /* they part on the way: a force that falls evenly ends there */
         const rmin_real from = pace->hold*s->now + pace->soft*s->f;
-        t->base = from > RMIN_R(0.0) ? RMIN_R(0.5)*s->f*pressed/(from - pressed) : RMIN_R(0.0);
-        t->share = RMIN_R(0.0);
-        t->x -= level->push*(s->f + t->base) - level->late*s->f;
+        t->mean = s->f + (from > RMIN_R(0.0) ? RMIN_R(0.5)*s->f*pressed/(from - pressed) : RMIN_R(0.0));
+        t->x -= level->push*t->mean;
         t->bump = RMIN_R(0.0);
         t->f = RMIN_R(0.0);
         t->u = RMIN_R(0.0);
         t->depth = RMIN_R(0.0);
+        t->root = RMIN_R(0.0);
     }
 }
 
-void rmin_take(const rmin_trial *t, rmin_state *s)
+void rmin_take(rmin_state *s, rmin_real mean, rmin_real rise)
 {
-    const rmin_phase *const phase = s->phase;
-    const rmin_level *const level = s->step;
-    const rmin_real first = s->f + t->base - t->share*t->f;
-    const rmin_real rise = t->f - s->f;
-    const rmin_real slope = rise*level->per;
-    for (int i = 0; i < phase->active; ++i) {
-        const rmin_mode_step *const step = &level->mode[i];
-        s->amplitude[i] = t->amplitude[i] - step->push*first - step->late*rise;
-        s->rate[i] = t->rate[i] - phase->modes.row[i]*step->sine*first - step->push*slope;
-    }
+    rmin_motion *const before = s->motion;
+    s->motion = s->trial;
+    s->trial = before;
+    s->due.level = s->step;
+    s->due.mean = mean;
+    s->due.rise = rise;
 }
 
-rmin_real rmin_force_between(const rmin_state *s, const rmin_trial *t)
+rmin_real rmin_force_between(rmin_state *s, const rmin_trial *t)
 {
-    const rmin_region *const region = s->impact->region;
+    const rmin_region *const region = s->region;
     const rmin_phase *const phase = s->phase;
     const rmin_level *const level = s->step;
     const rmin_real h = level->h;
-    const rmin_real first = s->f + t->base - t->share*t->f;
-    const rmin_real after = h*(t->v - level->kick*first) - level->push*(t->f - s->f);
+    const rmin_real after = h*(t->v - level->kick*t->mean - level->grow*(t->f - s->f));
     rmin_real before = s->drift;
+    rmin_feel(s);
     for (int i = 0; i < phase->active; ++i) {
-        before += phase->modes.row[i]*s->rate[i];
+        before += s->motion->rate[i];
     }
     before *= h;
     rmin_real most = RMIN_R(0.0);
@@ -195,5 +228,5 @@ rmin_real rmin_slip_off(const rmin_state *s, const rmin_trial *t)
 {
     const rmin_real rate = (t->u - s->u)*s->step->per;
     const rmin_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
-    return s->impact->region->damping*RMIN_FABS(rate - before);
+    return s->region->damping*RMIN_FABS(rate - before);
 }

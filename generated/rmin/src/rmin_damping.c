@@ -14,7 +14,8 @@ rmin_real rmin_damping_rate(rmin_phase *phase)
         for (int j = 0; j <= i; ++j) {
             rmin_real sum = RMIN_R(0.0);
             for (int k = 0; k < phase->modes.count; ++k) {
-                const rmin_real *const shape = &phase->modes.shape[k][RMIN_SYSTEM - RMIN_DAMPERS];
+                const int from = phase->modes.from[k];
+                const rmin_real *const shape = &phase->modes.shape[from][RMIN_SYSTEM - RMIN_DAMPERS];
                 sum += shape[i]*shape[j];
             }
             phase->together[i][j] = sum;
@@ -23,6 +24,33 @@ rmin_real rmin_damping_rate(rmin_phase *phase)
         rate = RMIN_FMAX(rate, phase->damping[i]*phase->together[i][i]);
     }
     return rate;
+}
+
+void rmin_slow_contact(rmin_phase *phase)
+{
+    const rmin_modes *const modes = &phase->modes;
+    rmin_real held[RMIN_DAMPERS];
+    for (int j = 0; j < RMIN_DAMPERS; ++j) {
+        rmin_real sum = RMIN_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            sum += modes->row[i]*modes->shape[modes->from[i]][RMIN_SYSTEM - RMIN_DAMPERS + j];
+        }
+        held[j] = phase->damping[j]*sum;
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        rmin_real sum = RMIN_R(0.0);
+        for (int j = 0; j < RMIN_DAMPERS; ++j) {
+            sum += modes->shape[modes->from[i]][RMIN_SYSTEM - RMIN_DAMPERS + j]*held[j];
+        }
+        phase->slows[i] = RMIN_R(0.5)*sum/modes->row[i];
+    }
+    for (int k = 0; k < RMIN_LEVELS; ++k) {
+        rmin_level *const level = &phase->level[k];
+        for (int i = 0; i < phase->active; ++i) {
+            level->kick -= level->h*phase->slows[i]*level->mode[i].kick;
+            level->grow -= phase->slows[i]*level->mode[i].push;
+        }
+    }
 }
 
 void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate)
@@ -34,8 +62,8 @@ void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_re
         turned[j] = RMIN_R(0.0);
     }
     for (int i = 0; i < phase->active; ++i) {
-        const rmin_real *const shape = &modes->shape[i][RMIN_SYSTEM - RMIN_DAMPERS];
-        const rmin_real led = rate[i] - speed*modes->start[i];
+        const rmin_real *const shape = &modes->shape[modes->from[i]][RMIN_SYSTEM - RMIN_DAMPERS];
+        const rmin_real led = rate[i]/modes->row[i] - speed*modes->start[i];
         for (int j = 0; j < RMIN_DAMPERS; ++j) {
             turned[j] += shape[j]*led;
         }
@@ -54,19 +82,32 @@ void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_re
         impulse[j] = time*phase->damping[j]*turned[j];
     }
     for (int i = 0; i < phase->active; ++i) {
-        const rmin_real *const shape = &modes->shape[i][RMIN_SYSTEM - RMIN_DAMPERS];
+        const rmin_real *const shape = &modes->shape[modes->from[i]][RMIN_SYSTEM - RMIN_DAMPERS];
         rmin_real change = RMIN_R(0.0);
         for (int j = 0; j < RMIN_DAMPERS; ++j) {
             change += shape[j]*impulse[j];
         }
-        rate[i] -= change;
+        rate[i] -= modes->row[i]*change;
     }
 }
 
-void rmin_damp_ahead(const rmin_state *s, rmin_real *rate)
+void rmin_damp_ahead(rmin_state *s, rmin_real *rate)
 {
+    rmin_feel(s);
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->rate[i];
+        rate[i] = s->motion->rate[i];
     }
     rmin_damp(s->phase, s->speed, s->owed + RMIN_R(0.5)*s->step->h, rate);
+}
+
+rmin_real rmin_owed_slip(const rmin_state *s, const rmin_real *rate)
+{
+    const rmin_phase *const phase = s->phase;
+    const rmin_level *const level = s->step;
+    rmin_real slowed = RMIN_R(0.0);
+    for (int i = 0; i < phase->active; ++i) {
+        const rmin_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
+        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+    }
+    return level->h*slowed;
 }

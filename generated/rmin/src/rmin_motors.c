@@ -76,6 +76,7 @@ static bool find_modes(int size, const int *places, rmin_matrix L, rmin_matrix A
             modes->shape[i][places[j]] = X[i][j];
             sum += row[j]*X[i][j];
         }
+        modes->from[i] = i;
         modes->noise[i] = RMIN_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
@@ -262,9 +263,9 @@ static void sharpen(const rmin_params *p, rmin_matrix bent, rmin_modes *modes)
 int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
     rmin_real *drift)
 {
-    rmin_matrix mass; /* and then XKX' */
+    rmin_matrix mass; /* and then XKX', and what modes move */
     rmin_matrix X;
-    rmin_real (*const K)[RMIN_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    rmin_real (*const K)[RMIN_SYSTEM] = modes->shape; /* and then unit vectors in eigenvectors of XKX' */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < RMIN_N; ++i) {
@@ -278,18 +279,28 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
     rmin_real all = RMIN_R(0.0);
     for (int i = 0; i < RMIN_SYSTEM; ++i) {
         all += RMIN_FABS(mass[i][i]);
+        for (int j = 0; j < RMIN_SYSTEM; ++j) {
+            K[i][j] = i == j ? RMIN_R(1.0) : RMIN_R(0.0);
+        }
     }
-    if (!rmin_spectrum(RMIN_SYSTEM, RMIN_EPSILON*RMIN_EPSILON, mass, modes->squared, K)) {
+    const rmin_real none = RMIN_EPSILON*RMIN_EPSILON;
+    if (!rmin_spectrum(RMIN_SYSTEM, none, mass, modes->squared, RMIN_SYSTEM, K, NULL)) {
         return RMIN_SINGULAR;
     }
     for (int i = 0; i < RMIN_SYSTEM; ++i) {
         for (int j = 0; j < RMIN_SYSTEM; ++j) {
             rmin_real shape = RMIN_R(0.0);
             for (int k = j; k < RMIN_SYSTEM; ++k) { /* X has nothing behind its diagonal */
-                shape += X[k][j]*K[i][k];
+                shape += X[k][j]*K[k][i];
             }
-            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            mass[i][j] = shape;
         }
+    }
+    for (int i = 0; i < RMIN_SYSTEM; ++i) {
+        for (int j = 0; j < RMIN_SYSTEM; ++j) {
+            modes->shape[i][j] = mass[i][j];
+        }
+        modes->from[i] = i;
         modes->noise[i] = RMIN_EPSILON*all;
     }
 #if !RMIN_POTENTIAL
@@ -312,8 +323,7 @@ int rmin_servo_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mod
 }
 
 #if !RMIN_STRUCTURED
-int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes,
-    rmin_real carried[RMIN_N])
+int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_modes *modes)
 {
     rmin_matrix mass;
     rmin_matrix kept;
@@ -323,7 +333,6 @@ int rmin_free_modes(const rmin_arrival *arrival, const rmin_params *p, rmin_mode
     int places[RMIN_SYSTEM];
     rmin_real row[RMIN_SYSTEM];
     rmin_real momentum[RMIN_SYSTEM]; /* before, at 1 m/s */
-    (void)carried;
     whole(arrival, p, mass, K);
     whole(arrival, p, kept, K);
     for (int i = 0; i < RMIN_SYSTEM; ++i) {

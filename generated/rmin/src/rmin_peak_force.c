@@ -5,7 +5,7 @@
 int rmin_find_peak(const rmin_region *region, const rmin_params *p, rmin_real speed,
     rmin_impact *impact, rmin_peak_force_t *out)
 {
-    rmin_budget budget = {p->steps, false, RMIN_REAL_MAX, NULL};
+    rmin_budget budget = {p->steps, false, false, RMIN_REAL_MAX, NULL};
     rmin_peak_force_t found = {RMIN_R(0.0), RMIN_R(0.0)};
     bool bounded = false;
     int first;
@@ -21,7 +21,7 @@ int rmin_find_peak(const rmin_region *region, const rmin_params *p, rmin_real sp
         if (impact->status != RMIN_OK) {
             return impact->status;
         }
-        if (!peak.ended) {
+        if (!peak.ended || peak.torn) {
             const rmin_real bound = rmin_bound(impact);
             if (!(bound > RMIN_R(0.0))) {
                 return RMIN_UNRESOLVED;

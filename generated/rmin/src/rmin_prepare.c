@@ -4,6 +4,8 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS RMIN_R(1.6e-2)
+/* Share of how far robot and body give way that rounding may change: a slow servo that pressed was 1.6 off. */
+#define BLURS_SPRING RMIN_R(4e-3)
 /*
  * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
  * inputs, 4.6 % with this, errors as before).
@@ -27,9 +29,7 @@ static void take_body_out(rmin_phase *phase)
         modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
-        for (int k = 0; k < RMIN_SYSTEM; ++k) {
-            modes->shape[body][k] = modes->shape[last][k];
-        }
+        modes->from[body] = modes->from[last];
         modes->count = last;
     }
     phase->has_body = false;
@@ -68,7 +68,7 @@ static int modes_of(rmin_impact *impact, int which)
     }
 #endif
     const int status = which == RMIN_LED ? led_modes(impact, phase)
-        : rmin_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
+        : rmin_free_modes(&impact->arrival, impact->p, &phase->modes);
     phase->known = status == RMIN_OK;
     impact->led = which == RMIN_LED ? impact->motors : impact->led;
     return status;
@@ -101,6 +101,22 @@ static rmin_real blur_of(const rmin_impact *impact, const rmin_phase *phase, rmi
 }
 
 #if !RMIN_STRUCTURED
+/* What rounding may change of how far contact point and body give way to a force within a time, as a share of it. */
+static rmin_real blur_of_spring(const rmin_region *region, const rmin_modes *modes, rmin_real time)
+{
+    const rmin_real square = time*time;
+    rmin_real gives = RMIN_R(1.0)/region->stiffness;
+    rmin_real off = RMIN_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const rmin_real known = RMIN_FMAX(RMIN_FABS(modes->squared[i]) - modes->noise[i], RMIN_R(0.0));
+        const rmin_real turns = RMIN_FMAX(known*square, RMIN_R(2.0));
+        const rmin_real bends = modes->row[i]*modes->row[i]*square/turns;
+        gives += bends;
+        off += bends*modes->noise[i]*square/RMIN_FMAX(turns, RMIN_R(12.0));
+    }
+    return off/gives;
+}
+
 static rmin_real mobility_of(const rmin_modes *modes)
 {
     rmin_real sum = RMIN_R(0.0);
@@ -123,7 +139,11 @@ static void steps_of(rmin_impact *impact, int which)
 {
     rmin_phase *const phase = &impact->phase[which];
     const rmin_real time = time_of(impact, which);
-    phase->blurred = blur_of(impact, phase, time) > BLURS;
+    phase->blur = blur_of(impact, phase, time);
+    phase->blurred = phase->blur > BLURS;
+#if !RMIN_STRUCTURED
+    phase->blurred = phase->blurred || blur_of_spring(impact->region, &phase->modes, time) > BLURS_SPRING;
+#endif
     rmin_phase_steps(impact, time, phase);
     const rmin_real numbers[2] = {phase->level[0].h, phase->level[RMIN_LEVELS - 1].h};
     if (rmin_check_positive(numbers, 2) != RMIN_OK) {
@@ -147,7 +167,8 @@ static void weigh(rmin_impact *impact)
     const rmin_real body = impact->gives_way ? RMIN_R(1.0)/impact->region->effective_mass : RMIN_R(0.0);
     rmin_real mobility = RMIN_R(0.0);
 #if RMIN_STRUCTURED
-    impact->status = rmin_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
+    impact->status = rmin_mobilities(
+        &impact->arrival, impact->p, impact->phase[RMIN_LOOSE].modes.shape, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == RMIN_OK; ++k) {
         impact->status = modes_of(impact, k);
@@ -186,6 +207,7 @@ int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int mot
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rmin_real damped = region->damping*RMIN_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RMIN_FMAX(RMIN_R(1.0)/(RMIN_R(1.0) + RMIN_R(4.0)*damped), LEAST_SMOOTH);
+    impact->sure = impact->smooth < RMIN_HARD ? 1 : 2;
     impact->skin_rate = rmin_law_stiffness(region, size)*impact->mobility;
     const rmin_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!rmin_all_finite(numbers, 3) || rmin_check_positive(numbers, 3) != RMIN_OK) {

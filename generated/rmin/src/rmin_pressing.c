@@ -49,7 +49,7 @@ static rmin_real pressed_by(rmin_pressing *k, rmin_real speed, rmin_real matters
     k->budget.watch = &k->watch;
     rmin_impact_run(&k->impact, speed, &k->budget, &peak);
     k->peak = peak.force;
-    if (peak.ended) {
+    if (peak.ended && !peak.torn) {
         return k->watch.late;
     }
     const rmin_real bound = k->impact.status == RMIN_OK ? rmin_bound(&k->impact) : RMIN_R(0.0);
@@ -70,7 +70,7 @@ static bool keeps(rmin_pressing *k, const rmin_region *region, rmin_real speed, 
         kept = rmin_impact_prepare(region, &k->p, motors, limit, &k->impact) == RMIN_OK;
         const rmin_real late = kept ? pressed_by(k, speed, CALM*limit) : RMIN_REAL_MAX;
         kept = late <= RMIN_KEPT*limit - OF_PEAK*k->peak;
-        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
+        k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }
@@ -81,6 +81,7 @@ static void prepare_pressing(const rmin_params *p, rmin_real until, rmin_pressin
     k->p.horizon = RMIN_FMAX(RMIN_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
+    k->budget.fine = false;
     k->budget.stop_above = RMIN_REAL_MAX;
     k->budget.watch = NULL;
     k->watch.slower = false;

@@ -5,7 +5,8 @@
 
 #if defined(RMIN_USE_FLOAT)
 /* Error < 1.2e-07. */
-#define LIMIT RMIN_R(200.0) /* rad; angles beyond are the C library's */
+#define LIMIT RMIN_R(200.0) /* rad; whole turns are taken off angles beyond */
+#define TURN RMIN_R(6.283185307179586) /* rad; less than half a unit in an angle's last place off, however many */
 #define PER_QUARTER RMIN_R(0.636619772) /* quarter turns in a radian */
 #define ADDED RMIN_R(128.0) /* whole turns, more than the limit has */
 #define QUARTER_1 RMIN_R(1.5703125) /* a quarter turn in three parts, rad */
@@ -22,7 +23,8 @@ static rmin_real even(rmin_real z) /* (cos r - 1 + r^2/2)/r^4 */
 }
 #else
 /* Error < 2e-16. */
-#define LIMIT RMIN_R(100000.0) /* rad; angles beyond are the C library's */
+#define LIMIT RMIN_R(100000.0) /* rad; whole turns are taken off angles beyond */
+#define TURN RMIN_R(6.283185307179586) /* rad; less than half a unit in an angle's last place off, however many */
 #define PER_QUARTER RMIN_R(0.6366197723675814) /* quarter turns in a radian */
 #define ADDED RMIN_R(65536.0) /* whole turns, more than the limit has */
 #define QUARTER_1 RMIN_R(1.5707963267341256) /* a quarter turn in three parts, rad */
@@ -39,12 +41,24 @@ static rmin_real even(rmin_real z) /* (cos r - 1 + r^2/2)/r^4 */
 }
 #endif
 
-static void ask_library(const rmin_real *x, int count, rmin_real *s, rmin_real *c)
+/* An angle less whole turns, each difference exact; 0, which is as near, if half a unit in its last place is half a turn. */
+static rmin_real unwound(rmin_real x)
 {
-    for (int i = 0; i < count; ++i) {
-        s[i] = RMIN_SIN(x[i]);
-        c[i] = RMIN_COS(x[i]);
+    const rmin_real size = RMIN_FABS(x);
+    rmin_real rest = size < RMIN_R(2.0)*TURN/RMIN_EPSILON ? size : RMIN_R(0.0);
+    rmin_real turns = TURN;
+    bool more = turns <= RMIN_R(0.5)*rest;
+    int doubled = 0;
+    while (more) {
+        turns += turns;
+        ++doubled;
+        more = turns <= RMIN_R(0.5)*rest;
     }
+    for (int k = doubled; k >= 0; --k) {
+        rest -= rest >= turns ? turns : RMIN_R(0.0);
+        turns *= RMIN_R(0.5);
+    }
+    return x < RMIN_R(0.0) ? -rest : rest;
 }
 
 /*
@@ -53,25 +67,25 @@ static void ask_library(const rmin_real *x, int count, rmin_real *s, rmin_real *
  */
 void rmin_sines_cosines(const rmin_real *x, int count, rmin_real *s, rmin_real *c)
 {
+    bool few = true;
     for (int i = 0; i < count; ++i) {
-        if (!(RMIN_FABS(x[i]) < LIMIT)) {
-            ask_library(x, count, s, c);
-            return;
-        }
+        few = few && RMIN_FABS(x[i]) < LIMIT;
     }
     for (int i = 0; i < count; ++i) {
-        const rmin_real quarters = x[i]*PER_QUARTER + (ADDED + RMIN_R(0.5));
+        const rmin_real angle = few ? x[i] : unwound(x[i]);
+        const rmin_real quarters = angle*PER_QUARTER + (ADDED + RMIN_R(0.5));
         const int nearest = (int)quarters;
         const unsigned int quarter = (unsigned int)nearest;
         const rmin_real k = (rmin_real)nearest - ADDED;
-        const rmin_real about = (x[i] - k*QUARTER_1) - k*QUARTER_2;
+        const rmin_real about = (angle - k*QUARTER_1) - k*QUARTER_2;
         const rmin_real r = about - k*QUARTER_3;
         const rmin_real z = r*r;
         const rmin_real sine = r + r*z*odd(z);
         const rmin_real cosine = RMIN_R(1.0) - RMIN_R(0.5)*z + z*z*even(z);
         const rmin_real first = (quarter & 1u) != 0u ? cosine : sine;
         const rmin_real second = (quarter & 1u) != 0u ? sine : cosine;
-        s[i] = (quarter & 2u) != 0u ? -first : first;
-        c[i] = ((quarter + 1u) & 2u) != 0u ? -second : second;
+        const rmin_real end = few ? RMIN_R(0.0) : RMIN_R(0.0)*x[i]; /* not a number unless x is finite */
+        s[i] = ((quarter & 2u) != 0u ? -first : first) + end;
+        c[i] = (((quarter + 1u) & 2u) != 0u ? -second : second) + end;
     }
 }

@@ -29,6 +29,11 @@
  */
 #define JUMPS RMIN_R(0.1)
 #define JUMP_STEP RMIN_R(24.0)
+/*
+ * Least that a mode moves the contact point by, as a share of all that moves it: as modes are followed by that, one
+ * that hardly does must not be lost, and so little is not felt.
+ */
+#define LEAST_ROW RMIN_R(1e-6)
 /* Steps counted; more than any budget has. */
 #define MOST RMIN_R(1e6)
 
@@ -38,6 +43,7 @@ static void exchange(rmin_modes *modes, int i, int j)
     const rmin_real noise = modes->noise[i];
     const rmin_real row = modes->row[i];
     const rmin_real start = modes->start[i];
+    const int from = modes->from[i];
     modes->squared[i] = modes->squared[j];
     modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
@@ -46,11 +52,8 @@ static void exchange(rmin_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < RMIN_SYSTEM; ++k) {
-        const rmin_real shape = modes->shape[i][k];
-        modes->shape[i][k] = modes->shape[j][k];
-        modes->shape[j][k] = shape;
-    }
+    modes->from[i] = modes->from[j];
+    modes->from[j] = from;
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
@@ -107,43 +110,37 @@ static void mode_steps(rmin_phase *phase)
 {
     const rmin_modes *const modes = &phase->modes;
     const rmin_real one = RMIN_R(1.0);
-    rmin_real h = phase->level[RMIN_LEVELS - 1].h;
-    rmin_real sine[RMIN_MODES]; /* sin(wh)/w */
-    rmin_real push[RMIN_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
-    rmin_real late[RMIN_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    const rmin_real h = phase->level[RMIN_LEVELS - 1].h;
     for (int i = 0; i < phase->active; ++i) {
-        const rmin_real t = modes->squared[i]*h*h;
-        late[i] = h*h*(one/RMIN_R(6.0) - t*(one/RMIN_R(120.0) - t*(one/RMIN_R(5040.0) - t/RMIN_R(362880.0))));
-        push[i] = h*h*(RMIN_R(0.5) - t*(one/RMIN_R(24.0) - t*(one/RMIN_R(720.0) - t/RMIN_R(40320.0))));
-        sine[i] = h*(one - modes->squared[i]*late[i]);
-    }
-    for (int k = RMIN_LEVELS - 1; k >= 0; --k) {
-        rmin_level *const level = &phase->level[k];
-        const rmin_real per = one/h;
-        rmin_real pushes = RMIN_R(0.0);
-        rmin_real lates = RMIN_R(0.0);
-        rmin_real kicks = RMIN_R(0.0);
-        for (int i = 0; i < phase->active; ++i) {
+        const rmin_real squared = modes->squared[i];
+        const rmin_real weight = modes->row[i]*modes->row[i];
+        const rmin_real t = squared*h*h;
+        rmin_real late = h*h*(one/RMIN_R(6.0)
+            - t*(one/RMIN_R(120.0) - t*(one/RMIN_R(5040.0) - t/RMIN_R(362880.0)))); /* (wh - sin(wh))/(w^3 h) */
+        rmin_real push = h*h*(RMIN_R(0.5)
+            - t*(one/RMIN_R(24.0) - t*(one/RMIN_R(720.0) - t/RMIN_R(40320.0)))); /* (1 - cos(wh))/w^2 */
+        rmin_real sine = h*(one - squared*late); /* sin(wh)/w */
+        for (int k = RMIN_LEVELS - 1; k >= 0; --k) {
+            rmin_level *const level = &phase->level[k];
             rmin_mode_step *const step = &level->mode[i];
-            const rmin_real row = modes->row[i];
-            const rmin_real cosine = one - modes->squared[i]*push[i];
+            const rmin_real cosine = one - squared*push;
             step->cosine = cosine;
-            step->sine = sine[i];
-            step->back = -modes->squared[i]*sine[i];
-            step->push = row*push[i];
-            step->late = row*late[i];
-            pushes += row*step->push;
-            lates += row*step->late;
-            kicks += row*row*sine[i];
-            late[i] += sine[i]*push[i]*per;
-            push[i] = RMIN_R(2.0)*sine[i]*sine[i];
-            sine[i] *= RMIN_R(2.0)*cosine;
+            step->sine = sine;
+            step->back = -squared*sine;
+            step->push = weight*push;
+            step->late = weight*late;
+            step->kick = weight*sine;
+            level->push += step->push;
+            level->late += step->late;
+            level->kick += step->kick;
+            late += sine*push*level->per;
+            push = RMIN_R(2.0)*sine*sine;
+            sine *= RMIN_R(2.0)*cosine;
         }
-        level->per = per;
-        level->push = pushes;
-        level->late = lates;
-        level->kick = kicks;
-        h += h;
+    }
+    for (int k = 0; k < RMIN_LEVELS; ++k) {
+        rmin_level *const level = &phase->level[k];
+        level->grow = level->push*level->per;
     }
 }
 
@@ -161,12 +158,17 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
         modes->noise[body] = RMIN_R(0.0);
         modes->row[body] = RMIN_R(1.0)/RMIN_SQRT(region->effective_mass);
         modes->start[body] = RMIN_R(0.0);
+        modes->from[body] = body;
         for (int k = 0; k < RMIN_SYSTEM; ++k) {
             modes->shape[body][k] = RMIN_R(0.0);
         }
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
+    const rmin_real least = LEAST_ROW*RMIN_SQRT(impact->mobility);
+    for (int i = 0; i < modes->count; ++i) {
+        modes->row[i] = RMIN_FABS(modes->row[i]) > least ? modes->row[i] : least;
+    }
     const rmin_real end = RMIN_R(1.0)/RMIN_HORIZON(impact->p);
     let_stand(impact, RMIN_FMAX(contact, end*end), released, phase);
     rmin_real moving = RMIN_R(0.0);
@@ -186,11 +188,19 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const rmin_real h = wanted < MOST ? time/(rmin_real)phase->steps : RMIN_R(1.0)/rate;
     phase->longest_pressed = share*contact*h*h > PRESSED_STEP*PRESSED_STEP ? 1 : 0;
-    phase->level[0].h = h;
-    for (int k = 1; k < RMIN_LEVELS; ++k) {
-        phase->level[k].h = RMIN_R(0.5)*phase->level[k - 1].h;
+    rmin_real shortest = h;
+    rmin_real per = RMIN_R(1.0)/h;
+    for (int k = 0; k < RMIN_LEVELS; ++k) {
+        rmin_level *const level = &phase->level[k];
+        level->h = shortest;
+        level->per = per;
+        level->push = RMIN_R(0.0);
+        level->late = RMIN_R(0.0);
+        level->kick = RMIN_R(0.0);
+        shortest *= RMIN_R(0.5);
+        per += per;
     }
-    const rmin_real shortest = region->stiffness*phase->level[RMIN_LEVELS - 1].h;
+    shortest = region->stiffness*phase->level[RMIN_LEVELS - 1].h;
     rmin_real relax = region->damping > RMIN_R(0.0)
         ? RMIN_EXP(-RMIN_FMIN(shortest/region->damping, RMIN_R(80.0))) : RMIN_R(0.0);
     for (int k = RMIN_LEVELS - 1; k >= 0; --k) {
@@ -198,5 +208,8 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
         relax *= relax;
     }
     mode_steps(phase);
+    if (phase->damped) {
+        rmin_slow_contact(phase);
+    }
     phase->ready = true;
 }

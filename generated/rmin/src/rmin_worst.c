@@ -82,12 +82,14 @@ static void find_axes(hardest *w)
     const rmin_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     rmin_matrix square;
+    rmin_real unit[RMIN_REACH][RMIN_SYSTEM]; /* vectors */
     rmin_real values[RMIN_SYSTEM];
     for (int k = 0; k < RMIN_REACH; ++k) {
         for (int l = 0; l < RMIN_REACH; ++l) {
             const rmin_real *const a = rmin_directions[k];
             const rmin_real *const b = rmin_directions[l];
             square[k][l] = RMIN_R(0.0);
+            unit[k][l] = k == l ? RMIN_R(1.0) : RMIN_R(0.0);
             for (int i = 0; i < RMIN_N; ++i) {
                 const rmin_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
                 const rmin_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
@@ -95,12 +97,15 @@ static void find_axes(hardest *w)
             }
         }
     }
-    if (!rmin_spectrum(RMIN_REACH, RMIN_EPSILON*RMIN_EPSILON, square, values, w->axes)) {
+    if (!rmin_spectrum(RMIN_REACH, RMIN_EPSILON*RMIN_EPSILON, square, values, RMIN_REACH, unit, NULL)) {
         w->unknown = true;
         return;
     }
     w->least = 0;
-    for (int k = 1; k < RMIN_REACH; ++k) {
+    for (int k = 0; k < RMIN_REACH; ++k) {
+        for (int l = 0; l < RMIN_REACH; ++l) {
+            w->axes[k][l] = unit[l][k];
+        }
         w->least = values[k] < values[w->least] ? k : w->least;
     }
 }

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: 0BSD */
 /*
- * Feeds rr any bits, or any numbers of a plausible size: whatever is RR_OK or a bound must be
- * finite, whatever is not must have written nothing. For libFuzzer:
- * clang -fsanitize=fuzzer,address,undefined -Iinclude fuzz/fuzz.c src/<all>.c -lm
+ * Feeds one function of rr, which the input chooses, numbers about those of a usual robot, or any bits. Whatever
+ * is RR_OK or a bound must be finite, and within what the header promises; whatever is not must have written
+ * nothing; a second call must say the same. For libFuzzer, to which comparisons tell nothing here:
+ * clang -fsanitize=fuzzer,address,undefined -fno-sanitize-coverage=trace-cmp -Iinclude fuzz/fuzz.c src/<all>.c -lm
  */
+#include <float.h>
+#include <limits.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -12,215 +16,543 @@
 
 #include "rr.h"
 
+#define FUNCTIONS 9u /* without impacts */
+#define UNWRITTEN 0xA5 /* each byte of outputs before a call */
+#define STALE 0xFF /* each byte of the stack before a second call: no number */
+#define DEEP 65536u /* bytes of it */
 #define LAW_POINTS 4 /* at most, of a law by table */
 
-/* Everything that functions read, as plain numbers. */
-typedef struct {
-    rr_real q[4];
-    rr_real n[3];
-    rr_params p;
-    rr_real speed;
-    rr_real restitution;
-    rr_real other_mobility;
-    rr_real region[4];
-    rr_real number;
-    rr_real dq[4];
-    rr_real place[3];
-    rr_law_point law[LAW_POINTS];
-} inputs;
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+/* The input, and its hash: what takes long is left to some inputs that no mutation can make more frequent. */
+static const uint8_t *data;
+static size_t size;
+static size_t at;
+static uint32_t hash;
 
-/* Stops the fuzzer unless memory holds finite numbers, or is as it was. */
-static void check(int status, const void *memory, size_t size)
+static bool any_bits; /* numbers are the input's own bits */
+
+/* Everything that functions read; each by itself, so that what is read beside it is noticed. */
+static rr_real q[4];
+static rr_real n[3];
+static rr_params p;
+static rr_real speed;
+static rr_real restitution;
+static rr_real other_mobility;
+static rr_real dq[4];
+static rr_real number; /* a speed or a limit */
+static rr_region region;
+static rr_law_point *law; /* NULL, or exactly its points */
+static int point;
+static int frame;
+static rr_real place[3];
+
+static uint32_t told; /* hash of all that was answered */
+
+static bool rare(uint32_t one_in)
 {
-    const int written = status == RR_OK || status == RR_BOUNDED;
-    for (size_t at = 0; at < size; at += sizeof(rr_real)) {
+    return hash % one_in == 0u;
+}
+
+static uint32_t mix(uint32_t h, const void *memory, size_t length)
+{
+    const unsigned char *const m = memory;
+    for (size_t i = 0; i < length; ++i) {
+        h = (h ^ m[i])*16777619u;
+    }
+    return h;
+}
+
+static void holds(bool promise)
+{
+    if (!promise) {
+        abort();
+    }
+}
+
+static bool is_written(int status)
+{
+    return status == RR_OK || status == RR_BOUNDED;
+}
+
+/* Numbers are finite, or as they were. */
+static void check(int status, const void *memory, size_t length)
+{
+    const unsigned char *const m = memory;
+    told = mix(mix(told, &status, sizeof status), memory, length);
+    for (size_t i = 0; i < length; i += sizeof(rr_real)) {
         rr_real x;
         unsigned char untouched[sizeof x];
-        memset(untouched, 0xA5, sizeof untouched);
-        memcpy(&x, (const unsigned char *)memory + at, sizeof x);
-        if (written ? !isfinite(x) : memcmp(&x, untouched, sizeof x) != 0) {
-            abort();
-        }
+        memset(untouched, UNWRITTEN, sizeof untouched);
+        memcpy(&x, m + i, sizeof x);
+        holds(is_written(status) ? isfinite(x) : memcmp(&x, untouched, sizeof x) == 0);
     }
 }
 
-/* Bits as they are, or two bytes a number: -8 to 8, or its square for what should be positive. */
-static void decode(const uint8_t *data, size_t size, inputs *in)
+/* A whole number is from low to high, or as it was. */
+static void check_int(int status, int x, int low, int high)
 {
-    memset(in, 0, sizeof *in);
-    if (size > 0 && (data[0] & 1u) != 0u) {
-        memcpy(in, data + 1, size - 1 < sizeof *in ? size - 1 : sizeof *in);
+    int untouched;
+    memset(&untouched, UNWRITTEN, sizeof untouched);
+    told = mix(told, &x, sizeof x);
+    holds(is_written(status) ? x >= low && x <= high : x == untouched);
+}
+
+/* The next byte, or what stands for one after the last. */
+static unsigned int next(unsigned int otherwise)
+{
+    const unsigned int byte = at < size ? data[at] : otherwise;
+    ++at;
+    return byte;
+}
+
+/* Any bits, or a number that is seldom thought of. */
+static rr_real strange(bool bits)
+{
+    static const rr_real numbers[16] = {0, -1, (rr_real)NAN, (rr_real)INFINITY, -(rr_real)INFINITY, (rr_real)FLT_MAX, -(rr_real)FLT_MAX, (rr_real)FLT_MIN,
+        (rr_real)1e-45, (rr_real)FLT_EPSILON, 1, (rr_real)1e30, (rr_real)1e-30, (rr_real)1e15, (rr_real)1e-15, (rr_real)-1e-9};
+    const unsigned int which = bits ? 0u : next(0);
+    rr_real x = numbers[which % 16u];
+    if (bits || which >= 128u) {
+        unsigned char raw[sizeof x] = {0};
+        for (size_t i = 0; i < sizeof raw; ++i) {
+            raw[i] = (unsigned char)next(0);
+        }
+        memcpy(&x, raw, sizeof x);
+    }
+    return x;
+}
+
+/* From -1 to 1, which is 0 after the input's end. */
+static rr_real part(bool *is_strange)
+{
+    const unsigned int high = any_bits ? 128u : next(128);
+    const unsigned int low = any_bits ? 255u : next(0);
+    *is_strange = low == 255u;
+    return (rr_real)((int)(256u*high + low) - 32768)/32768;
+}
+
+/* About a number, up to 65,536 times more or less. */
+static rr_real around(rr_real usual)
+{
+    bool is_strange;
+    const rr_real x = part(&is_strange);
+    return is_strange ? strange(any_bits) : usual*(rr_real)exp2(16*(double)x);
+}
+
+/* About a number, up to `most` more or less. */
+static rr_real beside(rr_real usual, rr_real most)
+{
+    bool is_strange;
+    const rr_real x = part(&is_strange);
+    return is_strange ? strange(any_bits) : usual + most*x;
+}
+
+static void draw_params(void)
+{
+    const unsigned int drawn = next(0); /* fields; the others are the usual ones */
+    const bool alike = (drawn & 128u) != 0u; /* all joints */
+    rr_default_params(&p);
+    const size_t at_rotor_inertia = at;
+    for (int i = 0; i < 4; ++i) {
+        rr_real *const x = &p.rotor_inertia[i];
+        at = alike ? at_rotor_inertia : at;
+        if ((drawn >> 0 & 1u) != 0u) {
+            *x = around(*x > 0 ? *x : (rr_real)0.5);
+        }
+    }
+    const size_t at_position_gain = at;
+    for (int i = 0; i < 4; ++i) {
+        rr_real *const x = &p.position_gain[i];
+        at = alike ? at_position_gain : at;
+        if ((drawn >> 1 & 1u) != 0u) {
+            *x = around(*x > 0 ? *x : (rr_real)1000.0);
+        }
+    }
+    const size_t at_damping_gain = at;
+    for (int i = 0; i < 4; ++i) {
+        rr_real *const x = &p.damping_gain[i];
+        at = alike ? at_damping_gain : at;
+        if ((drawn >> 2 & 1u) != 0u) {
+            *x = around(*x > 0 ? *x : (rr_real)20.0);
+        }
+    }
+    const unsigned int motors = next(0);
+    const unsigned int steps = next(0);
+    p.motors = motors < 224u ? (int)(motors % 4u) : (int)motors - 228;
+    if (steps > 0u) {
+        p.steps = (int)steps; /* hardly any input needs the usual 800, which take long */
+    }
+    if (steps > 192u) {
+        static const int numbers[8] = {0, -1, INT_MIN, INT_MAX, 1000001, 2000, 1200, 400};
+        p.steps = rare(16) ? numbers[steps % 8u] : 1 + (int)(steps % 16u);
+    }
+    if ((drawn & 64u) != 0u) {
+        p.reaction_time = around(p.reaction_time);
+        p.horizon = around(p.horizon);
+    }
+    if (next(0) == 255u) {
+        p.layout ^= 1u + next(0);
+    }
+}
+
+static void draw_region(void)
+{
+    const unsigned int part_of_body = next(4);
+    const unsigned int drawn = next(0);
+    const unsigned int points = next(0);
+    if (rr_body_region((int)(part_of_body & 15u), (int)(part_of_body & 16u), &region) != RR_OK) {
+        rr_body_region(0, (int)(part_of_body & 16u), &region);
+    }
+    if ((drawn & 1u) != 0u) {
+        region.stiffness = around(region.stiffness);
+        region.damping = around(region.damping);
+        region.effective_mass = around(region.effective_mass);
+        region.hertz_stiffness = around(region.hertz_stiffness);
+    }
+    if ((drawn & 2u) != 0u) {
+        region.quasi_static_limit = around(region.quasi_static_limit);
+        region.force_limit = around(region.force_limit);
+    }
+    if ((drawn & 12u) == 4u) {
+        const int most = 1 + (int)(points % LAW_POINTS);
+        rr_real depth = 0;
+        rr_real force = 0;
+        law = malloc((size_t)most*sizeof *law);
+        holds(law != NULL);
+        for (int i = 0; i < most; ++i) {
+            law[i].depth = depth;
+            law[i].force = force;
+            depth += around((rr_real)4e-3);
+            force += around(50);
+            law[i].knee_depth = (points & 32u) == 0u ? (law[i].depth + depth)/2 : around((rr_real)2e-3);
+            law[i].knee_force = (points & 64u) == 0u ? (law[i].force + force)/2 : around(25);
+        }
+        region.law = law;
+        region.law_points = (points & 128u) == 0u ? most : (int)(points & 7u) - 8;
+    }
+}
+
+static void draw(void)
+{
+    static const rr_real usual_q[4] = { -2.296875, 2.1826171875, 1.6572265625, -1.5390625 };
+    static const rr_real usual_n[3] = { -0.03125, -0.21875, 0.625 };
+    const unsigned int flags = next(0);
+    const bool far = (flags & 8u) != 0u;
+    any_bits = (flags & 7u) == 7u;
+    draw_params();
+    draw_region();
+    point = (flags & 192u) != 0u ? 0 : (int)(next(1) % (RR_POINTS + 2u)) - 1;
+    number = around((flags & 32u) != 0u ? region.force_limit : 1);
+    for (int i = 0; i < 3; ++i) {
+        n[i] = beside(far ? 0 : usual_n[i], 1);
+    }
+    for (int i = 0; i < 4; ++i) {
+        q[i] = beside(far ? 0 : usual_q[i], 4);
+    }
+    speed = around((rr_real)1.0);
+    restitution = around((rr_real)0.25);
+    other_mobility = around((rr_real)0.25);
+    for (int i = 0; i < 4; ++i) {
+        dq[i] = beside((rr_real)0.25, 4);
+    }
+    frame = (int)(next(1) % 8u) - 1;
+    for (int i = 0; i < 3; ++i) {
+        place[i] = beside(0, 1);
+    }
+}
+
+static void call_function(unsigned int which)
+{
+    switch (which) {
+    case 0u: {
+        rr_real M[4][4];
+        memset(&M, UNWRITTEN, sizeof M);
+        const int status = rr_mass_matrix(q, M);
+        check(status, &M, sizeof M);
+        break;
+    }
+    case 1u: {
+        rr_real J[3][4];
+        memset(&J, UNWRITTEN, sizeof J);
+        const int status = rr_jacobian(q, J);
+        check(status, &J, sizeof J);
+        break;
+    }
+    case 2u: {
+        rr_real M0[4][4];
+        memset(&M0, UNWRITTEN, sizeof M0);
+        const int status = rr_generalised_mass_matrix(q, &p, M0);
+        check(status, &M0, sizeof M0);
+        break;
+    }
+    case 3u: {
+        rr_real K0[4][4];
+        memset(&K0, UNWRITTEN, sizeof K0);
+        const int status = rr_stiffness_matrix(q, &p, K0);
+        check(status, &K0, sizeof K0);
+        break;
+    }
+    case 4u: {
+        rr_real J_c[4];
+        memset(&J_c, UNWRITTEN, sizeof J_c);
+        const int status = rr_contact_jacobian(q, n, J_c);
+        check(status, &J_c, sizeof J_c);
+        break;
+    }
+    case 5u: {
+        rr_real m_c;
+        memset(&m_c, UNWRITTEN, sizeof m_c);
+        const int status = rr_reflected_mass(q, n, &p, &m_c);
+        check(status, &m_c, sizeof m_c);
+        break;
+    }
+    case 6u: {
+        rr_reduced_model_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = rr_reduced_model(q, n, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    case 7u: {
+        rr_chain_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = rr_chain(q, n, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    default: {
+        rr_joint_impulse_t out;
+        memset(&out, UNWRITTEN, sizeof out);
+        const int status = rr_joint_impulse(q, n, speed, restitution, other_mobility, &p, &out);
+        check(status, &out, sizeof out);
+        break;
+    }
+    }
+}
+
+static void call_peak_force(bool on)
+{
+    rr_peak_force_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = on ? rr_peak_force_on(q, frame, place, n, number, &region, &p, &out)
+                          : rr_peak_force_at(q, point, n, number, &region, &p, &out);
+    check(status, &out, sizeof out);
+    holds(!is_written(status) || (out.force > 0 && out.time >= 0));
+}
+
+static void call_safe_speed(bool on)
+{
+    rr_safe_speed_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = on ? rr_safe_speed_on(q, frame, place, n, number, &region, &p, &out)
+                          : rr_safe_speed_at(q, point, n, number, &region, &p, &out);
+    check(status, &out, sizeof out);
+    holds(!is_written(status) || (out.speed > 0 && out.force > 0 && out.force <= number));
+    const bool is_usual = law == NULL && out.speed < 20; /* steps are fitted to another force: its errors may differ */
+    if (status == RR_OK && is_usual && !on && rare(4)) {
+        rr_peak_force_t peak;
+        const int known = rr_peak_force_at(q, point, n, out.speed, &region, &p, &peak);
+        holds(known != RR_OK || peak.force <= (rr_real)1.1*number);
+    }
+}
+
+static void call_speed_factor(void)
+{
+    rr_speed_factor_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = rr_speed_factor(q, dq, number, &region, &p, &out);
+    check(status, &out.factor, sizeof out.factor);
+    check(status, &out.speed, sizeof out.speed);
+    check(status, &out.force, sizeof out.force);
+    check_int(status, out.point, -1, RR_POINTS - 1);
+    holds(!is_written(status) || (out.factor >= 0 && out.factor <= 1 && out.force <= number));
+}
+
+static void call_speed_factor_over(void)
+{
+    const int entries = 1 + (int)(hash >> 8 & 1u);
+    int *const points = malloc((size_t)entries*sizeof *points);
+    rr_region *const regions = malloc((size_t)entries*sizeof *regions);
+    rr_real *const limits = malloc((size_t)entries*sizeof *limits);
+    holds(points != NULL && regions != NULL && limits != NULL);
+    for (int i = 0; i < entries; ++i) {
+        points[i] = i == 0 ? point : RR_POINTS - 1;
+        regions[i] = region;
+        limits[i] = i == 0 ? number : region.force_limit;
+    }
+    rr_speed_factor_over_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = rr_speed_factor_over(q, dq, points, regions, limits, entries, &p, &out);
+    check(status, &out.factor, sizeof out.factor);
+    check(status, &out.speed, sizeof out.speed);
+    check(status, &out.force, sizeof out.force);
+    check_int(status, out.entry, -1, entries - 1);
+    holds(!is_written(status) || (out.factor >= 0 && out.factor <= 1));
+    free(points);
+    free(regions);
+    free(limits);
+}
+
+/* What presses is followed to 0.62 s. */
+static void call_pressing_force(void)
+{
+    rr_real force;
+    memset(&force, UNWRITTEN, sizeof force);
+    const int status = rr_pressing_force_at(q, point, n, number, &region, &p, &force);
+    check(status, &force, sizeof force);
+    holds(!is_written(status) || force >= 0);
+}
+
+static void call_may_press(void)
+{
+    int may;
+    memset(&may, UNWRITTEN, sizeof may);
+    const int status = rr_may_press(q, dq, number, &region, &p, &may);
+    told = mix(told, &status, sizeof status);
+    check_int(status, may, 0, 1);
+}
+
+/* Up to 15 times as many steps. */
+static void call_allowed_speed(void)
+{
+    rr_allowed_speed_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = rr_allowed_speed_at(q, point, n, &region, &p, &out);
+    check(status, &out.speed, sizeof out.speed);
+    check(status, &out.force, sizeof out.force);
+    check_int(status, out.pressed, 0, 1);
+    holds(!is_written(status) || (out.speed > 0 && out.force <= region.force_limit));
+}
+
+static void call_allowed_factor(void)
+{
+    rr_allowed_factor_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = rr_allowed_factor(q, dq, &region, &p, &out);
+    check(status, &out.factor, sizeof out.factor);
+    check(status, &out.speed, sizeof out.speed);
+    check(status, &out.force, sizeof out.force);
+    check_int(status, out.point, -1, RR_POINTS - 1);
+    check_int(status, out.pressed, 0, 1);
+    holds(!is_written(status) || (out.factor >= 0 && out.factor <= 1));
+}
+
+/* Some 300 impacts. */
+static void call_worst_direction(bool on)
+{
+    rr_worst_direction_t out;
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = on ? rr_worst_direction_on(q, frame, place, number, &region, &p, &out)
+                          : rr_worst_direction_at(q, point, number, &region, &p, &out);
+    check(status, &out, sizeof out);
+    holds(!is_written(status) || (out.force > 0 && out.error >= 0));
+}
+
+static void call_select_configuration(void)
+{
+    rr_real poses[2][4];
+    const unsigned char allowed[2] = {(unsigned char)(hash >> 8 & 1u), (unsigned char)(hash >> 9 & 1u)};
+    rr_selection_t out;
+    for (int i = 0; i < 4; ++i) {
+        poses[0][i] = q[i];
+        poses[1][i] = -q[i];
+    }
+    memset(&out, UNWRITTEN, sizeof out);
+    const int status = rr_select_configuration((const rr_real (*)[4])poses, 2, rare(4) ? allowed : NULL, n, number, &region, &p, &out);
+    check(status, &out.force, sizeof out.force);
+    check(status, &out.margin, sizeof out.margin);
+    check_int(status, out.best, 0, 1);
+    check_int(status, out.second, -1, 1);
+    check_int(status, out.usable, 1, 2);
+    holds(!is_written(status) || (out.force > 0 && out.margin >= 0));
+}
+
+/* What takes long is asked of few inputs, the others in its place what it is made of. */
+static void call_impact(unsigned int which)
+{
+    const bool on = which % 2u != 0u;
+    switch (which/2u % 12u) {
+    case 0:
+        call_select_configuration();
+        break;
+    case 1:
+        call_speed_factor_over();
+        break;
+    case 2:
+        call_pressing_force();
+        break;
+    case 3:
+        call_may_press();
+        break;
+    case 4:
+    case 5:
+        call_speed_factor();
+        break;
+    case 6:
+        if (rare(64)) {
+            call_worst_direction(on);
+            break;
+        }
+        call_peak_force(on);
+        break;
+    case 7:
+        if (rare(8)) {
+            if (on) {
+                call_allowed_speed();
+            } else {
+                call_allowed_factor();
+            }
+            break;
+        }
+        call_safe_speed(on);
+        break;
+    case 8:
+    case 9:
+        call_peak_force(on);
+        break;
+    default:
+        call_safe_speed(on);
+        break;
+    }
+}
+
+static void call(unsigned int which)
+{
+    told = 2166136261u;
+    if (which >= 64u) {
+        call_impact(which - 64u);
         return;
     }
-    for (size_t i = 0; i < sizeof *in/sizeof(rr_real); ++i) {
-        const size_t at = 1 + 2*i;
-        const int low = at < size ? data[at] : 1;
-        const int high = at + 1 < size ? data[at + 1] : 144;
-        const rr_real x = (rr_real)(256*high + low - 32768)/(rr_real)4096;
-        const rr_real positive = x*x*x*x;
-        memcpy((unsigned char *)in + i*sizeof x, i < 7 ? &x : &positive, sizeof x);
+    call_function(which % FUNCTIONS);
+}
+
+/* Leaves no numbers where the next call's variables will be. */
+static void soil(void)
+{
+    volatile unsigned char below[DEEP];
+    for (size_t i = 0; i < sizeof below; ++i) {
+        below[i] = STALE;
     }
 }
 
-/* Makes points a law: each number is what it rises by. */
-static void rise(rr_law_point law[LAW_POINTS])
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
-    rr_real depth = 0;
-    rr_real force = 0;
-    for (int i = 0; i < LAW_POINTS; ++i) {
-        const rr_law_point by = law[i];
-        law[i].depth = depth;
-        law[i].force = force;
-        depth += (by.depth + by.knee_depth)/1024;
-        force += by.force + by.knee_force;
-        law[i].knee_depth = (law[i].depth + depth)/2;
-        law[i].knee_force = (law[i].force + force)/2;
+    data = bytes;
+    size = count;
+    at = 0;
+    hash = mix(2166136261u, bytes, count);
+    hash ^= hash >> 15;
+    const unsigned int which = next(0);
+    draw();
+    call(which);
+    if ((hash >> 16) % 8u == 0u) {
+        const uint32_t first = told;
+        soil();
+        call(which);
+        holds(told == first);
     }
-}
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
-{
-    inputs in;
-    decode(data, size, &in);
-    if (size % 16u != 15u) {
-        in.p.layout = RR_LAYOUT; /* else all that read p refuse */
-    }
-    if (size % 64u != 62u && in.p.steps > 256) {
-        in.p.steps = 1 + in.p.steps % 256; /* long ones take most of the time */
-    }
-    {
-        rr_real M[4][4];
-        memset(&M, 0xA5, sizeof M);
-        const int status = rr_mass_matrix(in.q, M);
-        check(status, &M, sizeof M);
-    }
-    {
-        rr_real J[3][4];
-        memset(&J, 0xA5, sizeof J);
-        const int status = rr_jacobian(in.q, J);
-        check(status, &J, sizeof J);
-    }
-    {
-        rr_real M0[4][4];
-        memset(&M0, 0xA5, sizeof M0);
-        const int status = rr_generalised_mass_matrix(in.q, &in.p, M0);
-        check(status, &M0, sizeof M0);
-    }
-    {
-        rr_real K0[4][4];
-        memset(&K0, 0xA5, sizeof K0);
-        const int status = rr_stiffness_matrix(in.q, &in.p, K0);
-        check(status, &K0, sizeof K0);
-    }
-    {
-        rr_real J_c[4];
-        memset(&J_c, 0xA5, sizeof J_c);
-        const int status = rr_contact_jacobian(in.q, in.n, J_c);
-        check(status, &J_c, sizeof J_c);
-    }
-    {
-        rr_real m_c;
-        memset(&m_c, 0xA5, sizeof m_c);
-        const int status = rr_reflected_mass(in.q, in.n, &in.p, &m_c);
-        check(status, &m_c, sizeof m_c);
-    }
-    {
-        rr_reduced_model_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = rr_reduced_model(in.q, in.n, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        rr_chain_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = rr_chain(in.q, in.n, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    {
-        rr_joint_impulse_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = rr_joint_impulse(in.q, in.n, in.speed, in.restitution, in.other_mobility, &in.p, &out);
-        check(status, &out, sizeof out);
-    }
-    rr_region region;
-    if (rr_body_region(size > 0 ? data[0] >> 4 : 0, size > 0 ? data[0] & 2 : 0, &region) != RR_OK) {
-        return 0;
-    }
-    if (size > 0 && (data[0] & 4u) != 0u) {
-        region.stiffness = in.region[0];
-        region.damping = in.region[1];
-        region.effective_mass = in.region[2];
-        region.hertz_stiffness = in.region[3];
-    }
-    if (size > 1 && data[1] % 4u == 1u) {
-        region.law_points = data[1] >> 4 & 7u; /* more than there are: refused, as points are no law */
-        region.law = in.law;
-        if ((data[1] & 128u) != 0u) {
-            rise(in.law);
-            region.law_points = 1 + region.law_points % LAW_POINTS;
-        }
-        region.law_points = region.law_points < LAW_POINTS ? region.law_points : LAW_POINTS;
-    }
-    {
-        rr_peak_force_t out;
-        memset(&out, 0xA5, sizeof out);
-        check(rr_peak_force(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
-    }
-    {
-        rr_safe_speed_t out;
-        memset(&out, 0xA5, sizeof out);
-        check(rr_safe_speed(in.q, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
-    }
-    {
-        rr_speed_factor_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = rr_speed_factor(in.q, in.dq, in.number, &region, &in.p, &out);
-        check(status, &out.factor, sizeof out.factor);
-        check(status, &out.speed, sizeof out.speed);
-        check(status, &out.force, sizeof out.force);
-        if (status == RR_OK && !(out.factor >= 0 && out.factor <= 1 && out.point >= -1 && out.point < RR_POINTS)) {
-            abort();
-        }
-    }
-    if (size % 4u == 2u) { /* until 0.6 s */
-        rr_real force;
-        memset(&force, 0xA5, sizeof force);
-        check(rr_pressing_force_at(in.q, 0, in.n, in.number, &region, &in.p, &force), &force, sizeof force);
-    }
-    if (size % 16u == 5u) { /* up to 15 times as long */
-        rr_allowed_speed_t out;
-        memset(&out, 0xA5, sizeof out);
-        const int status = rr_allowed_speed_at(in.q, 0, in.n, &region, &in.p, &out);
-        check(status, &out.speed, sizeof out.speed);
-        check(status, &out.force, sizeof out.force);
-    }
-    if (size % 64u == 7u) { /* a hundred impacts */
-        rr_worst_direction_t out;
-        memset(&out, 0xA5, sizeof out);
-        check(rr_worst_direction_at(in.q, 0, in.number, &region, &in.p, &out), &out, sizeof out);
-    }
-    if (size % 4u == 1u) {
-        rr_safe_speed_t out;
-        const int frame = size > 2 ? data[2] % 8 - 1 : 0;
-        memset(&out, 0xA5, sizeof out);
-        check(rr_safe_speed_on(in.q, frame, in.place, in.n, in.number, &region, &in.p, &out), &out, sizeof out);
-    }
-    {
-        rr_real poses[2][4];
-        rr_selection_t out;
-        for (int i = 0; i < 4; ++i) {
-            poses[0][i] = in.q[i];
-            poses[1][i] = -in.q[i];
-        }
-        memset(&out, 0xA5, sizeof out);
-        const int status = rr_select_configuration((const rr_real (*)[4])poses, 2, NULL, in.n, in.number, &region, &in.p, &out);
-        check(status, &out.force, sizeof out.force);
-        check(status, &out.margin, sizeof out.margin);
-        if (status == RR_OK && !(out.best >= 0 && out.best < 2 && out.usable > 0 && out.margin >= 0)) {
-            abort();
-        }
-    }
+    free(law);
+    law = NULL;
     return 0;
 }

@@ -4,8 +4,13 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE RR_R(1e-6)
-/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+/*
+ * Most that the velocity may be off n where motors can hardly move the contact point that way: aside, too, which tells
+ * where they cannot and a pivot of rounding says that they can.
+ */
 #define ASTRAY RR_R(1e-3)
+/* Share of all squared motions of the contact point from which on no pivot is weak enough for that. */
+#define WEAK RR_R(1e-3)
 /* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
 #define ROUNDING (RR_R(8.0)*RR_EPSILON)
 #define MOST_STEPS 1000000
@@ -56,6 +61,7 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
     rr_matrix square;
     rr_real moved[RR_REACH][RR_N];
     rr_real share[RR_SYSTEM];
+    rr_real wanted[RR_REACH];
     rr_real within = RR_R(0.0);
     rr_real whole = RR_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < RR_N; ++i) {
@@ -64,6 +70,7 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
     for (int k = 0; k < RR_REACH; ++k) {
         const rr_real *const d = rr_directions[k];
         share[k] = d[0]*u[0] + d[1]*u[1] + d[2]*u[2];
+        wanted[k] = share[k];
         within += share[k]*share[k];
         for (int i = 0; i < RR_N; ++i) {
             moved[k][i] = rr_has_motor[i] ? d[0]*J[0][i] + d[1]*J[1][i] + d[2]*J[2][i] : RR_R(0.0);
@@ -81,15 +88,17 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
     if (!(within > RR_R(1.0) - OUTSIDE) || !rr_cholesky(RR_REACH, square)) {
         return RR_SINGULAR;
     }
+    rr_real least = whole;
     for (int k = 0; k < RR_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
-            return RR_SINGULAR;
-        }
+        least = RR_FMIN(least, square[k][k]*square[k][k]);
+    }
+    if (!(least > ROUNDING*whole)) {
+        return RR_SINGULAR;
     }
     rr_forward(RR_REACH, square, share);
     rr_backward(RR_REACH, square, share);
     rr_real fast = RR_R(0.0);
-    rr_real along = RR_R(0.0);
+    rr_real astray = RR_R(0.0);
     for (int i = 0; i < RR_N; ++i) {
         rr_real rate = RR_R(0.0);
         for (int k = 0; k < RR_REACH; ++k) {
@@ -97,9 +106,15 @@ int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
-        along += rate*arrival->row[i];
     }
-    return fast < RR_FASTEST && RR_FABS(along - RR_R(1.0)) < ASTRAY ? RR_OK : RR_SINGULAR;
+    for (int k = 0; k < RR_REACH && least < WEAK*whole; ++k) {
+        rr_real missed = wanted[k];
+        for (int i = 0; i < RR_N; ++i) {
+            missed -= moved[k][i]*arrival->rates[i];
+        }
+        astray += missed*missed;
+    }
+    return fast < RR_FASTEST && astray < ASTRAY*ASTRAY ? RR_OK : RR_SINGULAR;
 }
 
 int rr_set_off(const rr_real q[RR_JOINTS], const rr_real dq[RR_JOINTS],

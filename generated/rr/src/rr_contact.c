@@ -4,8 +4,8 @@
  *
  * Skin and body in series: f(d) = k_h s + c_h s' with s = x - u, where x is how far the contact point
  * has come, u = d + (compliance of modes that stand) f, and f(d) = k_f d^1.5 or a law of rr_law.c. x' is
- * exact at every node and u' a backward difference, so that no damping makes it unstable. The force is
- * quadratic between nodes; steps are halved where it bends too much for that.
+ * exact at every node and u' a difference of the last four nodes, so that no damping makes it unstable. The force
+ * is quadratic between nodes; steps are halved where it bends too much for that.
  */
 #include "rr_state.h"
 
@@ -23,26 +23,49 @@
 /* Parts of a step between which a law through points is looked at. */
 #define PLACES 4
 
-void rr_glide(const rr_state *s, rr_trial *t)
+void rr_feel(rr_state *s)
+{
+    rr_motion *const motion = s->motion;
+    const rr_level *const level = s->due.level;
+    const rr_real slope = s->due.rise*level->per;
+    for (int i = 0; i < s->phase->active; ++i) {
+        const rr_mode_step *const step = &level->mode[i];
+        motion->place[i] -= step->push*s->due.mean + step->late*s->due.rise;
+        motion->rate[i] -= step->kick*s->due.mean + step->push*slope;
+    }
+    s->due.mean = RR_R(0.0);
+    s->due.rise = RR_R(0.0);
+}
+
+void rr_glide(rr_state *s, rr_trial *t)
 {
     const rr_phase *const phase = s->phase;
     const rr_level *const level = s->step;
-    const rr_real *rate = s->rate;
     rr_real damped[RR_MODES];
+    rr_real v = s->drift;
     if (phase->damped) {
         rr_damp_ahead(s, damped);
-        rate = damped;
+        v -= rr_owed_slip(s, damped);
     }
+    const rr_motion *const motion = s->motion;
+    const rr_real *const rate = phase->damped ? damped : motion->rate;
+    rr_motion *const next = s->trial;
+    const rr_level *const felt = s->due.level;
+    const rr_real mean = s->due.mean;
+    const rr_real rise = s->due.rise;
+    const rr_real slope = rise*felt->per;
     rr_real x = s->drifted + s->drift*level->h;
-    rr_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
+        const rr_mode_step *const due = &felt->mode[i];
         const rr_mode_step *const step = &level->mode[i];
-        const rr_real a = s->amplitude[i];
-        const rr_real b = rate[i];
-        t->amplitude[i] = step->cosine*a + step->sine*b;
-        t->rate[i] = step->back*a + step->cosine*b;
-        x += phase->modes.row[i]*t->amplitude[i];
-        v += phase->modes.row[i]*t->rate[i];
+        const rr_real a = motion->place[i] - due->push*mean - due->late*rise;
+        const rr_real b = rate[i] - due->kick*mean - due->push*slope;
+        const rr_real place = step->cosine*a + step->sine*b;
+        const rr_real velocity = step->back*a + step->cosine*b;
+        next->place[i] = place;
+        next->rate[i] = velocity;
+        x += place;
+        v += velocity;
     }
     t->x = x;
     t->v = v;
@@ -71,106 +94,116 @@ static rr_real root_of(rr_real depth, rr_real cubic, rr_real guess)
     return u;
 }
 
-/* What steps of one length have in common, as far as those before them were as long. */
+/*
+ * What steps of one length have in common, as far as those before them were as long. Of the skin's u the slope is that
+ * of the polynomial through the last four nodes, or three where there are no more since the touch or the step is the
+ * first of its length: just after a touch u is no cubic yet, and a later contact was 1.2 % too weak by that.
+ */
 static void set_pace(rr_state *s)
 {
-    const rr_region *const region = s->impact->region;
+    const rr_region *const region = s->region;
     const rr_level *const level = s->step;
     const rr_real one = RR_R(1.0);
+    const rr_real h = level->h;
+    const rr_real rate = level->per;
+    const rr_real damping = region->damping;
     rr_pace *const pace = &s->pace;
     rr_real ratio = RR_R(0.0);
     rr_real more = one; /* of the bend at the last node is that halfway, less that of the one before */
+    rr_real more_u = RR_R(0.0); /* of u' by a node of u more, 1/s: by what the end adds */
+    rr_real more_before = RR_R(0.0);
+    rr_real third = RR_R(0.0);
     pace->before = RR_R(0.0);
     if (s->past > 0) {
-        ratio = level->h/s->h;
+        ratio = h*s->per;
         if (s->past > 1) {
-            const rr_real lead = (RR_R(0.5)*level->h + s->h)/(level->h + s->h + s->h_before);
+            const rr_real both = s->h + s->h_before;
+            const rr_real lead = (RR_R(0.5)*h + s->h)/(h + both);
             more += lead;
             pace->before = lead*ratio*ratio;
+            if (s->even > 0) {
+                more_u = one/(h + both);
+                more_before = ratio/s->h_before;
+                third = h*(h + s->h)/((h + both)*both*s->h_before);
+            }
         }
     }
-    const rr_real rate = level->per;
     const rr_real early = ratio/(one + ratio);
+    const rr_real lag = (one + early)*rate + more_u;
     pace->ratio = ratio;
     pace->share = early/RR_R(6.0);
-    pace->more = more;
-    const rr_real lag = (one + early)*rate;
-    pace->u = (one + ratio)*rate;
-    pace->u_before = ratio*early*rate;
-    const rr_real share = pace->share*more;
-    pace->yields = level->late - share*level->push;
-    const rr_real slows = level->push*rate - share*level->kick;
-    pace->hold = region->stiffness + region->damping*lag;
-    pace->soft = one + region->stiffness*pace->yields + region->damping*slows + pace->hold*s->phase->compliance;
+    pace->whole = pace->share*more;
+    pace->u_before = damping*(ratio*early*rate + more_before);
+    pace->u_third = damping*third;
+    pace->u = damping*lag + pace->u_before - pace->u_third;
+    pace->stays = region->stiffness*level->push + damping*level->kick;
+    pace->grows = region->stiffness*level->late + damping*level->grow;
+    pace->yields = level->late - pace->whole*level->push;
+    pace->hold = region->stiffness + damping*lag;
+    pace->soft = one + pace->grows - pace->whole*pace->stays + pace->hold*s->phase->compliance;
+    pace->per_hold = one/pace->hold;
+    pace->cubic = region->hertz_stiffness*pace->soft*pace->per_hold;
 }
 
 void rr_press(rr_state *s, rr_trial *t)
 {
-    const rr_region *const region = s->impact->region;
-    const rr_phase *const phase = s->phase;
+    const rr_region *const region = s->region;
     const rr_level *const level = s->step;
     const rr_pace *const pace = &s->pace;
     if (s->even < LIKE) {
         set_pace(s);
     }
-    const rr_real plain = pace->share*(s->f + pace->ratio*s->rise);
-    t->share = pace->more*pace->share;
-    t->base = pace->more*plain - pace->before*s->bump;
-    const rr_real first = s->f + t->base;
-    const rr_real x = t->x - level->push*first + level->late*s->f; /* a force that falls to its base */
-    const rr_real v = t->v - level->kick*first + level->push*level->per*s->f;
-    const rr_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
-    const rr_real pressed = region->stiffness*x + region->damping*slip;
-    t->root = RR_R(0.0);
+    const rr_real straight_on = s->f + pace->ratio*s->rise;
+    const rr_real mean = s->f + pace->whole*straight_on - pace->before*s->bump; /* were there no force at the end */
+    const rr_real pressed = region->stiffness*t->x + region->damping*t->v - pace->stays*mean + pace->grows*s->f
+        + pace->u*s->u - pace->u_before*s->u_before + pace->u_third*s->u_third;
+    t->x += level->late*s->f;
     if (pressed > RR_R(0.0)) {
         if (region->law == NULL) {
-            const rr_real per = RR_R(1.0)/pace->hold;
-            t->root = root_of(pressed*per, region->hertz_stiffness*pace->soft*per, s->root);
+            t->root = root_of(pressed*pace->per_hold, pace->cubic, s->root);
             t->depth = t->root*t->root;
             t->f = region->hertz_stiffness*t->root*t->depth;
         } else {
+            t->root = RR_R(0.0);
             t->f = rr_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
         }
-        t->u = t->depth + phase->compliance*t->f;
-        t->x = x - pace->yields*t->f;
-        t->bump = plain - pace->share*t->f;
+        t->u = t->depth + s->phase->compliance*t->f;
+        t->x -= level->push*mean + pace->yields*t->f;
+        t->bump = pace->share*(straight_on - t->f);
+        t->mean = mean - pace->whole*t->f;
     } else { /* they part on the way: a force that falls evenly ends there */
         const rr_real from = pace->hold*s->now + pace->soft*s->f;
-        t->base = from > RR_R(0.0) ? RR_R(0.5)*s->f*pressed/(from - pressed) : RR_R(0.0);
-        t->share = RR_R(0.0);
-        t->x -= level->push*(s->f + t->base) - level->late*s->f;
+        t->mean = s->f + (from > RR_R(0.0) ? RR_R(0.5)*s->f*pressed/(from - pressed) : RR_R(0.0));
+        t->x -= level->push*t->mean;
         t->bump = RR_R(0.0);
         t->f = RR_R(0.0);
         t->u = RR_R(0.0);
         t->depth = RR_R(0.0);
+        t->root = RR_R(0.0);
     }
 }
 
-void rr_take(const rr_trial *t, rr_state *s)
+void rr_take(rr_state *s, rr_real mean, rr_real rise)
 {
-    const rr_phase *const phase = s->phase;
-    const rr_level *const level = s->step;
-    const rr_real first = s->f + t->base - t->share*t->f;
-    const rr_real rise = t->f - s->f;
-    const rr_real slope = rise*level->per;
-    for (int i = 0; i < phase->active; ++i) {
-        const rr_mode_step *const step = &level->mode[i];
-        s->amplitude[i] = t->amplitude[i] - step->push*first - step->late*rise;
-        s->rate[i] = t->rate[i] - phase->modes.row[i]*step->sine*first - step->push*slope;
-    }
+    rr_motion *const before = s->motion;
+    s->motion = s->trial;
+    s->trial = before;
+    s->due.level = s->step;
+    s->due.mean = mean;
+    s->due.rise = rise;
 }
 
-rr_real rr_force_between(const rr_state *s, const rr_trial *t)
+rr_real rr_force_between(rr_state *s, const rr_trial *t)
 {
-    const rr_region *const region = s->impact->region;
+    const rr_region *const region = s->region;
     const rr_phase *const phase = s->phase;
     const rr_level *const level = s->step;
     const rr_real h = level->h;
-    const rr_real first = s->f + t->base - t->share*t->f;
-    const rr_real after = h*(t->v - level->kick*first) - level->push*(t->f - s->f);
+    const rr_real after = h*(t->v - level->kick*t->mean - level->grow*(t->f - s->f));
     rr_real before = s->drift;
+    rr_feel(s);
     for (int i = 0; i < phase->active; ++i) {
-        before += phase->modes.row[i]*s->rate[i];
+        before += s->motion->rate[i];
     }
     before *= h;
     rr_real most = RR_R(0.0);
@@ -195,5 +228,5 @@ rr_real rr_slip_off(const rr_state *s, const rr_trial *t)
 {
     const rr_real rate = (t->u - s->u)*s->step->per;
     const rr_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
-    return s->impact->region->damping*RR_FABS(rate - before);
+    return s->region->damping*RR_FABS(rate - before);
 }

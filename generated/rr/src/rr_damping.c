@@ -14,7 +14,8 @@ rr_real rr_damping_rate(rr_phase *phase)
         for (int j = 0; j <= i; ++j) {
             rr_real sum = RR_R(0.0);
             for (int k = 0; k < phase->modes.count; ++k) {
-                const rr_real *const shape = &phase->modes.shape[k][RR_SYSTEM - RR_DAMPERS];
+                const int from = phase->modes.from[k];
+                const rr_real *const shape = &phase->modes.shape[from][RR_SYSTEM - RR_DAMPERS];
                 sum += shape[i]*shape[j];
             }
             phase->together[i][j] = sum;
@@ -23,6 +24,33 @@ rr_real rr_damping_rate(rr_phase *phase)
         rate = RR_FMAX(rate, phase->damping[i]*phase->together[i][i]);
     }
     return rate;
+}
+
+void rr_slow_contact(rr_phase *phase)
+{
+    const rr_modes *const modes = &phase->modes;
+    rr_real held[RR_DAMPERS];
+    for (int j = 0; j < RR_DAMPERS; ++j) {
+        rr_real sum = RR_R(0.0);
+        for (int i = 0; i < phase->active; ++i) {
+            sum += modes->row[i]*modes->shape[modes->from[i]][RR_SYSTEM - RR_DAMPERS + j];
+        }
+        held[j] = phase->damping[j]*sum;
+    }
+    for (int i = 0; i < phase->active; ++i) {
+        rr_real sum = RR_R(0.0);
+        for (int j = 0; j < RR_DAMPERS; ++j) {
+            sum += modes->shape[modes->from[i]][RR_SYSTEM - RR_DAMPERS + j]*held[j];
+        }
+        phase->slows[i] = RR_R(0.5)*sum/modes->row[i];
+    }
+    for (int k = 0; k < RR_LEVELS; ++k) {
+        rr_level *const level = &phase->level[k];
+        for (int i = 0; i < phase->active; ++i) {
+            level->kick -= level->h*phase->slows[i]*level->mode[i].kick;
+            level->grow -= phase->slows[i]*level->mode[i].push;
+        }
+    }
 }
 
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate)
@@ -34,8 +62,8 @@ void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate)
         turned[j] = RR_R(0.0);
     }
     for (int i = 0; i < phase->active; ++i) {
-        const rr_real *const shape = &modes->shape[i][RR_SYSTEM - RR_DAMPERS];
-        const rr_real led = rate[i] - speed*modes->start[i];
+        const rr_real *const shape = &modes->shape[modes->from[i]][RR_SYSTEM - RR_DAMPERS];
+        const rr_real led = rate[i]/modes->row[i] - speed*modes->start[i];
         for (int j = 0; j < RR_DAMPERS; ++j) {
             turned[j] += shape[j]*led;
         }
@@ -54,19 +82,32 @@ void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate)
         impulse[j] = time*phase->damping[j]*turned[j];
     }
     for (int i = 0; i < phase->active; ++i) {
-        const rr_real *const shape = &modes->shape[i][RR_SYSTEM - RR_DAMPERS];
+        const rr_real *const shape = &modes->shape[modes->from[i]][RR_SYSTEM - RR_DAMPERS];
         rr_real change = RR_R(0.0);
         for (int j = 0; j < RR_DAMPERS; ++j) {
             change += shape[j]*impulse[j];
         }
-        rate[i] -= change;
+        rate[i] -= modes->row[i]*change;
     }
 }
 
-void rr_damp_ahead(const rr_state *s, rr_real *rate)
+void rr_damp_ahead(rr_state *s, rr_real *rate)
 {
+    rr_feel(s);
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->rate[i];
+        rate[i] = s->motion->rate[i];
     }
     rr_damp(s->phase, s->speed, s->owed + RR_R(0.5)*s->step->h, rate);
+}
+
+rr_real rr_owed_slip(const rr_state *s, const rr_real *rate)
+{
+    const rr_phase *const phase = s->phase;
+    const rr_level *const level = s->step;
+    rr_real slowed = RR_R(0.0);
+    for (int i = 0; i < phase->active; ++i) {
+        const rr_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
+        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+    }
+    return level->h*slowed;
 }

@@ -76,6 +76,7 @@ static bool find_modes(int size, const int *places, rr_matrix L, rr_matrix A, rr
             modes->shape[i][places[j]] = X[i][j];
             sum += row[j]*X[i][j];
         }
+        modes->from[i] = i;
         modes->noise[i] = RR_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
@@ -262,9 +263,9 @@ static void sharpen(const rr_params *p, rr_matrix bent, rr_modes *modes)
 int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
     rr_real *drift)
 {
-    rr_matrix mass; /* and then XKX' */
+    rr_matrix mass; /* and then XKX', and what modes move */
     rr_matrix X;
-    rr_real (*const K)[RR_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    rr_real (*const K)[RR_SYSTEM] = modes->shape; /* and then unit vectors in eigenvectors of XKX' */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < RR_N; ++i) {
@@ -278,18 +279,28 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
     rr_real all = RR_R(0.0);
     for (int i = 0; i < RR_SYSTEM; ++i) {
         all += RR_FABS(mass[i][i]);
+        for (int j = 0; j < RR_SYSTEM; ++j) {
+            K[i][j] = i == j ? RR_R(1.0) : RR_R(0.0);
+        }
     }
-    if (!rr_spectrum(RR_SYSTEM, RR_EPSILON*RR_EPSILON, mass, modes->squared, K)) {
+    const rr_real none = RR_EPSILON*RR_EPSILON;
+    if (!rr_spectrum(RR_SYSTEM, none, mass, modes->squared, RR_SYSTEM, K, NULL)) {
         return RR_SINGULAR;
     }
     for (int i = 0; i < RR_SYSTEM; ++i) {
         for (int j = 0; j < RR_SYSTEM; ++j) {
             rr_real shape = RR_R(0.0);
             for (int k = j; k < RR_SYSTEM; ++k) { /* X has nothing behind its diagonal */
-                shape += X[k][j]*K[i][k];
+                shape += X[k][j]*K[k][i];
             }
-            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            mass[i][j] = shape;
         }
+    }
+    for (int i = 0; i < RR_SYSTEM; ++i) {
+        for (int j = 0; j < RR_SYSTEM; ++j) {
+            modes->shape[i][j] = mass[i][j];
+        }
+        modes->from[i] = i;
         modes->noise[i] = RR_EPSILON*all;
     }
 #if !RR_POTENTIAL
@@ -312,8 +323,7 @@ int rr_servo_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *mode
 }
 
 #if !RR_STRUCTURED
-int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes,
-    rr_real carried[RR_N])
+int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes)
 {
     rr_matrix mass;
     rr_matrix kept;
@@ -323,7 +333,6 @@ int rr_free_modes(const rr_arrival *arrival, const rr_params *p, rr_modes *modes
     int places[RR_SYSTEM];
     rr_real row[RR_SYSTEM];
     rr_real momentum[RR_SYSTEM]; /* before, at 1 m/s */
-    (void)carried;
     whole(arrival, p, mass, K);
     whole(arrival, p, kept, K);
     for (int i = 0; i < RR_SYSTEM; ++i) {

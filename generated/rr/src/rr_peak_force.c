@@ -5,7 +5,7 @@
 int rr_find_peak(const rr_region *region, const rr_params *p, rr_real speed,
     rr_impact *impact, rr_peak_force_t *out)
 {
-    rr_budget budget = {p->steps, false, RR_REAL_MAX, NULL};
+    rr_budget budget = {p->steps, false, false, RR_REAL_MAX, NULL};
     rr_peak_force_t found = {RR_R(0.0), RR_R(0.0)};
     bool bounded = false;
     int first;
@@ -21,7 +21,7 @@ int rr_find_peak(const rr_region *region, const rr_params *p, rr_real speed,
         if (impact->status != RR_OK) {
             return impact->status;
         }
-        if (!peak.ended) {
+        if (!peak.ended || peak.torn) {
             const rr_real bound = rr_bound(impact);
             if (!(bound > RR_R(0.0))) {
                 return RR_UNRESOLVED;

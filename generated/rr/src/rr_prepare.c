@@ -4,6 +4,8 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS RR_R(1.6e-2)
+/* Share of how far robot and body give way that rounding may change: a slow servo that pressed was 1.6 off. */
+#define BLURS_SPRING RR_R(4e-3)
 /*
  * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
  * inputs, 4.6 % with this, errors as before).
@@ -27,9 +29,7 @@ static void take_body_out(rr_phase *phase)
         modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
-        for (int k = 0; k < RR_SYSTEM; ++k) {
-            modes->shape[body][k] = modes->shape[last][k];
-        }
+        modes->from[body] = modes->from[last];
         modes->count = last;
     }
     phase->has_body = false;
@@ -68,7 +68,7 @@ static int modes_of(rr_impact *impact, int which)
     }
 #endif
     const int status = which == RR_LED ? led_modes(impact, phase)
-        : rr_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
+        : rr_free_modes(&impact->arrival, impact->p, &phase->modes);
     phase->known = status == RR_OK;
     impact->led = which == RR_LED ? impact->motors : impact->led;
     return status;
@@ -101,6 +101,22 @@ static rr_real blur_of(const rr_impact *impact, const rr_phase *phase, rr_real t
 }
 
 #if !RR_STRUCTURED
+/* What rounding may change of how far contact point and body give way to a force within a time, as a share of it. */
+static rr_real blur_of_spring(const rr_region *region, const rr_modes *modes, rr_real time)
+{
+    const rr_real square = time*time;
+    rr_real gives = RR_R(1.0)/region->stiffness;
+    rr_real off = RR_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const rr_real known = RR_FMAX(RR_FABS(modes->squared[i]) - modes->noise[i], RR_R(0.0));
+        const rr_real turns = RR_FMAX(known*square, RR_R(2.0));
+        const rr_real bends = modes->row[i]*modes->row[i]*square/turns;
+        gives += bends;
+        off += bends*modes->noise[i]*square/RR_FMAX(turns, RR_R(12.0));
+    }
+    return off/gives;
+}
+
 static rr_real mobility_of(const rr_modes *modes)
 {
     rr_real sum = RR_R(0.0);
@@ -123,7 +139,11 @@ static void steps_of(rr_impact *impact, int which)
 {
     rr_phase *const phase = &impact->phase[which];
     const rr_real time = time_of(impact, which);
-    phase->blurred = blur_of(impact, phase, time) > BLURS;
+    phase->blur = blur_of(impact, phase, time);
+    phase->blurred = phase->blur > BLURS;
+#if !RR_STRUCTURED
+    phase->blurred = phase->blurred || blur_of_spring(impact->region, &phase->modes, time) > BLURS_SPRING;
+#endif
     rr_phase_steps(impact, time, phase);
     const rr_real numbers[2] = {phase->level[0].h, phase->level[RR_LEVELS - 1].h};
     if (rr_check_positive(numbers, 2) != RR_OK) {
@@ -147,7 +167,8 @@ static void weigh(rr_impact *impact)
     const rr_real body = impact->gives_way ? RR_R(1.0)/impact->region->effective_mass : RR_R(0.0);
     rr_real mobility = RR_R(0.0);
 #if RR_STRUCTURED
-    impact->status = rr_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
+    impact->status = rr_mobilities(
+        &impact->arrival, impact->p, impact->phase[RR_LOOSE].modes.shape, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == RR_OK; ++k) {
         impact->status = modes_of(impact, k);
@@ -186,6 +207,7 @@ int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rr_real damped = region->damping*RR_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RR_FMAX(RR_R(1.0)/(RR_R(1.0) + RR_R(4.0)*damped), LEAST_SMOOTH);
+    impact->sure = impact->smooth < RR_HARD ? 1 : 2;
     impact->skin_rate = rr_law_stiffness(region, size)*impact->mobility;
     const rr_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!rr_all_finite(numbers, 3) || rr_check_positive(numbers, 3) != RR_OK) {

@@ -49,7 +49,7 @@ static rr_real pressed_by(rr_pressing *k, rr_real speed, rr_real matters)
     k->budget.watch = &k->watch;
     rr_impact_run(&k->impact, speed, &k->budget, &peak);
     k->peak = peak.force;
-    if (peak.ended) {
+    if (peak.ended && !peak.torn) {
         return k->watch.late;
     }
     const rr_real bound = k->impact.status == RR_OK ? rr_bound(&k->impact) : RR_R(0.0);
@@ -70,7 +70,7 @@ static bool keeps(rr_pressing *k, const rr_region *region, rr_real speed, rr_rea
         kept = rr_impact_prepare(region, &k->p, motors, limit, &k->impact) == RR_OK;
         const rr_real late = kept ? pressed_by(k, speed, CALM*limit) : RR_REAL_MAX;
         kept = late <= RR_KEPT*limit - OF_PEAK*k->peak;
-        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
+        k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }
@@ -81,6 +81,7 @@ static void prepare_pressing(const rr_params *p, rr_real until, rr_pressing *k)
     k->p.horizon = RR_FMAX(RR_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
+    k->budget.fine = false;
     k->budget.stop_above = RR_REAL_MAX;
     k->budget.watch = NULL;
     k->watch.slower = false;

@@ -3,23 +3,22 @@
 #include "rr_impact.h"
 
 /* Share of the limit at which trials aim, below RR_KEPT, and from which on one is near enough. */
-#define AIM RR_R(0.984)
+#define AIM RR_R(0.9825)
 #define NEAR_ENOUGH RR_R(0.977)
 /*
- * Smoothness below which a body damps harder than it springs back, or above which it hardly damps, so that errors grow
- * from contact to contact, and the share of the limit that counts there: forces on such bodies were up to 1.5e-2 and
- * 2e-2 too low in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors
- * hold the contact point, and the body is held, too.
+ * Smoothness above which a body hardly damps, so that errors grow from contact to contact, and the share of the limit
+ * that counts there and before a hard damper: forces on such bodies were up to 2e-2 and 1.5e-2 (1.4e-2 at 0.26) too low
+ * in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors hold the contact
+ * point, and the body is held, too.
  */
-#define HARD RR_R(0.2)
 #define HARDLY RR_R(0.99)
 #define COUNTS_ELSEWHERE RR_R(0.985)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 16
 #define APART RR_R(4e-3)
 /*
- * Where a cover ends as if it were solid the force of a law by table jumps with speed: before a body that hardly
- * damps, or where joints or servos do, from which one on is known to half a percent.
+ * Where a cover ends as if it were solid the force of a law by table jumps with speed, from which one on is known to
+ * half a percent.
  */
 #define SHORT_OF_JUMP RR_R(0.99)
 /*
@@ -28,6 +27,14 @@
  * of the speeds and more.
  */
 #define SHARES 6
+/*
+ * The last of these, and the share of a limit from which on a third or later contact (before a hard damper a second
+ * one) makes them count for other bodies, too, and shorter steps: errors grow about fivefold from contact to contact
+ * (0.5 % in a second one, 2.4 % in the third), and such forces were up to 1.05 (1.17) times the limit at nine tenths of
+ * the speed.
+ */
+#define NEAREST 3
+#define LATER RR_R(0.85)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP RR_R(8.0)
 
@@ -35,6 +42,7 @@ typedef struct {
     rr_real limit;
     rr_real low, low_force; /* the largest speed known to be safe; 0 while unknown */
     rr_real high; /* the least known not to be; 0 while unknown */
+    rr_real later; /* of the former, of contacts in doubt */
 } search;
 
 /* Next speed to try: as for two bodies that meet, unless that is known to be wrong. */
@@ -59,9 +67,10 @@ static bool try_speed(rr_impact *impact, rr_real v, bool rough, search *s,
     if (!peak.ended || rough) {
         return peak.ended && peak.force > RR_R(0.0);
     }
-    if (peak.force <= RR_KEPT*s->limit) {
+    if (peak.force <= RR_KEPT*s->limit && !peak.torn) {
         s->low = v;
         s->low_force = peak.force;
+        s->later = peak.later;
     } else {
         s->high = v;
     }
@@ -75,42 +84,44 @@ static bool is_found(const search *s, rr_real cap)
     return s->low > RR_R(0.0) && (near || jumps || (cap > RR_R(0.0) && s->low >= cap));
 }
 
-/* Searches; false if the steps do not do. */
+/* Searches, in finer steps at last where contacts in doubt matter; false if the steps do not do. */
 static bool find(rr_impact *impact, rr_real guess, rr_real cap, search *s,
     rr_budget *budget)
 {
-    rr_real v = guess;
-    rr_real force;
-    if (cap > RR_R(0.0) && !(guess < cap)) {
-        v = cap;
-    } else {
-        if (!try_speed(impact, v, true, s, budget, &force)) {
-            return false;
-        }
-        v = next_speed(impact, s, v, force);
-        v = cap > RR_R(0.0) ? RR_FMIN(v, cap) : v;
-    }
-    for (int k = 1; k < TRIALS; ++k) {
+    rr_real most = cap;
+    bool rough = guess < cap || !(cap > RR_R(0.0));
+    rr_real v = rough ? guess : cap;
+    for (int k = 0; k < TRIALS; ++k) {
+        rr_real force;
         if (!(v > RR_R(0.0) && v < RR_R(0.01)*RR_REAL_MAX)) {
             return false;
         }
-        if (!try_speed(impact, v, false, s, budget, &force)) {
+        if (!try_speed(impact, v, rough, s, budget, &force)) {
             return false;
         }
-        if (is_found(s, cap)) {
+        rough = false;
+        if (!is_found(s, most)) {
+            v = next_speed(impact, s, v, force);
+            v = most > RR_R(0.0) ? RR_FMIN(v, most) : v;
+        } else if (!budget->fine && s->later > LATER*s->limit) { /* once more */
+            budget->fine = true;
+            most = s->low;
+            v = most;
+            s->low = RR_R(0.0);
+            s->high = RR_R(0.0);
+        } else {
             return true;
         }
-        v = next_speed(impact, s, v, force);
-        v = cap > RR_R(0.0) ? RR_FMIN(v, cap) : v;
     }
     return false;
 }
 
 /*
  * Lowers a speed that was found below the slowest share of it that is not safe; where the slowest of all is none, the
- * same is done with that one, until one is or the steps do not do. False if the speed may be far too low.
+ * same is done with that one, until one is or the steps do not do. False if the speed may be far too low. Of the
+ * shares, those from one on.
  */
-static bool look_slower(rr_impact *impact, search *s, rr_budget *budget)
+static bool look_slower(rr_impact *impact, int slowest, search *s, rr_budget *budget)
 {
     static const rr_real slower[SHARES] = {RR_R(0.25), RR_R(0.45), RR_R(0.6), RR_R(0.72),
         RR_R(0.84), RR_R(0.94)};
@@ -118,11 +129,11 @@ static bool look_slower(rr_impact *impact, search *s, rr_budget *budget)
     const rr_real force = s->low_force;
     rr_real from = found;
     s->low = RR_R(0.0);
-    int k = 0; /* of them that are safe */
+    int k = slowest; /* those before are safe */
     while (k < SHARES) {
         rr_real unused;
         s->high = RR_R(0.0);
-        if (!try_speed(impact, slower[k]*from, false, s, budget, &unused) || (s->high > RR_R(0.0) && k > 0)) {
+        if (!try_speed(impact, slower[k]*from, false, s, budget, &unused) || (s->high > RR_R(0.0) && k > slowest)) {
             break;
         }
         if (s->high > RR_R(0.0)) {
@@ -138,7 +149,7 @@ static bool look_slower(rr_impact *impact, search *s, rr_budget *budget)
         s->low = found;
         s->low_force = force;
     }
-    return k > 0;
+    return k > slowest;
 }
 
 /* Whether loose motors bring too little energy for a force: rr_settled.c, w = 0 at first touch. */
@@ -151,7 +162,7 @@ static bool are_weak(const rr_impact *impact, rr_real speed, rr_real force)
 int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
     rr_real cap, rr_impact *impact, rr_safe_speed_t *found)
 {
-    rr_budget budget = {p->steps, false, limit, NULL};
+    rr_budget budget = {p->steps, false, false, limit, NULL};
     bool bounded = false;
     int first;
     int last;
@@ -168,15 +179,16 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
         }
         const bool is_held = !RR_STRUCTURED && !(impact->mobility > RR_LEAST_MOBILITY);
         const bool hardly_damps = impact->smooth > HARDLY && !is_held;
-        const rr_real counts = impact->smooth < HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
+        const rr_real counts = impact->smooth < RR_HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
         const rr_real guess = rr_two_body_speed(region, impact->mobility, AIM*counts);
-        search s = {counts, RR_R(0.0), RR_R(0.0), RR_R(0.0)};
+        search s = {counts, RR_R(0.0), RR_R(0.0), RR_R(0.0), RR_R(0.0)};
+        budget.fine = false;
         bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
-        if (region->law != NULL || hardly_damps) {
-            const bool exact = !hardly_damps && !impact->phase[impact->first].damped;
-            const rr_real share = region->law == NULL || exact ? RR_R(1.0) : SHORT_OF_JUMP;
+        const bool all_slower = region->law != NULL || hardly_damps;
+        if (all_slower || budget.fine) {
+            const rr_real share = region->law == NULL ? RR_R(1.0) : SHORT_OF_JUMP;
             s.low = is_known ? share*s.low : RR_R(0.0); /* slower speeds than what was tried are not known */
-            is_known = is_known && look_slower(impact, &s, &budget);
+            is_known = is_known && look_slower(impact, all_slower ? 0 : NEAREST, &s, &budget);
         }
         if (!is_known) {
             if (impact->status != RR_OK) {

@@ -15,6 +15,19 @@
  */
 #include "rr_state.h"
 
+/* Place and velocity of the contact point by a mode, after the force that is due. */
+static rr_real place_of(const rr_state *s, int mode)
+{
+    const rr_mode_step *const step = &s->due.level->mode[mode];
+    return s->motion->place[mode] - step->push*s->due.mean - step->late*s->due.rise;
+}
+
+static rr_real rate_of(const rr_state *s, int mode)
+{
+    const rr_mode_step *const step = &s->due.level->mode[mode];
+    return s->motion->rate[mode] - step->kick*s->due.mean - step->push*s->due.rise*s->due.level->per;
+}
+
 bool rr_is_settled(const rr_state *s, rr_real force, rr_real depth, rr_real share)
 {
     const rr_impact *const impact = s->impact;
@@ -25,12 +38,12 @@ bool rr_is_settled(const rr_state *s, rr_real force, rr_real depth, rr_real shar
     rr_real r = s->drifted;
     rr_real away = phase->drift*s->speed;
     for (int i = 0; i < modes->rigid; ++i) {
-        r += modes->row[i]*s->amplitude[i];
-        away += modes->row[i]*s->rate[i];
+        r += place_of(s, i);
+        away += rate_of(s, i);
     }
     if (impact->gives_way && body >= 0) { /* it always is */
-        r += modes->row[body]*s->amplitude[body];
-        away += modes->row[body]*s->rate[body];
+        r += place_of(s, body);
+        away += rate_of(s, body);
     }
     if (!phase->settles || !(away < RR_R(0.0))) {
         return false;
@@ -40,7 +53,9 @@ bool rr_is_settled(const rr_state *s, rr_real force, rr_real depth, rr_real shar
     rr_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
         + (is_hertz ? RR_R(0.8) : RR_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
-        twice += s->rate[i]*s->rate[i] + modes->squared[i]*s->amplitude[i]*s->amplitude[i];
+        const rr_real place = place_of(s, i);
+        const rr_real rate = rate_of(s, i);
+        twice += (rate*rate + modes->squared[i]*place*place)/(modes->row[i]*modes->row[i]);
     }
     if (phase == &impact->phase[RR_LED] && impact->last == RR_LOOSE
         && (!RR_STRUCTURED || !(away*away > twice*impact->rotors))) {

@@ -5,7 +5,8 @@
 
 #if defined(RR_USE_FLOAT)
 /* Error < 1.2e-07. */
-#define LIMIT RR_R(200.0) /* rad; angles beyond are the C library's */
+#define LIMIT RR_R(200.0) /* rad; whole turns are taken off angles beyond */
+#define TURN RR_R(6.283185307179586) /* rad; less than half a unit in an angle's last place off, however many */
 #define PER_QUARTER RR_R(0.636619772) /* quarter turns in a radian */
 #define ADDED RR_R(128.0) /* whole turns, more than the limit has */
 #define QUARTER_1 RR_R(1.5703125) /* a quarter turn in three parts, rad */
@@ -22,7 +23,8 @@ static rr_real even(rr_real z) /* (cos r - 1 + r^2/2)/r^4 */
 }
 #else
 /* Error < 2e-16. */
-#define LIMIT RR_R(100000.0) /* rad; angles beyond are the C library's */
+#define LIMIT RR_R(100000.0) /* rad; whole turns are taken off angles beyond */
+#define TURN RR_R(6.283185307179586) /* rad; less than half a unit in an angle's last place off, however many */
 #define PER_QUARTER RR_R(0.6366197723675814) /* quarter turns in a radian */
 #define ADDED RR_R(65536.0) /* whole turns, more than the limit has */
 #define QUARTER_1 RR_R(1.5707963267341256) /* a quarter turn in three parts, rad */
@@ -39,12 +41,24 @@ static rr_real even(rr_real z) /* (cos r - 1 + r^2/2)/r^4 */
 }
 #endif
 
-static void ask_library(const rr_real *x, int count, rr_real *s, rr_real *c)
+/* An angle less whole turns, each difference exact; 0, which is as near, if half a unit in its last place is half a turn. */
+static rr_real unwound(rr_real x)
 {
-    for (int i = 0; i < count; ++i) {
-        s[i] = RR_SIN(x[i]);
-        c[i] = RR_COS(x[i]);
+    const rr_real size = RR_FABS(x);
+    rr_real rest = size < RR_R(2.0)*TURN/RR_EPSILON ? size : RR_R(0.0);
+    rr_real turns = TURN;
+    bool more = turns <= RR_R(0.5)*rest;
+    int doubled = 0;
+    while (more) {
+        turns += turns;
+        ++doubled;
+        more = turns <= RR_R(0.5)*rest;
     }
+    for (int k = doubled; k >= 0; --k) {
+        rest -= rest >= turns ? turns : RR_R(0.0);
+        turns *= RR_R(0.5);
+    }
+    return x < RR_R(0.0) ? -rest : rest;
 }
 
 /*
@@ -53,25 +67,25 @@ static void ask_library(const rr_real *x, int count, rr_real *s, rr_real *c)
  */
 void rr_sines_cosines(const rr_real *x, int count, rr_real *s, rr_real *c)
 {
+    bool few = true;
     for (int i = 0; i < count; ++i) {
-        if (!(RR_FABS(x[i]) < LIMIT)) {
-            ask_library(x, count, s, c);
-            return;
-        }
+        few = few && RR_FABS(x[i]) < LIMIT;
     }
     for (int i = 0; i < count; ++i) {
-        const rr_real quarters = x[i]*PER_QUARTER + (ADDED + RR_R(0.5));
+        const rr_real angle = few ? x[i] : unwound(x[i]);
+        const rr_real quarters = angle*PER_QUARTER + (ADDED + RR_R(0.5));
         const int nearest = (int)quarters;
         const unsigned int quarter = (unsigned int)nearest;
         const rr_real k = (rr_real)nearest - ADDED;
-        const rr_real about = (x[i] - k*QUARTER_1) - k*QUARTER_2;
+        const rr_real about = (angle - k*QUARTER_1) - k*QUARTER_2;
         const rr_real r = about - k*QUARTER_3;
         const rr_real z = r*r;
         const rr_real sine = r + r*z*odd(z);
         const rr_real cosine = RR_R(1.0) - RR_R(0.5)*z + z*z*even(z);
         const rr_real first = (quarter & 1u) != 0u ? cosine : sine;
         const rr_real second = (quarter & 1u) != 0u ? sine : cosine;
-        s[i] = (quarter & 2u) != 0u ? -first : first;
-        c[i] = ((quarter + 1u) & 2u) != 0u ? -second : second;
+        const rr_real end = few ? RR_R(0.0) : RR_R(0.0)*x[i]; /* not a number unless x is finite */
+        s[i] = ((quarter & 2u) != 0u ? -first : first) + end;
+        c[i] = (((quarter + 1u) & 2u) != 0u ? -second : second) + end;
     }
 }

@@ -10,11 +10,10 @@
 #include "rr_impact.h"
 
 /*
- * Steps of QR, which takes one an eigenvalue to four digits and two to all: of 60,000 compliances of seven joints
- * none took more than 13, of as many servos of 14 coordinates none more than 30. What is not done by then fails.
+ * Steps of QR to all digits, about two an eigenvalue: of 60,000 servos of 14 coordinates none took more than 30.
+ * What is not done by then fails.
  */
-#define MOST_STEPS(size) (2*(size) + 2)
-#define MOST_STEPS_TO_ALL_DIGITS(size) (3*(size))
+#define MOST_STEPS(size) (3*(size))
 
 /* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
 static void turn(int first, int size, const rr_real *v, rr_real scale, rr_matrix A)
@@ -42,62 +41,69 @@ static void turn(int first, int size, const rr_real *v, rr_real scale, rr_matrix
     }
 }
 
-/*
- * Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. Of each
- * reflection, v stays in A's own row.
- */
-static void reflect(int size, rr_matrix A, rr_real *d, rr_real *e, rr_matrix Q)
+/* The same of a vector. */
+static void mirror(int first, int size, const rr_real *v, rr_real scale, rr_real *x)
 {
-    rr_real scale[RR_SYSTEM]; /* 2/v'v */
+    rr_real along = RR_R(0.0);
+    for (int i = first; i < size; ++i) {
+        along += x[i]*v[i];
+    }
+    along *= scale;
+    for (int i = first; i < size; ++i) {
+        x[i] -= along*v[i];
+    }
+}
+
+/* Turns a vector by the rotations of one step. */
+static void turn_on(int first, int last, const rr_rotation *by, rr_real *x)
+{
+    rr_real here = x[first];
+    for (int k = first; k < last; ++k) {
+        const rr_real c = by[k - first].c;
+        const rr_real s = by[k - first].s;
+        const rr_real next = x[k + 1];
+        x[k] = c*here + s*next;
+        here = c*next - s*here;
+    }
+    x[last] = here;
+}
+
+/* Reflects A to three diagonals d and e, and vectors with it. Of each reflection, v stays in A's own row. */
+static void reflect(int size, rr_matrix A, rr_real *d, rr_real *e, int count, rr_vectors x,
+    rr_turns *turns)
+{
     for (int k = 0; k + 1 < size; ++k) {
         rr_real *const v = A[k];
         const rr_real first = v[k + 1];
         rr_real square = RR_R(0.0);
+        rr_real scale = RR_R(0.0); /* 2/v'v */
         for (int i = k + 2; i < size; ++i) {
             square += v[i]*v[i];
         }
         d[k] = v[k];
         e[k] = first;
-        scale[k] = RR_R(0.0);
         if (square > RR_R(0.0)) {
             const rr_real length = RR_SQRT(square + first*first);
             e[k] = first > RR_R(0.0) ? -length : length;
             v[k + 1] = first - e[k];
-            scale[k] = RR_R(1.0)/(length*(length + RR_FABS(first)));
-            turn(k + 1, size, v, scale[k], A);
+            scale = RR_R(1.0)/(length*(length + RR_FABS(first)));
+            turn(k + 1, size, v, scale, A);
+            for (int m = 0; m < count; ++m) {
+                mirror(k + 1, size, v, scale, x[m]);
+            }
+        }
+        if (turns != NULL) {
+            turns->scale[k] = scale;
+            for (int i = k + 1; i < size; ++i) {
+                turns->v[k][i] = v[i];
+            }
         }
     }
     d[size - 1] = A[size - 1][size - 1];
-    Q[size - 1][size - 1] = RR_R(1.0);
-    for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
-        const rr_real *const v = A[k];
-        const int next = k + 1; /* row and column that were none but for a 1 where they meet */
-        const rr_real lead = scale[k]*v[next];
-        Q[next][next] = RR_R(1.0) - lead*v[next];
-        for (int j = next + 1; j < size; ++j) {
-            Q[next][j] = -lead*v[j];
-        }
-        for (int i = next + 1; i < size; ++i) {
-            rr_real along = RR_R(0.0);
-            for (int j = next + 1; j < size; ++j) {
-                along += Q[i][j]*v[j];
-            }
-            along *= scale[k];
-            for (int j = next + 1; j < size; ++j) {
-                Q[i][j] -= along*v[j];
-            }
-            Q[i][next] = -along*v[next];
-        }
-    }
-    Q[0][0] = RR_R(1.0);
-    for (int i = 1; i < size; ++i) {
-        Q[0][i] = RR_R(0.0);
-        Q[i][0] = RR_R(0.0);
-    }
 }
 
-/* One QR step on rows first to last; turns the rows of Q, too. */
-static void chase(int first, int last, int size, rr_real *d, rr_real *e, rr_matrix Q)
+/* One QR step on rows first to last; writes its rotations. */
+static void chase(int first, int last, rr_real *d, rr_real *e, rr_rotation *by)
 {
     const rr_real end = e[last - 1];
     const rr_real half = RR_R(0.5)*(d[last - 1] - d[last]);
@@ -122,7 +128,8 @@ static void chase(int first, int last, int size, rr_real *d, rr_real *e, rr_matr
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        rr_turn(size, c, s, Q[k], Q[k + 1]);
+        by[k - first].c = c;
+        by[k - first].s = s;
     }
 }
 
@@ -132,29 +139,124 @@ static bool counts(int row, const rr_real *d, const rr_real *e, rr_real small, r
     return e[row]*e[row] > noise + small*RR_FABS(d[row]*d[row + 1]);
 }
 
-bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, rr_matrix vectors)
+bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, int count, rr_vectors x,
+    rr_turns *turns)
 {
     rr_real e[RR_SYSTEM];
+    rr_rotation passing[RR_SYSTEM]; /* of a step, where they are not kept */
+    int kept = 0;
     rr_real all = RR_R(0.0);
-    reflect(size, A, values, e, vectors);
+    reflect(size, A, values, e, count, x, turns);
     for (int i = 0; i < size; ++i) {
         all += RR_FABS(values[i]);
     }
     const rr_real noise = RR_EPSILON*RR_EPSILON*all*all;
     int last = size - 1;
-    const int most = small > RR_EPSILON ? MOST_STEPS(size) : MOST_STEPS_TO_ALL_DIGITS(size);
+    const int most = turns != NULL ? RR_MOST_STEPS : MOST_STEPS(size);
     for (int step = 0; step <= most; ++step) {
         while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
         }
         if (last == 0) {
+            if (turns != NULL) {
+                turns->steps = step;
+                turns->count = kept;
+            }
             return true;
         }
         int first = last - 1;
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
-        chase(first, last, size, values, e, vectors);
+        rr_rotation *by = passing;
+        if (turns != NULL) {
+            if (step == most || kept + last - first > RR_MOST_TURNS) {
+                return false;
+            }
+            by = &turns->by[kept];
+            turns->first[step] = (unsigned char)first;
+            turns->last[step] = (unsigned char)last;
+            kept += last - first;
+        }
+        chase(first, last, values, e, by);
+        for (int m = 0; m < count; ++m) {
+            turn_on(first, last, by, x[m]);
+        }
     }
     return false;
 }
+
+#if RR_STRUCTURED
+/* x -= scale (v'x) v of two vectors. */
+static void mirror_both(int first, const rr_real *v, rr_real scale, rr_real *x, rr_real *y)
+{
+    rr_real along_x = RR_R(0.0);
+    rr_real along_y = RR_R(0.0);
+    for (int i = first; i < RR_N; ++i) {
+        const rr_real vi = v[i];
+        along_x += x[i]*vi;
+        along_y += y[i]*vi;
+    }
+    along_x *= scale;
+    along_y *= scale;
+    for (int i = first; i < RR_N; ++i) {
+        const rr_real vi = v[i];
+        x[i] -= along_x*vi;
+        y[i] -= along_y*vi;
+    }
+}
+
+void rr_to_modes(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
+{
+    const rr_rotation *by = turns->by;
+    for (int k = 0; k + 2 < RR_N; ++k) {
+        mirror_both(k + 1, turns->v[k], turns->scale[k], x, y);
+    }
+    for (int step = 0; step < turns->steps; ++step) {
+        const int first = turns->first[step];
+        const int last = turns->last[step];
+        rr_real x0 = x[first];
+        rr_real y0 = y[first];
+        for (int k = first; k < last; ++k) {
+            const rr_real c = by->c;
+            const rr_real s = by->s;
+            const rr_real x1 = x[k + 1];
+            const rr_real y1 = y[k + 1];
+            x[k] = c*x0 + s*x1;
+            y[k] = c*y0 + s*y1;
+            x0 = c*x1 - s*x0;
+            y0 = c*y1 - s*y0;
+            ++by;
+        }
+        x[last] = x0;
+        y[last] = y0;
+    }
+}
+
+void rr_from_modes(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
+{
+    const rr_rotation *by = &turns->by[turns->count];
+    for (int step = turns->steps - 1; step >= 0; --step) {
+        const int first = turns->first[step];
+        const int last = turns->last[step];
+        rr_real x1 = x[last];
+        rr_real y1 = y[last];
+        for (int k = last - 1; k >= first; --k) {
+            --by;
+            const rr_real c = by->c;
+            const rr_real s = by->s;
+            const rr_real x0 = x[k];
+            const rr_real y0 = y[k];
+            x[k + 1] = c*x1 + s*x0;
+            y[k + 1] = c*y1 + s*y0;
+            x1 = c*x0 - s*x1;
+            y1 = c*y0 - s*y1;
+        }
+        x[first] = x1;
+        y[first] = y1;
+    }
+    for (int k = RR_N - 3; k >= 0; --k) {
+        mirror_both(k + 1, turns->v[k], turns->scale[k], x, y);
+    }
+}
+#endif

@@ -8,15 +8,30 @@
 /* What the next step takes of those before it, and of its own length. */
 typedef struct {
     rr_real ratio; /* of its length to the last one's */
-    rr_real share, more, before; /* of the bend, see rr_press */
-    rr_real u, u_before; /* in u', 1/s */
+    rr_real share, whole, before; /* of the bend, see rr_press */
+    rr_real u, u_before, u_third; /* in c u' */
+    rr_real stays, grows; /* by how much less a force presses that stays, and more one that has not grown yet */
     rr_real hold, soft, yields; /* depth hold + soft f = what presses; x gives way by yields f */
+    rr_real per_hold, cubic; /* of Hertz's law, see root_of */
 } rr_pace;
+
+/* What each mode moves the contact point by, m, and how fast. */
+typedef struct {
+    rr_real place[RR_MODES], rate[RR_MODES];
+} rr_motion;
+
+/* The force over a step, on average and by how much it grew, which modes are yet to feel. */
+typedef struct {
+    const rr_level *level;
+    rr_real mean, rise;
+} rr_due;
 
 typedef struct {
     rr_impact *impact;
+    const rr_region *region;
     const rr_phase *phase;
     rr_real speed;
+    bool all_count; /* forces below the largest so far, too */
     rr_real scale; /* of forces, N */
     const rr_level *step; /* of the next one's length */
     int level;
@@ -25,14 +40,16 @@ typedef struct {
     int ticks; /* of the shortest step, until the phase is over */
     rr_real time;
     rr_real drift, drifted; /* by the motors, m/s and m */
-    rr_real amplitude[RR_MODES], rate[RR_MODES];
+    rr_motion *motion, *trial; /* at the last node, but for what is due; and after a step on trial */
+    rr_motion motions[2]; /* where they are */
+    rr_due due;
     rr_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
     int past; /* steps since the touch */
-    rr_real h, h_before, x; /* last steps, contact point */
-    rr_real bump; /* what the bend adds to the force on average of the last step */
+    rr_real h, h_before, per, x; /* last steps, contact point */
+    rr_real bump, bent; /* what the bend adds to the force on average of the last step; the bend as it matters */
     rr_real f, rise; /* force, and by how much it grew in the last step */
-    rr_real u, u_before; /* deformation of the skin and of what stands */
+    rr_real u, u_before, u_third; /* deformation of the skin and of what stands */
     rr_real now, root; /* depth of the skin, and its root under Hertz's law */
     rr_real rest; /* deflection of the body out of contact */
     rr_real depth; /* of the skin at the largest force so far */
@@ -58,9 +75,8 @@ bool rr_pass(const rr_state *s, rr_watch *watch);
 
 /* A step on trial. */
 typedef struct {
-    rr_real amplitude[RR_MODES], rate[RR_MODES];
     rr_real x, v; /* of the contact point without the force at the end */
-    rr_real f, bump, base, share; /* force at the end; what its bend adds on the way */
+    rr_real f, bump, mean; /* force at the end; what its bend adds; force on average, less half its rise */
     rr_real u, depth, root;
 } rr_trial;
 
@@ -69,11 +85,16 @@ void rr_phase_begin(const rr_phase *phase, int level, rr_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate);
-/* Rates of modes, damped until halfway through the next step. */
-void rr_damp_ahead(const rr_state *s, rr_real *rate);
+/* Rates of modes after all that is due, damped until halfway through the next step. */
+void rr_damp_ahead(rr_state *s, rr_real *rate);
+/* What of the contact point's velocity is damped in the other half of a step, which begins with such rates. */
+rr_real rr_owed_slip(const rr_state *s, const rr_real *rate);
 
-/* Moves all modes by a step without forces. */
-void rr_glide(const rr_state *s, rr_trial *t);
+/* Moves all modes by a step without forces, on trial. */
+void rr_glide(rr_state *s, rr_trial *t);
+
+/* Lets modes feel what is due. */
+void rr_feel(rr_state *s);
 
 /* Finds the force at the end of a step in contact; 0 where robot and body part. */
 void rr_press(rr_state *s, rr_trial *t);
@@ -82,13 +103,13 @@ void rr_press(rr_state *s, rr_trial *t);
  * Largest force of a law through points within the step, as if it did not slow down robot and body more on the
  * way: a law that gets stiff between two nodes may press hard there and show at neither.
  */
-rr_real rr_force_between(const rr_state *s, const rr_trial *t);
+rr_real rr_force_between(rr_state *s, const rr_trial *t);
 
 /* What the damper's force at the end may be off where the skin gets stiff within the step, as u' is a difference. */
 rr_real rr_slip_off(const rr_state *s, const rr_trial *t);
 
-/* Takes the step: forces that are linear over it, with the mean of what the bend adds. */
-void rr_take(const rr_trial *t, rr_state *s);
+/* Takes the step: its force, `mean` less half its rise on average, is due. */
+void rr_take(rr_state *s, rr_real mean, rr_real rise);
 
 /* Goes over from motors that drive or servo to loose ones. */
 void rr_release(rr_state *s);

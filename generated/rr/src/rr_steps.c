@@ -29,6 +29,11 @@
  */
 #define JUMPS RR_R(0.1)
 #define JUMP_STEP RR_R(24.0)
+/*
+ * Least that a mode moves the contact point by, as a share of all that moves it: as modes are followed by that, one
+ * that hardly does must not be lost, and so little is not felt.
+ */
+#define LEAST_ROW RR_R(1e-6)
 /* Steps counted; more than any budget has. */
 #define MOST RR_R(1e6)
 
@@ -38,6 +43,7 @@ static void exchange(rr_modes *modes, int i, int j)
     const rr_real noise = modes->noise[i];
     const rr_real row = modes->row[i];
     const rr_real start = modes->start[i];
+    const int from = modes->from[i];
     modes->squared[i] = modes->squared[j];
     modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
@@ -46,11 +52,8 @@ static void exchange(rr_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < RR_SYSTEM; ++k) {
-        const rr_real shape = modes->shape[i][k];
-        modes->shape[i][k] = modes->shape[j][k];
-        modes->shape[j][k] = shape;
-    }
+    modes->from[i] = modes->from[j];
+    modes->from[j] = from;
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
@@ -107,43 +110,37 @@ static void mode_steps(rr_phase *phase)
 {
     const rr_modes *const modes = &phase->modes;
     const rr_real one = RR_R(1.0);
-    rr_real h = phase->level[RR_LEVELS - 1].h;
-    rr_real sine[RR_MODES]; /* sin(wh)/w */
-    rr_real push[RR_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
-    rr_real late[RR_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    const rr_real h = phase->level[RR_LEVELS - 1].h;
     for (int i = 0; i < phase->active; ++i) {
-        const rr_real t = modes->squared[i]*h*h;
-        late[i] = h*h*(one/RR_R(6.0) - t*(one/RR_R(120.0) - t*(one/RR_R(5040.0) - t/RR_R(362880.0))));
-        push[i] = h*h*(RR_R(0.5) - t*(one/RR_R(24.0) - t*(one/RR_R(720.0) - t/RR_R(40320.0))));
-        sine[i] = h*(one - modes->squared[i]*late[i]);
-    }
-    for (int k = RR_LEVELS - 1; k >= 0; --k) {
-        rr_level *const level = &phase->level[k];
-        const rr_real per = one/h;
-        rr_real pushes = RR_R(0.0);
-        rr_real lates = RR_R(0.0);
-        rr_real kicks = RR_R(0.0);
-        for (int i = 0; i < phase->active; ++i) {
+        const rr_real squared = modes->squared[i];
+        const rr_real weight = modes->row[i]*modes->row[i];
+        const rr_real t = squared*h*h;
+        rr_real late = h*h*(one/RR_R(6.0)
+            - t*(one/RR_R(120.0) - t*(one/RR_R(5040.0) - t/RR_R(362880.0)))); /* (wh - sin(wh))/(w^3 h) */
+        rr_real push = h*h*(RR_R(0.5)
+            - t*(one/RR_R(24.0) - t*(one/RR_R(720.0) - t/RR_R(40320.0)))); /* (1 - cos(wh))/w^2 */
+        rr_real sine = h*(one - squared*late); /* sin(wh)/w */
+        for (int k = RR_LEVELS - 1; k >= 0; --k) {
+            rr_level *const level = &phase->level[k];
             rr_mode_step *const step = &level->mode[i];
-            const rr_real row = modes->row[i];
-            const rr_real cosine = one - modes->squared[i]*push[i];
+            const rr_real cosine = one - squared*push;
             step->cosine = cosine;
-            step->sine = sine[i];
-            step->back = -modes->squared[i]*sine[i];
-            step->push = row*push[i];
-            step->late = row*late[i];
-            pushes += row*step->push;
-            lates += row*step->late;
-            kicks += row*row*sine[i];
-            late[i] += sine[i]*push[i]*per;
-            push[i] = RR_R(2.0)*sine[i]*sine[i];
-            sine[i] *= RR_R(2.0)*cosine;
+            step->sine = sine;
+            step->back = -squared*sine;
+            step->push = weight*push;
+            step->late = weight*late;
+            step->kick = weight*sine;
+            level->push += step->push;
+            level->late += step->late;
+            level->kick += step->kick;
+            late += sine*push*level->per;
+            push = RR_R(2.0)*sine*sine;
+            sine *= RR_R(2.0)*cosine;
         }
-        level->per = per;
-        level->push = pushes;
-        level->late = lates;
-        level->kick = kicks;
-        h += h;
+    }
+    for (int k = 0; k < RR_LEVELS; ++k) {
+        rr_level *const level = &phase->level[k];
+        level->grow = level->push*level->per;
     }
 }
 
@@ -161,12 +158,17 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
         modes->noise[body] = RR_R(0.0);
         modes->row[body] = RR_R(1.0)/RR_SQRT(region->effective_mass);
         modes->start[body] = RR_R(0.0);
+        modes->from[body] = body;
         for (int k = 0; k < RR_SYSTEM; ++k) {
             modes->shape[body][k] = RR_R(0.0);
         }
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
+    const rr_real least = LEAST_ROW*RR_SQRT(impact->mobility);
+    for (int i = 0; i < modes->count; ++i) {
+        modes->row[i] = RR_FABS(modes->row[i]) > least ? modes->row[i] : least;
+    }
     const rr_real end = RR_R(1.0)/RR_HORIZON(impact->p);
     let_stand(impact, RR_FMAX(contact, end*end), released, phase);
     rr_real moving = RR_R(0.0);
@@ -186,11 +188,19 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const rr_real h = wanted < MOST ? time/(rr_real)phase->steps : RR_R(1.0)/rate;
     phase->longest_pressed = share*contact*h*h > PRESSED_STEP*PRESSED_STEP ? 1 : 0;
-    phase->level[0].h = h;
-    for (int k = 1; k < RR_LEVELS; ++k) {
-        phase->level[k].h = RR_R(0.5)*phase->level[k - 1].h;
+    rr_real shortest = h;
+    rr_real per = RR_R(1.0)/h;
+    for (int k = 0; k < RR_LEVELS; ++k) {
+        rr_level *const level = &phase->level[k];
+        level->h = shortest;
+        level->per = per;
+        level->push = RR_R(0.0);
+        level->late = RR_R(0.0);
+        level->kick = RR_R(0.0);
+        shortest *= RR_R(0.5);
+        per += per;
     }
-    const rr_real shortest = region->stiffness*phase->level[RR_LEVELS - 1].h;
+    shortest = region->stiffness*phase->level[RR_LEVELS - 1].h;
     rr_real relax = region->damping > RR_R(0.0)
         ? RR_EXP(-RR_FMIN(shortest/region->damping, RR_R(80.0))) : RR_R(0.0);
     for (int k = RR_LEVELS - 1; k >= 0; --k) {
@@ -198,5 +208,8 @@ void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase)
         relax *= relax;
     }
     mode_steps(phase);
+    if (phase->damped) {
+        rr_slow_contact(phase);
+    }
     phase->ready = true;
 }

@@ -82,12 +82,14 @@ static void find_axes(hardest *w)
     const rr_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     rr_matrix square;
+    rr_real unit[RR_REACH][RR_SYSTEM]; /* vectors */
     rr_real values[RR_SYSTEM];
     for (int k = 0; k < RR_REACH; ++k) {
         for (int l = 0; l < RR_REACH; ++l) {
             const rr_real *const a = rr_directions[k];
             const rr_real *const b = rr_directions[l];
             square[k][l] = RR_R(0.0);
+            unit[k][l] = k == l ? RR_R(1.0) : RR_R(0.0);
             for (int i = 0; i < RR_N; ++i) {
                 const rr_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
                 const rr_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
@@ -95,12 +97,15 @@ static void find_axes(hardest *w)
             }
         }
     }
-    if (!rr_spectrum(RR_REACH, RR_EPSILON*RR_EPSILON, square, values, w->axes)) {
+    if (!rr_spectrum(RR_REACH, RR_EPSILON*RR_EPSILON, square, values, RR_REACH, unit, NULL)) {
         w->unknown = true;
         return;
     }
     w->least = 0;
-    for (int k = 1; k < RR_REACH; ++k) {
+    for (int k = 0; k < RR_REACH; ++k) {
+        for (int l = 0; l < RR_REACH; ++l) {
+            w->axes[k][l] = unit[l][k];
+        }
         w->least = values[k] < values[w->least] ? k : w->least;
     }
 }

@@ -4,8 +4,13 @@
 
 /* Squared share of n that may point where motors never move the contact point. */
 #define OUTSIDE UR5E_R(1e-6)
-/* Most that the speed along n may err by where motors can hardly move the contact point that way. */
+/*
+ * Most that the velocity may be off n where motors can hardly move the contact point that way: aside, too, which tells
+ * where they cannot and a pivot of rounding says that they can.
+ */
 #define ASTRAY UR5E_R(1e-3)
+/* Share of all squared motions of the contact point from which on no pivot is weak enough for that. */
+#define WEAK UR5E_R(1e-3)
 /* Share of all squared motions of the contact point below which a pivot is rounding of their sums. */
 #define ROUNDING (UR5E_R(8.0)*UR5E_EPSILON)
 #define MOST_STEPS 1000000
@@ -56,6 +61,7 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
     ur5e_matrix square;
     ur5e_real moved[UR5E_REACH][UR5E_N];
     ur5e_real share[UR5E_SYSTEM];
+    ur5e_real wanted[UR5E_REACH];
     ur5e_real within = UR5E_R(0.0);
     ur5e_real whole = UR5E_R(0.0); /* of which a pivot of rounding is no motion */
     for (int i = 0; i < UR5E_N; ++i) {
@@ -64,6 +70,7 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
     for (int k = 0; k < UR5E_REACH; ++k) {
         const ur5e_real *const d = ur5e_directions[k];
         share[k] = d[0]*u[0] + d[1]*u[1] + d[2]*u[2];
+        wanted[k] = share[k];
         within += share[k]*share[k];
         for (int i = 0; i < UR5E_N; ++i) {
             moved[k][i] = ur5e_has_motor[i] ? d[0]*J[0][i] + d[1]*J[1][i] + d[2]*J[2][i] : UR5E_R(0.0);
@@ -81,15 +88,17 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
     if (!(within > UR5E_R(1.0) - OUTSIDE) || !ur5e_cholesky(UR5E_REACH, square)) {
         return UR5E_SINGULAR;
     }
+    ur5e_real least = whole;
     for (int k = 0; k < UR5E_REACH; ++k) {
-        if (!(square[k][k]*square[k][k] > ROUNDING*whole)) {
-            return UR5E_SINGULAR;
-        }
+        least = UR5E_FMIN(least, square[k][k]*square[k][k]);
+    }
+    if (!(least > ROUNDING*whole)) {
+        return UR5E_SINGULAR;
     }
     ur5e_forward(UR5E_REACH, square, share);
     ur5e_backward(UR5E_REACH, square, share);
     ur5e_real fast = UR5E_R(0.0);
-    ur5e_real along = UR5E_R(0.0);
+    ur5e_real astray = UR5E_R(0.0);
     for (int i = 0; i < UR5E_N; ++i) {
         ur5e_real rate = UR5E_R(0.0);
         for (int k = 0; k < UR5E_REACH; ++k) {
@@ -97,9 +106,15 @@ int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)
         }
         arrival->rates[i] = rate;
         fast += rate*rate;
-        along += rate*arrival->row[i];
     }
-    return fast < UR5E_FASTEST && UR5E_FABS(along - UR5E_R(1.0)) < ASTRAY ? UR5E_OK : UR5E_SINGULAR;
+    for (int k = 0; k < UR5E_REACH && least < WEAK*whole; ++k) {
+        ur5e_real missed = wanted[k];
+        for (int i = 0; i < UR5E_N; ++i) {
+            missed -= moved[k][i]*arrival->rates[i];
+        }
+        astray += missed*missed;
+    }
+    return fast < UR5E_FASTEST && astray < ASTRAY*ASTRAY ? UR5E_OK : UR5E_SINGULAR;
 }
 
 int ur5e_set_off(const ur5e_real q[UR5E_JOINTS], const ur5e_real dq[UR5E_JOINTS],

@@ -4,8 +4,8 @@
  *
  * Skin and body in series: f(d) = k_h s + c_h s' with s = x - u, where x is how far the contact point
  * has come, u = d + (compliance of modes that stand) f, and f(d) = k_f d^1.5 or a law of ur5e_law.c. x' is
- * exact at every node and u' a backward difference, so that no damping makes it unstable. The force is
- * quadratic between nodes; steps are halved where it bends too much for that.
+ * exact at every node and u' a difference of the last four nodes, so that no damping makes it unstable. The force
+ * is quadratic between nodes; steps are halved where it bends too much for that.
  */
 #include "ur5e_state.h"
 
@@ -23,26 +23,49 @@
 /* Parts of a step between which a law through points is looked at. */
 #define PLACES 4
 
-void ur5e_glide(const ur5e_state *s, ur5e_trial *t)
+void ur5e_feel(ur5e_state *s)
+{
+    ur5e_motion *const motion = s->motion;
+    const ur5e_level *const level = s->due.level;
+    const ur5e_real slope = s->due.rise*level->per;
+    for (int i = 0; i < s->phase->active; ++i) {
+        const ur5e_mode_step *const step = &level->mode[i];
+        motion->place[i] -= step->push*s->due.mean + step->late*s->due.rise;
+        motion->rate[i] -= step->kick*s->due.mean + step->push*slope;
+    }
+    s->due.mean = UR5E_R(0.0);
+    s->due.rise = UR5E_R(0.0);
+}
+
+void ur5e_glide(ur5e_state *s, ur5e_trial *t)
 {
     const ur5e_phase *const phase = s->phase;
     const ur5e_level *const level = s->step;
-    const ur5e_real *rate = s->rate;
     ur5e_real damped[UR5E_MODES];
+    ur5e_real v = s->drift;
     if (phase->damped) {
         ur5e_damp_ahead(s, damped);
-        rate = damped;
+        v -= ur5e_owed_slip(s, damped);
     }
+    const ur5e_motion *const motion = s->motion;
+    const ur5e_real *const rate = phase->damped ? damped : motion->rate;
+    ur5e_motion *const next = s->trial;
+    const ur5e_level *const felt = s->due.level;
+    const ur5e_real mean = s->due.mean;
+    const ur5e_real rise = s->due.rise;
+    const ur5e_real slope = rise*felt->per;
     ur5e_real x = s->drifted + s->drift*level->h;
-    ur5e_real v = s->drift;
     for (int i = 0; i < phase->active; ++i) {
+        const ur5e_mode_step *const due = &felt->mode[i];
         const ur5e_mode_step *const step = &level->mode[i];
-        const ur5e_real a = s->amplitude[i];
-        const ur5e_real b = rate[i];
-        t->amplitude[i] = step->cosine*a + step->sine*b;
-        t->rate[i] = step->back*a + step->cosine*b;
-        x += phase->modes.row[i]*t->amplitude[i];
-        v += phase->modes.row[i]*t->rate[i];
+        const ur5e_real a = motion->place[i] - due->push*mean - due->late*rise;
+        const ur5e_real b = rate[i] - due->kick*mean - due->push*slope;
+        const ur5e_real place = step->cosine*a + step->sine*b;
+        const ur5e_real velocity = step->back*a + step->cosine*b;
+        next->place[i] = place;
+        next->rate[i] = velocity;
+        x += place;
+        v += velocity;
     }
     t->x = x;
     t->v = v;
@@ -71,106 +94,116 @@ static ur5e_real root_of(ur5e_real depth, ur5e_real cubic, ur5e_real guess)
     return u;
 }
 
-/* What steps of one length have in common, as far as those before them were as long. */
+/*
+ * What steps of one length have in common, as far as those before them were as long. Of the skin's u the slope is that
+ * of the polynomial through the last four nodes, or three where there are no more since the touch or the step is the
+ * first of its length: just after a touch u is no cubic yet, and a later contact was 1.2 % too weak by that.
+ */
 static void set_pace(ur5e_state *s)
 {
-    const ur5e_region *const region = s->impact->region;
+    const ur5e_region *const region = s->region;
     const ur5e_level *const level = s->step;
     const ur5e_real one = UR5E_R(1.0);
+    const ur5e_real h = level->h;
+    const ur5e_real rate = level->per;
+    const ur5e_real damping = region->damping;
     ur5e_pace *const pace = &s->pace;
     ur5e_real ratio = UR5E_R(0.0);
     ur5e_real more = one; /* of the bend at the last node is that halfway, less that of the one before */
+    ur5e_real more_u = UR5E_R(0.0); /* of u' by a node of u more, 1/s: by what the end adds */
+    ur5e_real more_before = UR5E_R(0.0);
+    ur5e_real third = UR5E_R(0.0);
     pace->before = UR5E_R(0.0);
     if (s->past > 0) {
-        ratio = level->h/s->h;
+        ratio = h*s->per;
         if (s->past > 1) {
-            const ur5e_real lead = (UR5E_R(0.5)*level->h + s->h)/(level->h + s->h + s->h_before);
+            const ur5e_real both = s->h + s->h_before;
+            const ur5e_real lead = (UR5E_R(0.5)*h + s->h)/(h + both);
             more += lead;
             pace->before = lead*ratio*ratio;
+            if (s->even > 0) {
+                more_u = one/(h + both);
+                more_before = ratio/s->h_before;
+                third = h*(h + s->h)/((h + both)*both*s->h_before);
+            }
         }
     }
-    const ur5e_real rate = level->per;
     const ur5e_real early = ratio/(one + ratio);
+    const ur5e_real lag = (one + early)*rate + more_u;
     pace->ratio = ratio;
     pace->share = early/UR5E_R(6.0);
-    pace->more = more;
-    const ur5e_real lag = (one + early)*rate;
-    pace->u = (one + ratio)*rate;
-    pace->u_before = ratio*early*rate;
-    const ur5e_real share = pace->share*more;
-    pace->yields = level->late - share*level->push;
-    const ur5e_real slows = level->push*rate - share*level->kick;
-    pace->hold = region->stiffness + region->damping*lag;
-    pace->soft = one + region->stiffness*pace->yields + region->damping*slows + pace->hold*s->phase->compliance;
+    pace->whole = pace->share*more;
+    pace->u_before = damping*(ratio*early*rate + more_before);
+    pace->u_third = damping*third;
+    pace->u = damping*lag + pace->u_before - pace->u_third;
+    pace->stays = region->stiffness*level->push + damping*level->kick;
+    pace->grows = region->stiffness*level->late + damping*level->grow;
+    pace->yields = level->late - pace->whole*level->push;
+    pace->hold = region->stiffness + damping*lag;
+    pace->soft = one + pace->grows - pace->whole*pace->stays + pace->hold*s->phase->compliance;
+    pace->per_hold = one/pace->hold;
+    pace->cubic = region->hertz_stiffness*pace->soft*pace->per_hold;
 }
 
 void ur5e_press(ur5e_state *s, ur5e_trial *t)
 {
-    const ur5e_region *const region = s->impact->region;
-    const ur5e_phase *const phase = s->phase;
+    const ur5e_region *const region = s->region;
     const ur5e_level *const level = s->step;
     const ur5e_pace *const pace = &s->pace;
     if (s->even < LIKE) {
         set_pace(s);
     }
-    const ur5e_real plain = pace->share*(s->f + pace->ratio*s->rise);
-    t->share = pace->more*pace->share;
-    t->base = pace->more*plain - pace->before*s->bump;
-    const ur5e_real first = s->f + t->base;
-    const ur5e_real x = t->x - level->push*first + level->late*s->f; /* a force that falls to its base */
-    const ur5e_real v = t->v - level->kick*first + level->push*level->per*s->f;
-    const ur5e_real slip = v + pace->u*s->u - pace->u_before*s->u_before; /* less what u' gains by u */
-    const ur5e_real pressed = region->stiffness*x + region->damping*slip;
-    t->root = UR5E_R(0.0);
+    const ur5e_real straight_on = s->f + pace->ratio*s->rise;
+    const ur5e_real mean = s->f + pace->whole*straight_on - pace->before*s->bump; /* were there no force at the end */
+    const ur5e_real pressed = region->stiffness*t->x + region->damping*t->v - pace->stays*mean + pace->grows*s->f
+        + pace->u*s->u - pace->u_before*s->u_before + pace->u_third*s->u_third;
+    t->x += level->late*s->f;
     if (pressed > UR5E_R(0.0)) {
         if (region->law == NULL) {
-            const ur5e_real per = UR5E_R(1.0)/pace->hold;
-            t->root = root_of(pressed*per, region->hertz_stiffness*pace->soft*per, s->root);
+            t->root = root_of(pressed*pace->per_hold, pace->cubic, s->root);
             t->depth = t->root*t->root;
             t->f = region->hertz_stiffness*t->root*t->depth;
         } else {
+            t->root = UR5E_R(0.0);
             t->f = ur5e_law_press(region, pace->hold, pace->soft, pressed, &t->depth);
         }
-        t->u = t->depth + phase->compliance*t->f;
-        t->x = x - pace->yields*t->f;
-        t->bump = plain - pace->share*t->f;
+        t->u = t->depth + s->phase->compliance*t->f;
+        t->x -= level->push*mean + pace->yields*t->f;
+        t->bump = pace->share*(straight_on - t->f);
+        t->mean = mean - pace->whole*t->f;
     } else { /* they part on the way: a force that falls evenly ends there */
         const ur5e_real from = pace->hold*s->now + pace->soft*s->f;
-        t->base = from > UR5E_R(0.0) ? UR5E_R(0.5)*s->f*pressed/(from - pressed) : UR5E_R(0.0);
-        t->share = UR5E_R(0.0);
-        t->x -= level->push*(s->f + t->base) - level->late*s->f;
+        t->mean = s->f + (from > UR5E_R(0.0) ? UR5E_R(0.5)*s->f*pressed/(from - pressed) : UR5E_R(0.0));
+        t->x -= level->push*t->mean;
         t->bump = UR5E_R(0.0);
         t->f = UR5E_R(0.0);
         t->u = UR5E_R(0.0);
         t->depth = UR5E_R(0.0);
+        t->root = UR5E_R(0.0);
     }
 }
 
-void ur5e_take(const ur5e_trial *t, ur5e_state *s)
+void ur5e_take(ur5e_state *s, ur5e_real mean, ur5e_real rise)
 {
-    const ur5e_phase *const phase = s->phase;
-    const ur5e_level *const level = s->step;
-    const ur5e_real first = s->f + t->base - t->share*t->f;
-    const ur5e_real rise = t->f - s->f;
-    const ur5e_real slope = rise*level->per;
-    for (int i = 0; i < phase->active; ++i) {
-        const ur5e_mode_step *const step = &level->mode[i];
-        s->amplitude[i] = t->amplitude[i] - step->push*first - step->late*rise;
-        s->rate[i] = t->rate[i] - phase->modes.row[i]*step->sine*first - step->push*slope;
-    }
+    ur5e_motion *const before = s->motion;
+    s->motion = s->trial;
+    s->trial = before;
+    s->due.level = s->step;
+    s->due.mean = mean;
+    s->due.rise = rise;
 }
 
-ur5e_real ur5e_force_between(const ur5e_state *s, const ur5e_trial *t)
+ur5e_real ur5e_force_between(ur5e_state *s, const ur5e_trial *t)
 {
-    const ur5e_region *const region = s->impact->region;
+    const ur5e_region *const region = s->region;
     const ur5e_phase *const phase = s->phase;
     const ur5e_level *const level = s->step;
     const ur5e_real h = level->h;
-    const ur5e_real first = s->f + t->base - t->share*t->f;
-    const ur5e_real after = h*(t->v - level->kick*first) - level->push*(t->f - s->f);
+    const ur5e_real after = h*(t->v - level->kick*t->mean - level->grow*(t->f - s->f));
     ur5e_real before = s->drift;
+    ur5e_feel(s);
     for (int i = 0; i < phase->active; ++i) {
-        before += phase->modes.row[i]*s->rate[i];
+        before += s->motion->rate[i];
     }
     before *= h;
     ur5e_real most = UR5E_R(0.0);
@@ -195,5 +228,5 @@ ur5e_real ur5e_slip_off(const ur5e_state *s, const ur5e_trial *t)
 {
     const ur5e_real rate = (t->u - s->u)*s->step->per;
     const ur5e_real before = s->past > 0 ? (s->u - s->u_before)/s->h : rate;
-    return s->impact->region->damping*UR5E_FABS(rate - before);
+    return s->region->damping*UR5E_FABS(rate - before);
 }

@@ -76,6 +76,7 @@ static bool find_modes(int size, const int *places, ur5e_matrix L, ur5e_matrix A
             modes->shape[i][places[j]] = X[i][j];
             sum += row[j]*X[i][j];
         }
+        modes->from[i] = i;
         modes->noise[i] = UR5E_EPSILON*held*held;
         modes->squared[i] = A[i][i];
         modes->row[i] = sum;
@@ -262,9 +263,9 @@ static void sharpen(const ur5e_params *p, ur5e_matrix bent, ur5e_modes *modes)
 int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
     ur5e_real *drift)
 {
-    ur5e_matrix mass; /* and then XKX' */
+    ur5e_matrix mass; /* and then XKX', and what modes move */
     ur5e_matrix X;
-    ur5e_real (*const K)[UR5E_SYSTEM] = modes->shape; /* and then its eigenvectors as rows, and what they move */
+    ur5e_real (*const K)[UR5E_SYSTEM] = modes->shape; /* and then unit vectors in eigenvectors of XKX' */
     modes->count = 0;
     whole(arrival, p, mass, K);
     for (int i = 0; i < UR5E_N; ++i) {
@@ -278,18 +279,28 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
     ur5e_real all = UR5E_R(0.0);
     for (int i = 0; i < UR5E_SYSTEM; ++i) {
         all += UR5E_FABS(mass[i][i]);
+        for (int j = 0; j < UR5E_SYSTEM; ++j) {
+            K[i][j] = i == j ? UR5E_R(1.0) : UR5E_R(0.0);
+        }
     }
-    if (!ur5e_spectrum(UR5E_SYSTEM, UR5E_EPSILON*UR5E_EPSILON, mass, modes->squared, K)) {
+    const ur5e_real none = UR5E_EPSILON*UR5E_EPSILON;
+    if (!ur5e_spectrum(UR5E_SYSTEM, none, mass, modes->squared, UR5E_SYSTEM, K, NULL)) {
         return UR5E_SINGULAR;
     }
     for (int i = 0; i < UR5E_SYSTEM; ++i) {
         for (int j = 0; j < UR5E_SYSTEM; ++j) {
             ur5e_real shape = UR5E_R(0.0);
             for (int k = j; k < UR5E_SYSTEM; ++k) { /* X has nothing behind its diagonal */
-                shape += X[k][j]*K[i][k];
+                shape += X[k][j]*K[k][i];
             }
-            modes->shape[i][j] = shape; /* of the vector only what is behind j is needed still */
+            mass[i][j] = shape;
         }
+    }
+    for (int i = 0; i < UR5E_SYSTEM; ++i) {
+        for (int j = 0; j < UR5E_SYSTEM; ++j) {
+            modes->shape[i][j] = mass[i][j];
+        }
+        modes->from[i] = i;
         modes->noise[i] = UR5E_EPSILON*all;
     }
 #if !UR5E_POTENTIAL
@@ -312,8 +323,7 @@ int ur5e_servo_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mod
 }
 
 #if !UR5E_STRUCTURED
-int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes,
-    ur5e_real carried[UR5E_N])
+int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_modes *modes)
 {
     ur5e_matrix mass;
     ur5e_matrix kept;
@@ -323,7 +333,6 @@ int ur5e_free_modes(const ur5e_arrival *arrival, const ur5e_params *p, ur5e_mode
     int places[UR5E_SYSTEM];
     ur5e_real row[UR5E_SYSTEM];
     ur5e_real momentum[UR5E_SYSTEM]; /* before, at 1 m/s */
-    (void)carried;
     whole(arrival, p, mass, K);
     whole(arrival, p, kept, K);
     for (int i = 0; i < UR5E_SYSTEM; ++i) {

@@ -5,7 +5,7 @@
 int ur5e_find_peak(const ur5e_region *region, const ur5e_params *p, ur5e_real speed,
     ur5e_impact *impact, ur5e_peak_force_t *out)
 {
-    ur5e_budget budget = {p->steps, false, UR5E_REAL_MAX, NULL};
+    ur5e_budget budget = {p->steps, false, false, UR5E_REAL_MAX, NULL};
     ur5e_peak_force_t found = {UR5E_R(0.0), UR5E_R(0.0)};
     bool bounded = false;
     int first;
@@ -21,7 +21,7 @@ int ur5e_find_peak(const ur5e_region *region, const ur5e_params *p, ur5e_real sp
         if (impact->status != UR5E_OK) {
             return impact->status;
         }
-        if (!peak.ended) {
+        if (!peak.ended || peak.torn) {
             const ur5e_real bound = ur5e_bound(impact);
             if (!(bound > UR5E_R(0.0))) {
                 return UR5E_UNRESOLVED;

@@ -4,6 +4,8 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS UR5E_R(1.6e-2)
+/* Share of how far robot and body give way that rounding may change: a slow servo that pressed was 1.6 off. */
+#define BLURS_SPRING UR5E_R(4e-3)
 /*
  * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
  * inputs, 4.6 % with this, errors as before).
@@ -27,9 +29,7 @@ static void take_body_out(ur5e_phase *phase)
         modes->noise[body] = modes->noise[last];
         modes->row[body] = modes->row[last];
         modes->start[body] = modes->start[last];
-        for (int k = 0; k < UR5E_SYSTEM; ++k) {
-            modes->shape[body][k] = modes->shape[last][k];
-        }
+        modes->from[body] = modes->from[last];
         modes->count = last;
     }
     phase->has_body = false;
@@ -68,7 +68,7 @@ static int modes_of(ur5e_impact *impact, int which)
     }
 #endif
     const int status = which == UR5E_LED ? led_modes(impact, phase)
-        : ur5e_free_modes(&impact->arrival, impact->p, &phase->modes, impact->carried);
+        : ur5e_free_modes(&impact->arrival, impact->p, &phase->modes);
     phase->known = status == UR5E_OK;
     impact->led = which == UR5E_LED ? impact->motors : impact->led;
     return status;
@@ -101,6 +101,22 @@ static ur5e_real blur_of(const ur5e_impact *impact, const ur5e_phase *phase, ur5
 }
 
 #if !UR5E_STRUCTURED
+/* What rounding may change of how far contact point and body give way to a force within a time, as a share of it. */
+static ur5e_real blur_of_spring(const ur5e_region *region, const ur5e_modes *modes, ur5e_real time)
+{
+    const ur5e_real square = time*time;
+    ur5e_real gives = UR5E_R(1.0)/region->stiffness;
+    ur5e_real off = UR5E_R(0.0);
+    for (int i = 0; i < modes->count; ++i) {
+        const ur5e_real known = UR5E_FMAX(UR5E_FABS(modes->squared[i]) - modes->noise[i], UR5E_R(0.0));
+        const ur5e_real turns = UR5E_FMAX(known*square, UR5E_R(2.0));
+        const ur5e_real bends = modes->row[i]*modes->row[i]*square/turns;
+        gives += bends;
+        off += bends*modes->noise[i]*square/UR5E_FMAX(turns, UR5E_R(12.0));
+    }
+    return off/gives;
+}
+
 static ur5e_real mobility_of(const ur5e_modes *modes)
 {
     ur5e_real sum = UR5E_R(0.0);
@@ -123,7 +139,11 @@ static void steps_of(ur5e_impact *impact, int which)
 {
     ur5e_phase *const phase = &impact->phase[which];
     const ur5e_real time = time_of(impact, which);
-    phase->blurred = blur_of(impact, phase, time) > BLURS;
+    phase->blur = blur_of(impact, phase, time);
+    phase->blurred = phase->blur > BLURS;
+#if !UR5E_STRUCTURED
+    phase->blurred = phase->blurred || blur_of_spring(impact->region, &phase->modes, time) > BLURS_SPRING;
+#endif
     ur5e_phase_steps(impact, time, phase);
     const ur5e_real numbers[2] = {phase->level[0].h, phase->level[UR5E_LEVELS - 1].h};
     if (ur5e_check_positive(numbers, 2) != UR5E_OK) {
@@ -147,7 +167,8 @@ static void weigh(ur5e_impact *impact)
     const ur5e_real body = impact->gives_way ? UR5E_R(1.0)/impact->region->effective_mass : UR5E_R(0.0);
     ur5e_real mobility = UR5E_R(0.0);
 #if UR5E_STRUCTURED
-    impact->status = ur5e_mobilities(&impact->arrival, impact->p, &mobility, &impact->rotors);
+    impact->status = ur5e_mobilities(
+        &impact->arrival, impact->p, impact->phase[UR5E_LOOSE].modes.shape, &mobility, &impact->rotors);
 #else
     for (int k = impact->first; k <= impact->last && impact->status == UR5E_OK; ++k) {
         impact->status = modes_of(impact, k);
@@ -186,6 +207,7 @@ int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int mot
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const ur5e_real damped = region->damping*UR5E_SQRT(impact->mobility/region->stiffness);
     impact->smooth = UR5E_FMAX(UR5E_R(1.0)/(UR5E_R(1.0) + UR5E_R(4.0)*damped), LEAST_SMOOTH);
+    impact->sure = impact->smooth < UR5E_HARD ? 1 : 2;
     impact->skin_rate = ur5e_law_stiffness(region, size)*impact->mobility;
     const ur5e_real numbers[3] = {impact->mobility, impact->scale, impact->skin_rate};
     if (!ur5e_all_finite(numbers, 3) || ur5e_check_positive(numbers, 3) != UR5E_OK) {

@@ -49,7 +49,7 @@ static ur5e_real pressed_by(ur5e_pressing *k, ur5e_real speed, ur5e_real matters
     k->budget.watch = &k->watch;
     ur5e_impact_run(&k->impact, speed, &k->budget, &peak);
     k->peak = peak.force;
-    if (peak.ended) {
+    if (peak.ended && !peak.torn) {
         return k->watch.late;
     }
     const ur5e_real bound = k->impact.status == UR5E_OK ? ur5e_bound(&k->impact) : UR5E_R(0.0);
@@ -70,7 +70,7 @@ static bool keeps(ur5e_pressing *k, const ur5e_region *region, ur5e_real speed, 
         kept = ur5e_impact_prepare(region, &k->p, motors, limit, &k->impact) == UR5E_OK;
         const ur5e_real late = kept ? pressed_by(k, speed, CALM*limit) : UR5E_REAL_MAX;
         kept = late <= UR5E_KEPT*limit - OF_PEAK*k->peak;
-        k->calm = k->calm && k->watch.settled && k->watch.late <= CALM*limit;
+        k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;
 }
@@ -81,6 +81,7 @@ static void prepare_pressing(const ur5e_params *p, ur5e_real until, ur5e_pressin
     k->p.horizon = UR5E_FMAX(UR5E_HORIZON(p), until);
     k->budget.steps = p->steps;
     k->budget.rough = false;
+    k->budget.fine = false;
     k->budget.stop_above = UR5E_REAL_MAX;
     k->budget.watch = NULL;
     k->watch.slower = false;

@@ -3,23 +3,22 @@
 #include "ur5e_impact.h"
 
 /* Share of the limit at which trials aim, below UR5E_KEPT, and from which on one is near enough. */
-#define AIM UR5E_R(0.984)
+#define AIM UR5E_R(0.9825)
 #define NEAR_ENOUGH UR5E_R(0.977)
 /*
- * Smoothness below which a body damps harder than it springs back, or above which it hardly damps, so that errors grow
- * from contact to contact, and the share of the limit that counts there: forces on such bodies were up to 1.5e-2 and
- * 2e-2 too low in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors
- * hold the contact point, and the body is held, too.
+ * Smoothness above which a body hardly damps, so that errors grow from contact to contact, and the share of the limit
+ * that counts there and before a hard damper: forces on such bodies were up to 2e-2 and 1.5e-2 (1.4e-2 at 0.26) too low
+ * in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors hold the contact
+ * point, and the body is held, too.
  */
-#define HARD UR5E_R(0.2)
 #define HARDLY UR5E_R(0.99)
 #define COUNTS_ELSEWHERE UR5E_R(0.985)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 16
 #define APART UR5E_R(4e-3)
 /*
- * Where a cover ends as if it were solid the force of a law by table jumps with speed: before a body that hardly
- * damps, or where joints or servos do, from which one on is known to half a percent.
+ * Where a cover ends as if it were solid the force of a law by table jumps with speed, from which one on is known to
+ * half a percent.
  */
 #define SHORT_OF_JUMP UR5E_R(0.99)
 /*
@@ -28,6 +27,14 @@
  * of the speeds and more.
  */
 #define SHARES 6
+/*
+ * The last of these, and the share of a limit from which on a third or later contact (before a hard damper a second
+ * one) makes them count for other bodies, too, and shorter steps: errors grow about fivefold from contact to contact
+ * (0.5 % in a second one, 2.4 % in the third), and such forces were up to 1.05 (1.17) times the limit at nine tenths of
+ * the speed.
+ */
+#define NEAREST 3
+#define LATER UR5E_R(0.85)
 /* Most that a speed may be off its force's power law at once. */
 #define LEAP UR5E_R(8.0)
 
@@ -35,6 +42,7 @@ typedef struct {
     ur5e_real limit;
     ur5e_real low, low_force; /* the largest speed known to be safe; 0 while unknown */
     ur5e_real high; /* the least known not to be; 0 while unknown */
+    ur5e_real later; /* of the former, of contacts in doubt */
 } search;
 
 /* Next speed to try: as for two bodies that meet, unless that is known to be wrong. */
@@ -59,9 +67,10 @@ static bool try_speed(ur5e_impact *impact, ur5e_real v, bool rough, search *s,
     if (!peak.ended || rough) {
         return peak.ended && peak.force > UR5E_R(0.0);
     }
-    if (peak.force <= UR5E_KEPT*s->limit) {
+    if (peak.force <= UR5E_KEPT*s->limit && !peak.torn) {
         s->low = v;
         s->low_force = peak.force;
+        s->later = peak.later;
     } else {
         s->high = v;
     }
@@ -75,42 +84,44 @@ static bool is_found(const search *s, ur5e_real cap)
     return s->low > UR5E_R(0.0) && (near || jumps || (cap > UR5E_R(0.0) && s->low >= cap));
 }
 
-/* Searches; false if the steps do not do. */
+/* Searches, in finer steps at last where contacts in doubt matter; false if the steps do not do. */
 static bool find(ur5e_impact *impact, ur5e_real guess, ur5e_real cap, search *s,
     ur5e_budget *budget)
 {
-    ur5e_real v = guess;
-    ur5e_real force;
-    if (cap > UR5E_R(0.0) && !(guess < cap)) {
-        v = cap;
-    } else {
-        if (!try_speed(impact, v, true, s, budget, &force)) {
-            return false;
-        }
-        v = next_speed(impact, s, v, force);
-        v = cap > UR5E_R(0.0) ? UR5E_FMIN(v, cap) : v;
-    }
-    for (int k = 1; k < TRIALS; ++k) {
+    ur5e_real most = cap;
+    bool rough = guess < cap || !(cap > UR5E_R(0.0));
+    ur5e_real v = rough ? guess : cap;
+    for (int k = 0; k < TRIALS; ++k) {
+        ur5e_real force;
         if (!(v > UR5E_R(0.0) && v < UR5E_R(0.01)*UR5E_REAL_MAX)) {
             return false;
         }
-        if (!try_speed(impact, v, false, s, budget, &force)) {
+        if (!try_speed(impact, v, rough, s, budget, &force)) {
             return false;
         }
-        if (is_found(s, cap)) {
+        rough = false;
+        if (!is_found(s, most)) {
+            v = next_speed(impact, s, v, force);
+            v = most > UR5E_R(0.0) ? UR5E_FMIN(v, most) : v;
+        } else if (!budget->fine && s->later > LATER*s->limit) { /* once more */
+            budget->fine = true;
+            most = s->low;
+            v = most;
+            s->low = UR5E_R(0.0);
+            s->high = UR5E_R(0.0);
+        } else {
             return true;
         }
-        v = next_speed(impact, s, v, force);
-        v = cap > UR5E_R(0.0) ? UR5E_FMIN(v, cap) : v;
     }
     return false;
 }
 
 /*
  * Lowers a speed that was found below the slowest share of it that is not safe; where the slowest of all is none, the
- * same is done with that one, until one is or the steps do not do. False if the speed may be far too low.
+ * same is done with that one, until one is or the steps do not do. False if the speed may be far too low. Of the
+ * shares, those from one on.
  */
-static bool look_slower(ur5e_impact *impact, search *s, ur5e_budget *budget)
+static bool look_slower(ur5e_impact *impact, int slowest, search *s, ur5e_budget *budget)
 {
     static const ur5e_real slower[SHARES] = {UR5E_R(0.25), UR5E_R(0.45), UR5E_R(0.6), UR5E_R(0.72),
         UR5E_R(0.84), UR5E_R(0.94)};
@@ -118,11 +129,11 @@ static bool look_slower(ur5e_impact *impact, search *s, ur5e_budget *budget)
     const ur5e_real force = s->low_force;
     ur5e_real from = found;
     s->low = UR5E_R(0.0);
-    int k = 0; /* of them that are safe */
+    int k = slowest; /* those before are safe */
     while (k < SHARES) {
         ur5e_real unused;
         s->high = UR5E_R(0.0);
-        if (!try_speed(impact, slower[k]*from, false, s, budget, &unused) || (s->high > UR5E_R(0.0) && k > 0)) {
+        if (!try_speed(impact, slower[k]*from, false, s, budget, &unused) || (s->high > UR5E_R(0.0) && k > slowest)) {
             break;
         }
         if (s->high > UR5E_R(0.0)) {
@@ -138,7 +149,7 @@ static bool look_slower(ur5e_impact *impact, search *s, ur5e_budget *budget)
         s->low = found;
         s->low_force = force;
     }
-    return k > 0;
+    return k > slowest;
 }
 
 /* Whether loose motors bring too little energy for a force: ur5e_settled.c, w = 0 at first touch. */
@@ -151,7 +162,7 @@ static bool are_weak(const ur5e_impact *impact, ur5e_real speed, ur5e_real force
 int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real limit,
     ur5e_real cap, ur5e_impact *impact, ur5e_safe_speed_t *found)
 {
-    ur5e_budget budget = {p->steps, false, limit, NULL};
+    ur5e_budget budget = {p->steps, false, false, limit, NULL};
     bool bounded = false;
     int first;
     int last;
@@ -168,15 +179,16 @@ int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real l
         }
         const bool is_held = !UR5E_STRUCTURED && !(impact->mobility > UR5E_LEAST_MOBILITY);
         const bool hardly_damps = impact->smooth > HARDLY && !is_held;
-        const ur5e_real counts = impact->smooth < HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
+        const ur5e_real counts = impact->smooth < UR5E_HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
         const ur5e_real guess = ur5e_two_body_speed(region, impact->mobility, AIM*counts);
-        search s = {counts, UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
+        search s = {counts, UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
+        budget.fine = false;
         bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
-        if (region->law != NULL || hardly_damps) {
-            const bool exact = !hardly_damps && !impact->phase[impact->first].damped;
-            const ur5e_real share = region->law == NULL || exact ? UR5E_R(1.0) : SHORT_OF_JUMP;
+        const bool all_slower = region->law != NULL || hardly_damps;
+        if (all_slower || budget.fine) {
+            const ur5e_real share = region->law == NULL ? UR5E_R(1.0) : SHORT_OF_JUMP;
             s.low = is_known ? share*s.low : UR5E_R(0.0); /* slower speeds than what was tried are not known */
-            is_known = is_known && look_slower(impact, &s, &budget);
+            is_known = is_known && look_slower(impact, all_slower ? 0 : NEAREST, &s, &budget);
         }
         if (!is_known) {
             if (impact->status != UR5E_OK) {

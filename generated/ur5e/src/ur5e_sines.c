@@ -5,7 +5,8 @@
 
 #if defined(UR5E_USE_FLOAT)
 /* Error < 1.2e-07. */
-#define LIMIT UR5E_R(200.0) /* rad; angles beyond are the C library's */
+#define LIMIT UR5E_R(200.0) /* rad; whole turns are taken off angles beyond */
+#define TURN UR5E_R(6.283185307179586) /* rad; less than half a unit in an angle's last place off, however many */
 #define PER_QUARTER UR5E_R(0.636619772) /* quarter turns in a radian */
 #define ADDED UR5E_R(128.0) /* whole turns, more than the limit has */
 #define QUARTER_1 UR5E_R(1.5703125) /* a quarter turn in three parts, rad */
@@ -22,7 +23,8 @@ static ur5e_real even(ur5e_real z) /* (cos r - 1 + r^2/2)/r^4 */
 }
 #else
 /* Error < 2e-16. */
-#define LIMIT UR5E_R(100000.0) /* rad; angles beyond are the C library's */
+#define LIMIT UR5E_R(100000.0) /* rad; whole turns are taken off angles beyond */
+#define TURN UR5E_R(6.283185307179586) /* rad; less than half a unit in an angle's last place off, however many */
 #define PER_QUARTER UR5E_R(0.6366197723675814) /* quarter turns in a radian */
 #define ADDED UR5E_R(65536.0) /* whole turns, more than the limit has */
 #define QUARTER_1 UR5E_R(1.5707963267341256) /* a quarter turn in three parts, rad */
@@ -39,12 +41,24 @@ static ur5e_real even(ur5e_real z) /* (cos r - 1 + r^2/2)/r^4 */
 }
 #endif
 
-static void ask_library(const ur5e_real *x, int count, ur5e_real *s, ur5e_real *c)
+/* An angle less whole turns, each difference exact; 0, which is as near, if half a unit in its last place is half a turn. */
+static ur5e_real unwound(ur5e_real x)
 {
-    for (int i = 0; i < count; ++i) {
-        s[i] = UR5E_SIN(x[i]);
-        c[i] = UR5E_COS(x[i]);
+    const ur5e_real size = UR5E_FABS(x);
+    ur5e_real rest = size < UR5E_R(2.0)*TURN/UR5E_EPSILON ? size : UR5E_R(0.0);
+    ur5e_real turns = TURN;
+    bool more = turns <= UR5E_R(0.5)*rest;
+    int doubled = 0;
+    while (more) {
+        turns += turns;
+        ++doubled;
+        more = turns <= UR5E_R(0.5)*rest;
     }
+    for (int k = doubled; k >= 0; --k) {
+        rest -= rest >= turns ? turns : UR5E_R(0.0);
+        turns *= UR5E_R(0.5);
+    }
+    return x < UR5E_R(0.0) ? -rest : rest;
 }
 
 /*
@@ -53,25 +67,25 @@ static void ask_library(const ur5e_real *x, int count, ur5e_real *s, ur5e_real *
  */
 void ur5e_sines_cosines(const ur5e_real *x, int count, ur5e_real *s, ur5e_real *c)
 {
+    bool few = true;
     for (int i = 0; i < count; ++i) {
-        if (!(UR5E_FABS(x[i]) < LIMIT)) {
-            ask_library(x, count, s, c);
-            return;
-        }
+        few = few && UR5E_FABS(x[i]) < LIMIT;
     }
     for (int i = 0; i < count; ++i) {
-        const ur5e_real quarters = x[i]*PER_QUARTER + (ADDED + UR5E_R(0.5));
+        const ur5e_real angle = few ? x[i] : unwound(x[i]);
+        const ur5e_real quarters = angle*PER_QUARTER + (ADDED + UR5E_R(0.5));
         const int nearest = (int)quarters;
         const unsigned int quarter = (unsigned int)nearest;
         const ur5e_real k = (ur5e_real)nearest - ADDED;
-        const ur5e_real about = (x[i] - k*QUARTER_1) - k*QUARTER_2;
+        const ur5e_real about = (angle - k*QUARTER_1) - k*QUARTER_2;
         const ur5e_real r = about - k*QUARTER_3;
         const ur5e_real z = r*r;
         const ur5e_real sine = r + r*z*odd(z);
         const ur5e_real cosine = UR5E_R(1.0) - UR5E_R(0.5)*z + z*z*even(z);
         const ur5e_real first = (quarter & 1u) != 0u ? cosine : sine;
         const ur5e_real second = (quarter & 1u) != 0u ? sine : cosine;
-        s[i] = (quarter & 2u) != 0u ? -first : first;
-        c[i] = ((quarter + 1u) & 2u) != 0u ? -second : second;
+        const ur5e_real end = few ? UR5E_R(0.0) : UR5E_R(0.0)*x[i]; /* not a number unless x is finite */
+        s[i] = ((quarter & 2u) != 0u ? -first : first) + end;
+        c[i] = (((quarter + 1u) & 2u) != 0u ? -second : second) + end;
     }
 }

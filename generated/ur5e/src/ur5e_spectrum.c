@@ -10,11 +10,10 @@
 #include "ur5e_impact.h"
 
 /*
- * Steps of QR, which takes one an eigenvalue to four digits and two to all: of 60,000 compliances of seven joints
- * none took more than 13, of as many servos of 14 coordinates none more than 30. What is not done by then fails.
+ * Steps of QR to all digits, about two an eigenvalue: of 60,000 servos of 14 coordinates none took more than 30.
+ * What is not done by then fails.
  */
-#define MOST_STEPS(size) (2*(size) + 2)
-#define MOST_STEPS_TO_ALL_DIGITS(size) (3*(size))
+#define MOST_STEPS(size) (3*(size))
 
 /* One reflection I - scale v v' of rows and columns from first on: A - v w' - w v'. */
 static void turn(int first, int size, const ur5e_real *v, ur5e_real scale, ur5e_matrix A)
@@ -42,62 +41,69 @@ static void turn(int first, int size, const ur5e_real *v, ur5e_real scale, ur5e_
     }
 }
 
-/*
- * Reflects A to three diagonals d and e, and writes the rows of Q' of A = Q tridiag(e, d, e) Q'. Of each
- * reflection, v stays in A's own row.
- */
-static void reflect(int size, ur5e_matrix A, ur5e_real *d, ur5e_real *e, ur5e_matrix Q)
+/* The same of a vector. */
+static void mirror(int first, int size, const ur5e_real *v, ur5e_real scale, ur5e_real *x)
 {
-    ur5e_real scale[UR5E_SYSTEM]; /* 2/v'v */
+    ur5e_real along = UR5E_R(0.0);
+    for (int i = first; i < size; ++i) {
+        along += x[i]*v[i];
+    }
+    along *= scale;
+    for (int i = first; i < size; ++i) {
+        x[i] -= along*v[i];
+    }
+}
+
+/* Turns a vector by the rotations of one step. */
+static void turn_on(int first, int last, const ur5e_rotation *by, ur5e_real *x)
+{
+    ur5e_real here = x[first];
+    for (int k = first; k < last; ++k) {
+        const ur5e_real c = by[k - first].c;
+        const ur5e_real s = by[k - first].s;
+        const ur5e_real next = x[k + 1];
+        x[k] = c*here + s*next;
+        here = c*next - s*here;
+    }
+    x[last] = here;
+}
+
+/* Reflects A to three diagonals d and e, and vectors with it. Of each reflection, v stays in A's own row. */
+static void reflect(int size, ur5e_matrix A, ur5e_real *d, ur5e_real *e, int count, ur5e_vectors x,
+    ur5e_turns *turns)
+{
     for (int k = 0; k + 1 < size; ++k) {
         ur5e_real *const v = A[k];
         const ur5e_real first = v[k + 1];
         ur5e_real square = UR5E_R(0.0);
+        ur5e_real scale = UR5E_R(0.0); /* 2/v'v */
         for (int i = k + 2; i < size; ++i) {
             square += v[i]*v[i];
         }
         d[k] = v[k];
         e[k] = first;
-        scale[k] = UR5E_R(0.0);
         if (square > UR5E_R(0.0)) {
             const ur5e_real length = UR5E_SQRT(square + first*first);
             e[k] = first > UR5E_R(0.0) ? -length : length;
             v[k + 1] = first - e[k];
-            scale[k] = UR5E_R(1.0)/(length*(length + UR5E_FABS(first)));
-            turn(k + 1, size, v, scale[k], A);
+            scale = UR5E_R(1.0)/(length*(length + UR5E_FABS(first)));
+            turn(k + 1, size, v, scale, A);
+            for (int m = 0; m < count; ++m) {
+                mirror(k + 1, size, v, scale, x[m]);
+            }
+        }
+        if (turns != NULL) {
+            turns->scale[k] = scale;
+            for (int i = k + 1; i < size; ++i) {
+                turns->v[k][i] = v[i];
+            }
         }
     }
     d[size - 1] = A[size - 1][size - 1];
-    Q[size - 1][size - 1] = UR5E_R(1.0);
-    for (int k = size - 3; k >= 0; --k) { /* rows of Q' are reflected as they are columns of Q */
-        const ur5e_real *const v = A[k];
-        const int next = k + 1; /* row and column that were none but for a 1 where they meet */
-        const ur5e_real lead = scale[k]*v[next];
-        Q[next][next] = UR5E_R(1.0) - lead*v[next];
-        for (int j = next + 1; j < size; ++j) {
-            Q[next][j] = -lead*v[j];
-        }
-        for (int i = next + 1; i < size; ++i) {
-            ur5e_real along = UR5E_R(0.0);
-            for (int j = next + 1; j < size; ++j) {
-                along += Q[i][j]*v[j];
-            }
-            along *= scale[k];
-            for (int j = next + 1; j < size; ++j) {
-                Q[i][j] -= along*v[j];
-            }
-            Q[i][next] = -along*v[next];
-        }
-    }
-    Q[0][0] = UR5E_R(1.0);
-    for (int i = 1; i < size; ++i) {
-        Q[0][i] = UR5E_R(0.0);
-        Q[i][0] = UR5E_R(0.0);
-    }
 }
 
-/* One QR step on rows first to last; turns the rows of Q, too. */
-static void chase(int first, int last, int size, ur5e_real *d, ur5e_real *e, ur5e_matrix Q)
+/* One QR step on rows first to last; writes its rotations. */
+static void chase(int first, int last, ur5e_real *d, ur5e_real *e, ur5e_rotation *by)
 {
     const ur5e_real end = e[last - 1];
     const ur5e_real half = UR5E_R(0.5)*(d[last - 1] - d[last]);
@@ -122,7 +128,8 @@ static void chase(int first, int last, int size, ur5e_real *d, ur5e_real *e, ur5
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        ur5e_turn(size, c, s, Q[k], Q[k + 1]);
+        by[k - first].c = c;
+        by[k - first].s = s;
     }
 }
 
@@ -132,29 +139,124 @@ static bool counts(int row, const ur5e_real *d, const ur5e_real *e, ur5e_real sm
     return e[row]*e[row] > noise + small*UR5E_FABS(d[row]*d[row + 1]);
 }
 
-bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, ur5e_matrix vectors)
+bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, int count, ur5e_vectors x,
+    ur5e_turns *turns)
 {
     ur5e_real e[UR5E_SYSTEM];
+    ur5e_rotation passing[UR5E_SYSTEM]; /* of a step, where they are not kept */
+    int kept = 0;
     ur5e_real all = UR5E_R(0.0);
-    reflect(size, A, values, e, vectors);
+    reflect(size, A, values, e, count, x, turns);
     for (int i = 0; i < size; ++i) {
         all += UR5E_FABS(values[i]);
     }
     const ur5e_real noise = UR5E_EPSILON*UR5E_EPSILON*all*all;
     int last = size - 1;
-    const int most = small > UR5E_EPSILON ? MOST_STEPS(size) : MOST_STEPS_TO_ALL_DIGITS(size);
+    const int most = turns != NULL ? UR5E_MOST_STEPS : MOST_STEPS(size);
     for (int step = 0; step <= most; ++step) {
         while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
         }
         if (last == 0) {
+            if (turns != NULL) {
+                turns->steps = step;
+                turns->count = kept;
+            }
             return true;
         }
         int first = last - 1;
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
-        chase(first, last, size, values, e, vectors);
+        ur5e_rotation *by = passing;
+        if (turns != NULL) {
+            if (step == most || kept + last - first > UR5E_MOST_TURNS) {
+                return false;
+            }
+            by = &turns->by[kept];
+            turns->first[step] = (unsigned char)first;
+            turns->last[step] = (unsigned char)last;
+            kept += last - first;
+        }
+        chase(first, last, values, e, by);
+        for (int m = 0; m < count; ++m) {
+            turn_on(first, last, by, x[m]);
+        }
     }
     return false;
 }
+
+#if UR5E_STRUCTURED
+/* x -= scale (v'x) v of two vectors. */
+static void mirror_both(int first, const ur5e_real *v, ur5e_real scale, ur5e_real *x, ur5e_real *y)
+{
+    ur5e_real along_x = UR5E_R(0.0);
+    ur5e_real along_y = UR5E_R(0.0);
+    for (int i = first; i < UR5E_N; ++i) {
+        const ur5e_real vi = v[i];
+        along_x += x[i]*vi;
+        along_y += y[i]*vi;
+    }
+    along_x *= scale;
+    along_y *= scale;
+    for (int i = first; i < UR5E_N; ++i) {
+        const ur5e_real vi = v[i];
+        x[i] -= along_x*vi;
+        y[i] -= along_y*vi;
+    }
+}
+
+void ur5e_to_modes(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
+{
+    const ur5e_rotation *by = turns->by;
+    for (int k = 0; k + 2 < UR5E_N; ++k) {
+        mirror_both(k + 1, turns->v[k], turns->scale[k], x, y);
+    }
+    for (int step = 0; step < turns->steps; ++step) {
+        const int first = turns->first[step];
+        const int last = turns->last[step];
+        ur5e_real x0 = x[first];
+        ur5e_real y0 = y[first];
+        for (int k = first; k < last; ++k) {
+            const ur5e_real c = by->c;
+            const ur5e_real s = by->s;
+            const ur5e_real x1 = x[k + 1];
+            const ur5e_real y1 = y[k + 1];
+            x[k] = c*x0 + s*x1;
+            y[k] = c*y0 + s*y1;
+            x0 = c*x1 - s*x0;
+            y0 = c*y1 - s*y0;
+            ++by;
+        }
+        x[last] = x0;
+        y[last] = y0;
+    }
+}
+
+void ur5e_from_modes(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
+{
+    const ur5e_rotation *by = &turns->by[turns->count];
+    for (int step = turns->steps - 1; step >= 0; --step) {
+        const int first = turns->first[step];
+        const int last = turns->last[step];
+        ur5e_real x1 = x[last];
+        ur5e_real y1 = y[last];
+        for (int k = last - 1; k >= first; --k) {
+            --by;
+            const ur5e_real c = by->c;
+            const ur5e_real s = by->s;
+            const ur5e_real x0 = x[k];
+            const ur5e_real y0 = y[k];
+            x[k + 1] = c*x1 + s*x0;
+            y[k + 1] = c*y1 + s*y0;
+            x1 = c*x0 - s*x1;
+            y1 = c*y0 - s*y1;
+        }
+        x[first] = x1;
+        y[first] = y1;
+    }
+    for (int k = UR5E_N - 3; k >= 0; --k) {
+        mirror_both(k + 1, turns->v[k], turns->scale[k], x, y);
+    }
+}
+#endif

@@ -29,6 +29,11 @@
  */
 #define JUMPS UR5E_R(0.1)
 #define JUMP_STEP UR5E_R(24.0)
+/*
+ * Least that a mode moves the contact point by, as a share of all that moves it: as modes are followed by that, one
+ * that hardly does must not be lost, and so little is not felt.
+ */
+#define LEAST_ROW UR5E_R(1e-6)
 /* Steps counted; more than any budget has. */
 #define MOST UR5E_R(1e6)
 
@@ -38,6 +43,7 @@ static void exchange(ur5e_modes *modes, int i, int j)
     const ur5e_real noise = modes->noise[i];
     const ur5e_real row = modes->row[i];
     const ur5e_real start = modes->start[i];
+    const int from = modes->from[i];
     modes->squared[i] = modes->squared[j];
     modes->noise[i] = modes->noise[j];
     modes->row[i] = modes->row[j];
@@ -46,11 +52,8 @@ static void exchange(ur5e_modes *modes, int i, int j)
     modes->noise[j] = noise;
     modes->row[j] = row;
     modes->start[j] = start;
-    for (int k = 0; k < UR5E_SYSTEM; ++k) {
-        const ur5e_real shape = modes->shape[i][k];
-        modes->shape[i][k] = modes->shape[j][k];
-        modes->shape[j][k] = shape;
-    }
+    modes->from[i] = modes->from[j];
+    modes->from[j] = from;
 }
 
 /* Puts modes that stand behind those that move, whose order stays. */
@@ -107,43 +110,37 @@ static void mode_steps(ur5e_phase *phase)
 {
     const ur5e_modes *const modes = &phase->modes;
     const ur5e_real one = UR5E_R(1.0);
-    ur5e_real h = phase->level[UR5E_LEVELS - 1].h;
-    ur5e_real sine[UR5E_MODES]; /* sin(wh)/w */
-    ur5e_real push[UR5E_MODES]; /* (1 - cos(wh))/w^2, of a force that stays */
-    ur5e_real late[UR5E_MODES]; /* (wh - sin(wh))/(w^3 h), of one that grows */
+    const ur5e_real h = phase->level[UR5E_LEVELS - 1].h;
     for (int i = 0; i < phase->active; ++i) {
-        const ur5e_real t = modes->squared[i]*h*h;
-        late[i] = h*h*(one/UR5E_R(6.0) - t*(one/UR5E_R(120.0) - t*(one/UR5E_R(5040.0) - t/UR5E_R(362880.0))));
-        push[i] = h*h*(UR5E_R(0.5) - t*(one/UR5E_R(24.0) - t*(one/UR5E_R(720.0) - t/UR5E_R(40320.0))));
-        sine[i] = h*(one - modes->squared[i]*late[i]);
-    }
-    for (int k = UR5E_LEVELS - 1; k >= 0; --k) {
-        ur5e_level *const level = &phase->level[k];
-        const ur5e_real per = one/h;
-        ur5e_real pushes = UR5E_R(0.0);
-        ur5e_real lates = UR5E_R(0.0);
-        ur5e_real kicks = UR5E_R(0.0);
-        for (int i = 0; i < phase->active; ++i) {
+        const ur5e_real squared = modes->squared[i];
+        const ur5e_real weight = modes->row[i]*modes->row[i];
+        const ur5e_real t = squared*h*h;
+        ur5e_real late = h*h*(one/UR5E_R(6.0)
+            - t*(one/UR5E_R(120.0) - t*(one/UR5E_R(5040.0) - t/UR5E_R(362880.0)))); /* (wh - sin(wh))/(w^3 h) */
+        ur5e_real push = h*h*(UR5E_R(0.5)
+            - t*(one/UR5E_R(24.0) - t*(one/UR5E_R(720.0) - t/UR5E_R(40320.0)))); /* (1 - cos(wh))/w^2 */
+        ur5e_real sine = h*(one - squared*late); /* sin(wh)/w */
+        for (int k = UR5E_LEVELS - 1; k >= 0; --k) {
+            ur5e_level *const level = &phase->level[k];
             ur5e_mode_step *const step = &level->mode[i];
-            const ur5e_real row = modes->row[i];
-            const ur5e_real cosine = one - modes->squared[i]*push[i];
+            const ur5e_real cosine = one - squared*push;
             step->cosine = cosine;
-            step->sine = sine[i];
-            step->back = -modes->squared[i]*sine[i];
-            step->push = row*push[i];
-            step->late = row*late[i];
-            pushes += row*step->push;
-            lates += row*step->late;
-            kicks += row*row*sine[i];
-            late[i] += sine[i]*push[i]*per;
-            push[i] = UR5E_R(2.0)*sine[i]*sine[i];
-            sine[i] *= UR5E_R(2.0)*cosine;
+            step->sine = sine;
+            step->back = -squared*sine;
+            step->push = weight*push;
+            step->late = weight*late;
+            step->kick = weight*sine;
+            level->push += step->push;
+            level->late += step->late;
+            level->kick += step->kick;
+            late += sine*push*level->per;
+            push = UR5E_R(2.0)*sine*sine;
+            sine *= UR5E_R(2.0)*cosine;
         }
-        level->per = per;
-        level->push = pushes;
-        level->late = lates;
-        level->kick = kicks;
-        h += h;
+    }
+    for (int k = 0; k < UR5E_LEVELS; ++k) {
+        ur5e_level *const level = &phase->level[k];
+        level->grow = level->push*level->per;
     }
 }
 
@@ -161,12 +158,17 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
         modes->noise[body] = UR5E_R(0.0);
         modes->row[body] = UR5E_R(1.0)/UR5E_SQRT(region->effective_mass);
         modes->start[body] = UR5E_R(0.0);
+        modes->from[body] = body;
         for (int k = 0; k < UR5E_SYSTEM; ++k) {
             modes->shape[body][k] = UR5E_R(0.0);
         }
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
+    const ur5e_real least = LEAST_ROW*UR5E_SQRT(impact->mobility);
+    for (int i = 0; i < modes->count; ++i) {
+        modes->row[i] = UR5E_FABS(modes->row[i]) > least ? modes->row[i] : least;
+    }
     const ur5e_real end = UR5E_R(1.0)/UR5E_HORIZON(impact->p);
     let_stand(impact, UR5E_FMAX(contact, end*end), released, phase);
     ur5e_real moving = UR5E_R(0.0);
@@ -186,11 +188,19 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
     phase->steps = wanted < MOST ? (int)wanted + 1 : (int)MOST;
     const ur5e_real h = wanted < MOST ? time/(ur5e_real)phase->steps : UR5E_R(1.0)/rate;
     phase->longest_pressed = share*contact*h*h > PRESSED_STEP*PRESSED_STEP ? 1 : 0;
-    phase->level[0].h = h;
-    for (int k = 1; k < UR5E_LEVELS; ++k) {
-        phase->level[k].h = UR5E_R(0.5)*phase->level[k - 1].h;
+    ur5e_real shortest = h;
+    ur5e_real per = UR5E_R(1.0)/h;
+    for (int k = 0; k < UR5E_LEVELS; ++k) {
+        ur5e_level *const level = &phase->level[k];
+        level->h = shortest;
+        level->per = per;
+        level->push = UR5E_R(0.0);
+        level->late = UR5E_R(0.0);
+        level->kick = UR5E_R(0.0);
+        shortest *= UR5E_R(0.5);
+        per += per;
     }
-    const ur5e_real shortest = region->stiffness*phase->level[UR5E_LEVELS - 1].h;
+    shortest = region->stiffness*phase->level[UR5E_LEVELS - 1].h;
     ur5e_real relax = region->damping > UR5E_R(0.0)
         ? UR5E_EXP(-UR5E_FMIN(shortest/region->damping, UR5E_R(80.0))) : UR5E_R(0.0);
     for (int k = UR5E_LEVELS - 1; k >= 0; --k) {
@@ -198,5 +208,8 @@ void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *pha
         relax *= relax;
     }
     mode_steps(phase);
+    if (phase->damped) {
+        ur5e_slow_contact(phase);
+    }
     phase->ready = true;
 }

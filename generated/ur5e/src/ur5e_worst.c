@@ -82,12 +82,14 @@ static void find_axes(hardest *w)
     const ur5e_links_t *const links = &w->impact.arrival.links;
     const int x = 3*w->point;
     ur5e_matrix square;
+    ur5e_real unit[UR5E_REACH][UR5E_SYSTEM]; /* vectors */
     ur5e_real values[UR5E_SYSTEM];
     for (int k = 0; k < UR5E_REACH; ++k) {
         for (int l = 0; l < UR5E_REACH; ++l) {
             const ur5e_real *const a = ur5e_directions[k];
             const ur5e_real *const b = ur5e_directions[l];
             square[k][l] = UR5E_R(0.0);
+            unit[k][l] = k == l ? UR5E_R(1.0) : UR5E_R(0.0);
             for (int i = 0; i < UR5E_N; ++i) {
                 const ur5e_real by_a = a[0]*links->J[x][i] + a[1]*links->J[x + 1][i] + a[2]*links->J[x + 2][i];
                 const ur5e_real by_b = b[0]*links->J[x][i] + b[1]*links->J[x + 1][i] + b[2]*links->J[x + 2][i];
@@ -95,12 +97,15 @@ static void find_axes(hardest *w)
             }
         }
     }
-    if (!ur5e_spectrum(UR5E_REACH, UR5E_EPSILON*UR5E_EPSILON, square, values, w->axes)) {
+    if (!ur5e_spectrum(UR5E_REACH, UR5E_EPSILON*UR5E_EPSILON, square, values, UR5E_REACH, unit, NULL)) {
         w->unknown = true;
         return;
     }
     w->least = 0;
-    for (int k = 1; k < UR5E_REACH; ++k) {
+    for (int k = 0; k < UR5E_REACH; ++k) {
+        for (int l = 0; l < UR5E_REACH; ++l) {
+            w->axes[k][l] = unit[l][k];
+        }
         w->least = values[k] < values[w->least] ? k : w->least;
     }
 }

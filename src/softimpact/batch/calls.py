@@ -54,7 +54,7 @@ class CompiledPackage:
     mapping of the fields of the C struct, such as ``region_parameters`` gives of any contact. Where
     no ``limit`` is given, all that the region has must be kept: the least of force and energy in the
     first half second and, clamped, what may press later (``pressed`` says that this decides).
-    ``motors`` is a name. Results are arrays of N rows by
+    ``motors``, ``point`` and ``frame`` may be names. Results are arrays of N rows by
     name, with ``status`` beside them; rows whose status is neither OK (0) nor BOUNDED (9) hold NaN,
     or -1 where numbers are whole.
 
@@ -120,6 +120,8 @@ class CompiledPackage:
         if entry.name not in JUDGED or "limit" in named:
             return self._call(entry, *given, **options)
         if entry.name == "safe_speed":
+            if "point" in options:
+                raise InvalidValue("point", "is read by safe_speed_at; safe_speed is the tip's")
             options["point"] = TIP
         known = dict(zip(read, given, strict=False))
         return self._call(self.interface.entries[JUDGED[entry.name]], **known, **options)
@@ -127,7 +129,8 @@ class CompiledPackage:
     def _call(self, entry: Entry, *given: Any, **options: Any) -> Arrays:
         named = set(options)
         inputs = self._inputs(entry, given, options)
-        count = max(len(rows) for rows in inputs)
+        counts = [len(rows) for rows in inputs]
+        count = max(counts) if all(counts) else 0
         for rows in inputs:
             if len(rows) not in (1, count):
                 raise InvalidValue("rows", f"needs {count} rows or one everywhere, not {len(rows)}")
@@ -136,7 +139,7 @@ class CompiledPackage:
         status = np.empty(count, dtype=np.int32)
         impact = any(a.name == IMPACT for a in entry.arguments)
         self._run(self._rows_of(entry.name), inputs, out, status, 1 if impact else CHUNK)
-        if (status == self.interface.enums["status"]["OUT_OF_RANGE"]).all():
+        if count > 0 and (status == self.interface.enums["status"]["OUT_OF_RANGE"]).all():
             self._name_unknown(named)
         return {**found, "status": status}
 
@@ -177,7 +180,9 @@ class CompiledPackage:
             else:
                 inputs.append(self._rows(a, values[a.name]))
         if options:
-            raise InvalidValue(next(iter(options)), f"is nothing that {entry.name} reads")
+            fields = (*(a.name for a in plain), *(self._defaults.dtype.names or ()))
+            known = ", ".join(name for name in fields if name != "layout")
+            raise InvalidValue(next(iter(options)), f"is nothing that {entry.name} reads: {known}")
         return inputs
 
     def _kind(self, type_: str) -> np.dtype[Any]:
@@ -187,7 +192,7 @@ class CompiledPackage:
 
     def _rows(self, a: CVariable, values: Any) -> NDArray[Any]:
         width = int(np.prod([size or 1 for size in a.shape]))
-        array = np.ascontiguousarray(values, dtype=self._kind(a.type))
+        array = _numbers(a.name, self._unnamed(a.name, values), self._kind(a.type))
         rows = array.reshape(-1, 1) if width == 1 else np.atleast_2d(array)
         if rows.ndim != 2 or rows.shape[1] != width:
             raise InvalidValue(a.name, f"needs rows of {width} numbers, not {array.shape}")
@@ -211,7 +216,7 @@ class CompiledPackage:
 
     def _law(self, law: Any) -> tuple[int, int]:
         """Return how many points a law has, and their address, which holds as long as the package."""
-        points = np.ascontiguousarray(law, dtype=self._kind("real"))
+        points = _numbers("law", law, self._kind("real"))
         width = len(self.interface.structs["law_point"].fields)
         if points.ndim != 2 or points.shape[1] != width:
             raise InvalidValue("law", f"needs rows of {width} numbers, not {points.shape}")
@@ -222,14 +227,21 @@ class CompiledPackage:
         """Return parameter structs, one or one a row; takes the fields out of ``options``."""
         names = [name for name in self._defaults.dtype.names or () if name in options]
         given = {name: options.pop(name) for name in names}
-        if isinstance(given.get("motors"), str):
-            kinds = {k.removeprefix("MOTORS_").lower(): n
-                     for k, n in self.interface.enums["motors"].items()}  # fmt: skip
-            if given["motors"] not in kinds:
-                said = f"must be one of {', '.join(kinds)}, not '{given['motors']}'"
-                raise InvalidValue("motors", said)
-            given["motors"] = kinds[given["motors"]]
+        if "motors" in given:
+            given["motors"] = self._unnamed("motors", given["motors"])
         return _filled(self._defaults, given, "parameters")
+
+    def _unnamed(self, field: str, values: Any) -> Any:
+        """Return numbers of an enum (motors, point, frame) in place of names."""
+        if field not in self.interface.enums or np.asarray(values).dtype.kind != "U":
+            return values
+        known = {name.removeprefix(f"{field.upper()}_").lower(): number
+                 for name, number in self.interface.enums[field].items()}  # fmt: skip
+        names = np.asarray(values)
+        for name in names.flat:
+            if name not in known:
+                raise InvalidValue(field, f"must be one of {', '.join(known)}, not '{name}'")
+        return np.reshape([known[str(name)] for name in names.flat], names.shape)
 
     def _results(self, written: CVariable, count: int) -> tuple[NDArray[Any], Arrays]:
         """Return room for results, and how it is seen by name."""
@@ -289,13 +301,26 @@ def _with_limits(asked: str | Mapping[str, Any], region: NDArray[Any]) -> NDArra
     return region
 
 
+def _numbers(name: str, values: Any, kind: np.dtype[Any]) -> NDArray[Any]:
+    """Return numbers of a kind; raises InvalidValue where they would not be those that were given."""
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        array = np.asarray(None)
+    if array.dtype.kind not in "buif":
+        raise InvalidValue(name, f"needs real numbers, in rows of one length, not {values!r:.60}")
+    if kind.kind in "iu" and array.dtype.kind == "f" and not (array == np.rint(array)).all():
+        raise InvalidValue(name, "needs whole numbers")
+    return np.ascontiguousarray(array, dtype=kind) if array.ndim else np.asarray(array, dtype=kind)
+
+
 def _filled(row: NDArray[Any], given: Mapping[str, Any], what: str) -> NDArray[Any]:
     """Return structs like a row with other fields, each one value or one a row."""
     fields: Mapping[str, Any] = row.dtype.fields or {}
     for name in given:
         if name not in fields:
             raise InvalidValue(name, f"is no field of {what}: {', '.join(fields)}")
-    values = {name: np.asarray(value) for name, value in given.items()}
+    values = {name: _numbers(name, value, fields[name][0].base) for name, value in given.items()}
     depth = {name: len(fields[name][0].shape) for name in values}
     counts = [len(v) for name, v in values.items() if v.ndim > depth[name]]
     table = np.repeat(row, max(counts, default=1))
