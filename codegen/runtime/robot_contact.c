@@ -42,10 +42,8 @@ void robot_glide(robot_state *s, robot_trial *t)
     const robot_phase *const phase = s->phase;
     const robot_level *const level = s->step;
     robot_real damped[ROBOT_MODES];
-    robot_real v = s->drift;
     if (phase->damped) {
         robot_damp_ahead(s, damped);
-        v -= robot_owed_slip(s, damped);
     }
     const robot_motion *const motion = s->motion;
     const robot_real *const rate = phase->damped ? damped : motion->rate;
@@ -53,13 +51,15 @@ void robot_glide(robot_state *s, robot_trial *t)
     const robot_level *const felt = s->due.level;
     const robot_real mean = s->due.mean;
     const robot_real rise = s->due.rise;
-    const robot_real slope = rise*felt->per;
+    const robot_real kicked = phase->damped ? ROBOT_R(0.0) : mean; /* damped rates have felt it */
+    const robot_real slope = phase->damped ? ROBOT_R(0.0) : rise*felt->per;
+    robot_real v = s->drift;
     robot_real x = s->drifted + s->drift*level->h;
     for (int i = 0; i < phase->active; ++i) {
         const robot_mode_step *const due = &felt->mode[i];
         const robot_mode_step *const step = &level->mode[i];
         const robot_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const robot_real b = rate[i] - due->kick*mean - due->push*slope;
+        const robot_real b = rate[i] - due->kick*kicked - due->push*slope;
         const robot_real place = step->cosine*a + step->sine*b;
         const robot_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;
@@ -68,7 +68,7 @@ void robot_glide(robot_state *s, robot_trial *t)
         v += velocity;
     }
     t->x = x;
-    t->v = v;
+    t->v = phase->damped ? v - robot_owed_slip(s) : v;
 }
 
 /* The root of u^2 + cubic u^3 = depth > 0; near a guess, or else anywhere. */

@@ -91,23 +91,22 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
     }
 }
 
-void robot_damp_ahead(robot_state *s, robot_real *rate)
+void robot_damp_ahead(const robot_state *s, robot_real *rate)
 {
-    robot_feel(s);
+    const robot_level *const level = s->due.level;
+    const robot_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i];
+        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
     }
     robot_damp(s->phase, s->speed, s->owed + ROBOT_R(0.5)*s->step->h, rate);
 }
 
-robot_real robot_owed_slip(const robot_state *s, const robot_real *rate)
+robot_real robot_owed_slip(const robot_state *s)
 {
     const robot_phase *const phase = s->phase;
-    const robot_level *const level = s->step;
     robot_real slowed = ROBOT_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
-        const robot_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
-        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+        slowed += phase->slows[i]*(s->trial->rate[i] - s->speed*phase->modes.row[i]*phase->modes.start[i]);
     }
-    return level->h*slowed;
+    return s->step->h*slowed;
 }

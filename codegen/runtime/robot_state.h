@@ -85,12 +85,12 @@ void robot_phase_begin(const robot_phase *phase, int level, robot_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate);
-/* Rates of modes after all that is due, damped until halfway through the next step. */
-void robot_damp_ahead(robot_state *s, robot_real *rate);
-/* What of the contact point's velocity is damped in the other half of a step, which begins with such rates. */
-robot_real robot_owed_slip(const robot_state *s, const robot_real *rate);
+/* Rates of modes after the force that is due, damped until halfway through the next step. */
+void robot_damp_ahead(const robot_state *s, robot_real *rate);
+/* What of the contact point's velocity is damped in the other half of a step on trial. */
+robot_real robot_owed_slip(const robot_state *s);
 
-/* Moves all modes by a step without forces, on trial. */
+/* Moves all modes by a step, on trial, without a force of its own. */
 void robot_glide(robot_state *s, robot_trial *t);
 
 /* Lets modes feel what is due. */
