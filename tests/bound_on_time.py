@@ -15,7 +15,7 @@ from pathlib import Path
 from compiled_packages import Generated
 from longest_path import Budget, LongestPath, Rounds
 
-STEPS_OF_RUN = 6
+STEPS_OF_RUN = 7
 """ROBOT_STEPS_OF_RUN of the runtime."""
 
 ITERATIONS, LEVELS = 3, 7

@@ -44,7 +44,6 @@ void robot_glide(robot_state *s, robot_trial *t)
     robot_real damped[ROBOT_MODES];
     robot_real v = s->drift;
     if (phase->damped) {
-        robot_feel(s);
         robot_damp_ahead(s, damped);
         v -= robot_owed_slip(s, damped);
     }

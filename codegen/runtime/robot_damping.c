@@ -91,8 +91,9 @@ void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, rob
     }
 }
 
-void robot_damp_ahead(const robot_state *s, robot_real *rate)
+void robot_damp_ahead(robot_state *s, robot_real *rate)
 {
+    robot_feel(s);
     for (int i = 0; i < s->phase->active; ++i) {
         rate[i] = s->motion->rate[i];
     }

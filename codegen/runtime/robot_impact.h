@@ -144,7 +144,7 @@ typedef struct {
 typedef struct robot_watch robot_watch;
 
 /* Steps of the budget that a run takes before its first: it is prepared, and motors are let go. */
-#define ROBOT_STEPS_OF_RUN 6
+#define ROBOT_STEPS_OF_RUN 7
 
 /* What may be spent, and how exactly. */
 typedef struct {
@@ -162,6 +162,7 @@ typedef struct {
     int contact; /* in which contact, the first is 1 */
     int contacts; /* how many there were */
     bool ended; /* within the budget */
+    bool torn; /* a law by table bent more over the shortest step than can be known: the force may be any */
 } robot_peak;
 
 /* Checks what says who hits whom, and how, but for the robot's own numbers. */

@@ -21,7 +21,7 @@ int robot_find_peak(const robot_region *region, const robot_params *p, robot_rea
         if (impact->status != ROBOT_OK) {
             return impact->status;
         }
-        if (!peak.ended) {
+        if (!peak.ended || peak.torn) {
             const robot_real bound = robot_bound(impact);
             if (!(bound > ROBOT_R(0.0))) {
                 return ROBOT_UNRESOLVED;

@@ -4,7 +4,7 @@
 
 /* Share of an approach that rounding may change, at the worst: what it does is a tenth of that. */
 #define BLURS ROBOT_R(1.6e-2)
-/* Share of how far the contact point gives way that rounding may change: a slow servo that pressed was 1.6 off. */
+/* Share of how far robot and body give way that rounding may change: a slow servo that pressed was 1.6 off. */
 #define BLURS_SPRING ROBOT_R(4e-3)
 /*
  * Least smoothness, however hard the damper: with less a light leg's steps were used up for nothing (5.8 % of plain
@@ -101,11 +101,11 @@ static robot_real blur_of(const robot_impact *impact, const robot_phase *phase, 
 }
 
 #if !ROBOT_STRUCTURED
-/* What rounding may change of how far the contact point gives way to a force within a time, as a share of it. */
-static robot_real blur_of_spring(const robot_modes *modes, robot_real time)
+/* What rounding may change of how far contact point and body give way to a force within a time, as a share of it. */
+static robot_real blur_of_spring(const robot_region *region, const robot_modes *modes, robot_real time)
 {
     const robot_real square = time*time;
-    robot_real gives = ROBOT_R(0.0);
+    robot_real gives = ROBOT_R(1.0)/region->stiffness;
     robot_real off = ROBOT_R(0.0);
     for (int i = 0; i < modes->count; ++i) {
         const robot_real known = ROBOT_FMAX(ROBOT_FABS(modes->squared[i]) - modes->noise[i], ROBOT_R(0.0));
@@ -142,7 +142,7 @@ static void steps_of(robot_impact *impact, int which)
     phase->blur = blur_of(impact, phase, time);
     phase->blurred = phase->blur > BLURS;
 #if !ROBOT_STRUCTURED
-    phase->blurred = phase->blurred || blur_of_spring(&phase->modes, time) > BLURS_SPRING;
+    phase->blurred = phase->blurred || blur_of_spring(impact->region, &phase->modes, time) > BLURS_SPRING;
 #endif
     robot_phase_steps(impact, time, phase);
     const robot_real numbers[2] = {phase->level[0].h, phase->level[ROBOT_LEVELS - 1].h};

@@ -49,7 +49,7 @@ static robot_real pressed_by(robot_pressing *k, robot_real speed, robot_real mat
     k->budget.watch = &k->watch;
     robot_impact_run(&k->impact, speed, &k->budget, &peak);
     k->peak = peak.force;
-    if (peak.ended) {
+    if (peak.ended && !peak.torn) {
         return k->watch.late;
     }
     const robot_real bound = k->impact.status == ROBOT_OK ? robot_bound(&k->impact) : ROBOT_R(0.0);

@@ -159,7 +159,7 @@ static outcome step_pressed(robot_state *s, robot_trial *t, robot_real bends, in
         const robot_real force = robot_force_between(s, t);
         between = force > ROBOT_FMAX(s->f, t->f) + LEAPS*allowed ? force : ROBOT_R(0.0);
         slips = between > ROBOT_R(0.0) || robot_slip_off(s, t) > LEAPS*allowed;
-        s->torn = s->torn || (s->level >= SHORTEST && bent > TORN*allowed);
+        peak->torn = peak->torn || (s->level >= SHORTEST && bent > TORN*allowed);
     }
     if (s->level < shortest && (!(bent <= allowed) || (parts && s->f > PARTS*allowed) || slips)) {
         change_level(s, s->level + 1);
@@ -285,7 +285,6 @@ static void start(robot_impact *impact, robot_real speed, bool rough, robot_stat
     touch(s);
     s->depth = zero;
     s->swings = zero;
-    s->torn = false;
     begin(impact->region, rough ? LONGEST_ROUGH : LONGEST, s);
 }
 
@@ -343,6 +342,7 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
     robot_state s;
     peak->force = ROBOT_R(0.0);
     peak->later = ROBOT_R(0.0);
+    peak->torn = false;
     peak->time = ROBOT_R(0.0);
     peak->contact = 1;
     peak->contacts = 1;
@@ -370,5 +370,5 @@ void robot_impact_run(robot_impact *impact, robot_real speed, robot_budget *budg
     if (goes_on && !peak->ended && s.rise > ROBOT_R(0.0)) { /* cut off by the horizon */
         see_most(&s, s.f + SHIFTS*s.phase->blur*s.time*s.rise/s.h, ROBOT_R(0.0), peak);
     }
-    peak->ended = goes_on && !s.torn;
+    peak->ended = goes_on;
 }

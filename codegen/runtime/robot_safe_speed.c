@@ -67,7 +67,7 @@ static bool try_speed(robot_impact *impact, robot_real v, bool rough, search *s,
     if (!peak.ended || rough) {
         return peak.ended && peak.force > ROBOT_R(0.0);
     }
-    if (peak.force <= ROBOT_KEPT*s->limit) {
+    if (peak.force <= ROBOT_KEPT*s->limit && !peak.torn) {
         s->low = v;
         s->low_force = peak.force;
         s->later = peak.later;

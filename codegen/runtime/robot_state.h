@@ -45,7 +45,6 @@ typedef struct {
     robot_due due;
     robot_real owed; /* time for which rates are still to be damped, half the last step, s */
     bool touching;
-    bool torn; /* a law by table bent more over the shortest step than can be known */
     int past; /* steps since the touch */
     robot_real h, h_before, per, x; /* last steps, contact point */
     robot_real bump, bent; /* what the bend adds to the force on average of the last step; the bend as it matters */
@@ -86,8 +85,8 @@ void robot_phase_begin(const robot_phase *phase, int level, robot_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void robot_damp(const robot_phase *phase, robot_real speed, robot_real time, robot_real *rate);
-/* Rates of modes, damped until halfway through the next step. */
-void robot_damp_ahead(const robot_state *s, robot_real *rate);
+/* Rates of modes after all that is due, damped until halfway through the next step. */
+void robot_damp_ahead(robot_state *s, robot_real *rate);
 /* What of the contact point's velocity is damped in the other half of a step, which begins with such rates. */
 robot_real robot_owed_slip(const robot_state *s, const robot_real *rate);
 

@@ -114,7 +114,7 @@ def test_a_safe_speed_is_bounded_as_the_design_asks(
     driven = panda_costs(package)["safe_speed (driven)"]
     assert driven.bound is not None
     assert driven.m7.most <= driven.bound <= 240_000  # found, and proven of any input
-    assert driven.stack <= 12_000  # bytes
+    assert driven.stack <= 13_000  # bytes
     assert panda_costs(package)["safe_speed"].m7.mean <= 150_000  # servos and free motors, too
 
 
