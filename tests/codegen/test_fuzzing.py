@@ -109,9 +109,10 @@ def test_fuzzer_notices_a_late_fault(package: Callable[[str], Generated], tmp_pa
     shutil.copytree(package("rr").folder, generated.folder)
     source = generated.folder / "src/rr_release.c"
     text = source.read_text()
-    right = "s->amplitude[i] = a[i];"
-    assert text.count(right) == 1
-    source.write_text(text.replace(right, "s->amplitude[s->past > 4 ? RR_MODES : i] = a[i];"))
+    begin = "void rr_release(rr_state *s)\n{\n"
+    assert text.count(begin) == 1
+    fault = "    volatile rr_real two[2];\n    two[s->past > 4 ? 2 : 0] = s->f;\n"
+    source.write_text(text.replace(begin, begin + fault))
     build(generated, "float", tmp_path / "fuzz")
     said = run(tmp_path / "fuzz", "-runs=100000", *RUN, f"-artifact_prefix={tmp_path}/", ok=False)
     assert "out of bounds" in said

@@ -52,6 +52,13 @@ def test_unknown_robot_lists_the_built_in_ones(tmp_path: Path) -> None:
         load_robot(wrong)
 
 
+def test_a_text_of_another_kind(read: Read) -> None:
+    with pytest.raises(
+        ModelFileError, match=r"not a URDF or MJCF: it is no XML, nor does its name"
+    ):
+        read("# A page", ".md")
+
+
 @pytest.mark.parametrize("suffix", [".xml", ".urdf"])
 @pytest.mark.parametrize(
     "text", ["", "<mujoco", "<html/>", "not xml", "<mujoco><nonsense/></mujoco>"]
