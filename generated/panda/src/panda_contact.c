@@ -42,10 +42,8 @@ void panda_glide(panda_state *s, panda_trial *t)
     const panda_phase *const phase = s->phase;
     const panda_level *const level = s->step;
     panda_real damped[PANDA_MODES];
-    panda_real v = s->drift;
     if (phase->damped) {
         panda_damp_ahead(s, damped);
-        v -= panda_owed_slip(s, damped);
     }
     const panda_motion *const motion = s->motion;
     const panda_real *const rate = phase->damped ? damped : motion->rate;
@@ -53,13 +51,15 @@ void panda_glide(panda_state *s, panda_trial *t)
     const panda_level *const felt = s->due.level;
     const panda_real mean = s->due.mean;
     const panda_real rise = s->due.rise;
-    const panda_real slope = rise*felt->per;
+    const panda_real kicked = phase->damped ? PANDA_R(0.0) : mean; /* damped rates have felt it */
+    const panda_real slope = phase->damped ? PANDA_R(0.0) : rise*felt->per;
+    panda_real v = s->drift;
     panda_real x = s->drifted + s->drift*level->h;
     for (int i = 0; i < phase->active; ++i) {
         const panda_mode_step *const due = &felt->mode[i];
         const panda_mode_step *const step = &level->mode[i];
         const panda_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const panda_real b = rate[i] - due->kick*mean - due->push*slope;
+        const panda_real b = rate[i] - due->kick*kicked - due->push*slope;
         const panda_real place = step->cosine*a + step->sine*b;
         const panda_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;
@@ -68,7 +68,7 @@ void panda_glide(panda_state *s, panda_trial *t)
         v += velocity;
     }
     t->x = x;
-    t->v = v;
+    t->v = phase->damped ? v - panda_owed_slip(s) : v;
 }
 
 /* The root of u^2 + cubic u^3 = depth > 0; near a guess, or else anywhere. */

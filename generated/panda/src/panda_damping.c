@@ -91,23 +91,22 @@ void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, pan
     }
 }
 
-void panda_damp_ahead(panda_state *s, panda_real *rate)
+void panda_damp_ahead(const panda_state *s, panda_real *rate)
 {
-    panda_feel(s);
+    const panda_level *const level = s->due.level;
+    const panda_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i];
+        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
     }
     panda_damp(s->phase, s->speed, s->owed + PANDA_R(0.5)*s->step->h, rate);
 }
 
-panda_real panda_owed_slip(const panda_state *s, const panda_real *rate)
+panda_real panda_owed_slip(const panda_state *s)
 {
     const panda_phase *const phase = s->phase;
-    const panda_level *const level = s->step;
     panda_real slowed = PANDA_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
-        const panda_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
-        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+        slowed += phase->slows[i]*(s->trial->rate[i] - s->speed*phase->modes.row[i]*phase->modes.start[i]);
     }
-    return level->h*slowed;
+    return s->step->h*slowed;
 }

@@ -85,12 +85,12 @@ void panda_phase_begin(const panda_phase *phase, int level, panda_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void panda_damp(const panda_phase *phase, panda_real speed, panda_real time, panda_real *rate);
-/* Rates of modes after all that is due, damped until halfway through the next step. */
-void panda_damp_ahead(panda_state *s, panda_real *rate);
-/* What of the contact point's velocity is damped in the other half of a step, which begins with such rates. */
-panda_real panda_owed_slip(const panda_state *s, const panda_real *rate);
+/* Rates of modes after the force that is due, damped until halfway through the next step. */
+void panda_damp_ahead(const panda_state *s, panda_real *rate);
+/* What of the contact point's velocity is damped in the other half of a step on trial. */
+panda_real panda_owed_slip(const panda_state *s);
 
-/* Moves all modes by a step without forces, on trial. */
+/* Moves all modes by a step, on trial, without a force of its own. */
 void panda_glide(panda_state *s, panda_trial *t);
 
 /* Lets modes feel what is due. */

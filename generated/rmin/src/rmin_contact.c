@@ -42,10 +42,8 @@ void rmin_glide(rmin_state *s, rmin_trial *t)
     const rmin_phase *const phase = s->phase;
     const rmin_level *const level = s->step;
     rmin_real damped[RMIN_MODES];
-    rmin_real v = s->drift;
     if (phase->damped) {
         rmin_damp_ahead(s, damped);
-        v -= rmin_owed_slip(s, damped);
     }
     const rmin_motion *const motion = s->motion;
     const rmin_real *const rate = phase->damped ? damped : motion->rate;
@@ -53,13 +51,15 @@ void rmin_glide(rmin_state *s, rmin_trial *t)
     const rmin_level *const felt = s->due.level;
     const rmin_real mean = s->due.mean;
     const rmin_real rise = s->due.rise;
-    const rmin_real slope = rise*felt->per;
+    const rmin_real kicked = phase->damped ? RMIN_R(0.0) : mean; /* damped rates have felt it */
+    const rmin_real slope = phase->damped ? RMIN_R(0.0) : rise*felt->per;
+    rmin_real v = s->drift;
     rmin_real x = s->drifted + s->drift*level->h;
     for (int i = 0; i < phase->active; ++i) {
         const rmin_mode_step *const due = &felt->mode[i];
         const rmin_mode_step *const step = &level->mode[i];
         const rmin_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const rmin_real b = rate[i] - due->kick*mean - due->push*slope;
+        const rmin_real b = rate[i] - due->kick*kicked - due->push*slope;
         const rmin_real place = step->cosine*a + step->sine*b;
         const rmin_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;
@@ -68,7 +68,7 @@ void rmin_glide(rmin_state *s, rmin_trial *t)
         v += velocity;
     }
     t->x = x;
-    t->v = v;
+    t->v = phase->damped ? v - rmin_owed_slip(s) : v;
 }
 
 /* The root of u^2 + cubic u^3 = depth > 0; near a guess, or else anywhere. */

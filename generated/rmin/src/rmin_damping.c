@@ -91,23 +91,22 @@ void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_re
     }
 }
 
-void rmin_damp_ahead(rmin_state *s, rmin_real *rate)
+void rmin_damp_ahead(const rmin_state *s, rmin_real *rate)
 {
-    rmin_feel(s);
+    const rmin_level *const level = s->due.level;
+    const rmin_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i];
+        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
     }
     rmin_damp(s->phase, s->speed, s->owed + RMIN_R(0.5)*s->step->h, rate);
 }
 
-rmin_real rmin_owed_slip(const rmin_state *s, const rmin_real *rate)
+rmin_real rmin_owed_slip(const rmin_state *s)
 {
     const rmin_phase *const phase = s->phase;
-    const rmin_level *const level = s->step;
     rmin_real slowed = RMIN_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
-        const rmin_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
-        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+        slowed += phase->slows[i]*(s->trial->rate[i] - s->speed*phase->modes.row[i]*phase->modes.start[i]);
     }
-    return level->h*slowed;
+    return s->step->h*slowed;
 }

@@ -85,12 +85,12 @@ void rmin_phase_begin(const rmin_phase *phase, int level, rmin_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rmin_damp(const rmin_phase *phase, rmin_real speed, rmin_real time, rmin_real *rate);
-/* Rates of modes after all that is due, damped until halfway through the next step. */
-void rmin_damp_ahead(rmin_state *s, rmin_real *rate);
-/* What of the contact point's velocity is damped in the other half of a step, which begins with such rates. */
-rmin_real rmin_owed_slip(const rmin_state *s, const rmin_real *rate);
+/* Rates of modes after the force that is due, damped until halfway through the next step. */
+void rmin_damp_ahead(const rmin_state *s, rmin_real *rate);
+/* What of the contact point's velocity is damped in the other half of a step on trial. */
+rmin_real rmin_owed_slip(const rmin_state *s);
 
-/* Moves all modes by a step without forces, on trial. */
+/* Moves all modes by a step, on trial, without a force of its own. */
 void rmin_glide(rmin_state *s, rmin_trial *t);
 
 /* Lets modes feel what is due. */

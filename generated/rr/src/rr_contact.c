@@ -42,10 +42,8 @@ void rr_glide(rr_state *s, rr_trial *t)
     const rr_phase *const phase = s->phase;
     const rr_level *const level = s->step;
     rr_real damped[RR_MODES];
-    rr_real v = s->drift;
     if (phase->damped) {
         rr_damp_ahead(s, damped);
-        v -= rr_owed_slip(s, damped);
     }
     const rr_motion *const motion = s->motion;
     const rr_real *const rate = phase->damped ? damped : motion->rate;
@@ -53,13 +51,15 @@ void rr_glide(rr_state *s, rr_trial *t)
     const rr_level *const felt = s->due.level;
     const rr_real mean = s->due.mean;
     const rr_real rise = s->due.rise;
-    const rr_real slope = rise*felt->per;
+    const rr_real kicked = phase->damped ? RR_R(0.0) : mean; /* damped rates have felt it */
+    const rr_real slope = phase->damped ? RR_R(0.0) : rise*felt->per;
+    rr_real v = s->drift;
     rr_real x = s->drifted + s->drift*level->h;
     for (int i = 0; i < phase->active; ++i) {
         const rr_mode_step *const due = &felt->mode[i];
         const rr_mode_step *const step = &level->mode[i];
         const rr_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const rr_real b = rate[i] - due->kick*mean - due->push*slope;
+        const rr_real b = rate[i] - due->kick*kicked - due->push*slope;
         const rr_real place = step->cosine*a + step->sine*b;
         const rr_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;
@@ -68,7 +68,7 @@ void rr_glide(rr_state *s, rr_trial *t)
         v += velocity;
     }
     t->x = x;
-    t->v = v;
+    t->v = phase->damped ? v - rr_owed_slip(s) : v;
 }
 
 /* The root of u^2 + cubic u^3 = depth > 0; near a guess, or else anywhere. */

@@ -91,23 +91,22 @@ void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate)
     }
 }
 
-void rr_damp_ahead(rr_state *s, rr_real *rate)
+void rr_damp_ahead(const rr_state *s, rr_real *rate)
 {
-    rr_feel(s);
+    const rr_level *const level = s->due.level;
+    const rr_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i];
+        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
     }
     rr_damp(s->phase, s->speed, s->owed + RR_R(0.5)*s->step->h, rate);
 }
 
-rr_real rr_owed_slip(const rr_state *s, const rr_real *rate)
+rr_real rr_owed_slip(const rr_state *s)
 {
     const rr_phase *const phase = s->phase;
-    const rr_level *const level = s->step;
     rr_real slowed = RR_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
-        const rr_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
-        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+        slowed += phase->slows[i]*(s->trial->rate[i] - s->speed*phase->modes.row[i]*phase->modes.start[i]);
     }
-    return level->h*slowed;
+    return s->step->h*slowed;
 }

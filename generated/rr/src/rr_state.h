@@ -85,12 +85,12 @@ void rr_phase_begin(const rr_phase *phase, int level, rr_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void rr_damp(const rr_phase *phase, rr_real speed, rr_real time, rr_real *rate);
-/* Rates of modes after all that is due, damped until halfway through the next step. */
-void rr_damp_ahead(rr_state *s, rr_real *rate);
-/* What of the contact point's velocity is damped in the other half of a step, which begins with such rates. */
-rr_real rr_owed_slip(const rr_state *s, const rr_real *rate);
+/* Rates of modes after the force that is due, damped until halfway through the next step. */
+void rr_damp_ahead(const rr_state *s, rr_real *rate);
+/* What of the contact point's velocity is damped in the other half of a step on trial. */
+rr_real rr_owed_slip(const rr_state *s);
 
-/* Moves all modes by a step without forces, on trial. */
+/* Moves all modes by a step, on trial, without a force of its own. */
 void rr_glide(rr_state *s, rr_trial *t);
 
 /* Lets modes feel what is due. */

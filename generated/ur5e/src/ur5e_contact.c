@@ -42,10 +42,8 @@ void ur5e_glide(ur5e_state *s, ur5e_trial *t)
     const ur5e_phase *const phase = s->phase;
     const ur5e_level *const level = s->step;
     ur5e_real damped[UR5E_MODES];
-    ur5e_real v = s->drift;
     if (phase->damped) {
         ur5e_damp_ahead(s, damped);
-        v -= ur5e_owed_slip(s, damped);
     }
     const ur5e_motion *const motion = s->motion;
     const ur5e_real *const rate = phase->damped ? damped : motion->rate;
@@ -53,13 +51,15 @@ void ur5e_glide(ur5e_state *s, ur5e_trial *t)
     const ur5e_level *const felt = s->due.level;
     const ur5e_real mean = s->due.mean;
     const ur5e_real rise = s->due.rise;
-    const ur5e_real slope = rise*felt->per;
+    const ur5e_real kicked = phase->damped ? UR5E_R(0.0) : mean; /* damped rates have felt it */
+    const ur5e_real slope = phase->damped ? UR5E_R(0.0) : rise*felt->per;
+    ur5e_real v = s->drift;
     ur5e_real x = s->drifted + s->drift*level->h;
     for (int i = 0; i < phase->active; ++i) {
         const ur5e_mode_step *const due = &felt->mode[i];
         const ur5e_mode_step *const step = &level->mode[i];
         const ur5e_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const ur5e_real b = rate[i] - due->kick*mean - due->push*slope;
+        const ur5e_real b = rate[i] - due->kick*kicked - due->push*slope;
         const ur5e_real place = step->cosine*a + step->sine*b;
         const ur5e_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;
@@ -68,7 +68,7 @@ void ur5e_glide(ur5e_state *s, ur5e_trial *t)
         v += velocity;
     }
     t->x = x;
-    t->v = v;
+    t->v = phase->damped ? v - ur5e_owed_slip(s) : v;
 }
 
 /* The root of u^2 + cubic u^3 = depth > 0; near a guess, or else anywhere. */

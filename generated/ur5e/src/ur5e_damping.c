@@ -91,23 +91,22 @@ void ur5e_damp(const ur5e_phase *phase, ur5e_real speed, ur5e_real time, ur5e_re
     }
 }
 
-void ur5e_damp_ahead(ur5e_state *s, ur5e_real *rate)
+void ur5e_damp_ahead(const ur5e_state *s, ur5e_real *rate)
 {
-    ur5e_feel(s);
+    const ur5e_level *const level = s->due.level;
+    const ur5e_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i];
+        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
     }
     ur5e_damp(s->phase, s->speed, s->owed + UR5E_R(0.5)*s->step->h, rate);
 }
 
-ur5e_real ur5e_owed_slip(const ur5e_state *s, const ur5e_real *rate)
+ur5e_real ur5e_owed_slip(const ur5e_state *s)
 {
     const ur5e_phase *const phase = s->phase;
-    const ur5e_level *const level = s->step;
     ur5e_real slowed = UR5E_R(0.0);
     for (int i = 0; i < phase->active; ++i) {
-        const ur5e_real after = level->mode[i].back*s->motion->place[i] + level->mode[i].cosine*rate[i];
-        slowed += phase->slows[i]*(after - s->speed*phase->modes.row[i]*phase->modes.start[i]);
+        slowed += phase->slows[i]*(s->trial->rate[i] - s->speed*phase->modes.row[i]*phase->modes.start[i]);
     }
-    return level->h*slowed;
+    return s->step->h*slowed;
 }

@@ -20,7 +20,7 @@
 /* Share of that by which the force may be larger within a step than at its ends. */
 #define LEAPS UR5E_R(0.5)
 /* Bend over the shortest step, over what is allowed, from which on the force of a law through points is unknown. */
-#define TORN UR5E_R(16.0)
+#define TORN UR5E_R(32.0)
 /* Shortest steps past the horizon, lest a law through points gets stiff just before it. */
 #define BEYOND 2
 /* Levels of the shortest step: in contact, out of it (so near is the touch), in rough runs. */
@@ -73,6 +73,9 @@ void ur5e_phase_begin(const ur5e_phase *phase, int level, ur5e_state *s)
     s->drifted = UR5E_R(0.0);
     s->owed = UR5E_R(0.0);
     change_level(s, level);
+    s->due.level = s->step; /* the former phase's may have fewer modes, whose rest no one wrote */
+    s->due.mean = UR5E_R(0.0);
+    s->due.rise = UR5E_R(0.0);
 }
 
 /* Advances the clock, and lengthens the next step where it may. */
@@ -268,9 +271,6 @@ static void start(ur5e_impact *impact, ur5e_real speed, bool rough, ur5e_state *
     s->time = zero;
     s->motion = &s->motions[0];
     s->trial = &s->motions[1];
-    s->due.level = s->step;
-    s->due.mean = zero;
-    s->due.rise = zero;
     for (int i = 0; i < phase->active; ++i) {
         s->motion->place[i] = zero;
         s->motion->rate[i] = phase->modes.row[i]*phase->modes.start[i]*speed;

@@ -85,12 +85,12 @@ void ur5e_phase_begin(const ur5e_phase *phase, int level, ur5e_state *s);
 
 /* Damping of joints and of a servo over a time, to second order: rate -= time S'DS (rate - what it is led by). */
 void ur5e_damp(const ur5e_phase *phase, ur5e_real speed, ur5e_real time, ur5e_real *rate);
-/* Rates of modes after all that is due, damped until halfway through the next step. */
-void ur5e_damp_ahead(ur5e_state *s, ur5e_real *rate);
-/* What of the contact point's velocity is damped in the other half of a step, which begins with such rates. */
-ur5e_real ur5e_owed_slip(const ur5e_state *s, const ur5e_real *rate);
+/* Rates of modes after the force that is due, damped until halfway through the next step. */
+void ur5e_damp_ahead(const ur5e_state *s, ur5e_real *rate);
+/* What of the contact point's velocity is damped in the other half of a step on trial. */
+ur5e_real ur5e_owed_slip(const ur5e_state *s);
 
-/* Moves all modes by a step without forces, on trial. */
+/* Moves all modes by a step, on trial, without a force of its own. */
 void ur5e_glide(ur5e_state *s, ur5e_trial *t);
 
 /* Lets modes feel what is due. */
