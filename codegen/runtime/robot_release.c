@@ -174,6 +174,5 @@ void robot_release(robot_state *s)
     s->u_before += more*(s->f - s->rise);
     s->past = s->past > 1 ? 1 : s->past;
     robot_phase_begin(next, s->touching ? LET_GO : 0, s);
-    s->due.level = s->step; /* nothing is due, but what that would do to each mode has to be a number */
 }
 
