@@ -30,10 +30,10 @@
 #define JUMPS RMIN_R(0.1)
 #define JUMP_STEP RMIN_R(24.0)
 /*
- * Least that a mode moves the contact point by, as a share of all that moves it: as modes are followed by that, one
- * that hardly does must not be lost, and so little is not felt.
+ * Least that a mode moves the contact point by, as a share of all that moves it: modes are followed by that, and what
+ * they do themselves is told from it. Near singular poses joints turn fast that hardly move the point: 1e-6 was felt.
  */
-#define LEAST_ROW RMIN_R(1e-6)
+#define LEAST_ROW RMIN_R(1e-12)
 /* Steps counted; more than any budget has. */
 #define MOST RMIN_R(1e6)
 
