@@ -14,7 +14,7 @@
 #define HARDLY UR5E_R(0.99)
 #define COUNTS_ELSEWHERE UR5E_R(0.985)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
-#define TRIALS 16
+#define TRIALS 32
 #define APART UR5E_R(4e-3)
 /*
  * Where a cover ends as if it were solid the force of a law by table jumps with speed, from which one on is known to
