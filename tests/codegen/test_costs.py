@@ -121,7 +121,7 @@ def test_a_safe_speed_is_bounded_as_the_design_asks(
 @pytest.mark.xfail(
     strict=True,
     reason="with all modes, all contacts and a release a safe speed of driven motors takes some "
-    "70,000 instructions: 28,000 to prepare both phases, the rest for 62 steps of 8 modes",
+    "63,000 instructions: 29,000 to prepare and release, the rest for 60 steps of 7 modes",
 )
 def test_a_safe_speed_costs_what_the_design_allows(package: Callable[[str], Generated]) -> None:
     found = panda_costs(package)
