@@ -203,7 +203,8 @@ int robot_impact_prepare(const robot_region *region, const robot_params *p, int 
     }
     const robot_real size =
         force > ROBOT_R(0.0) ? force : robot_two_body_force(region, impact->mobility, -force);
-    impact->scale = ROBOT_R(0.5)*size;
+    const robot_real reached = region->stiffness*ROBOT_HORIZON(p) + region->damping; /* by the horizon, at 1 m/s */
+    impact->scale = ROBOT_R(0.5)*(force > ROBOT_R(0.0) ? size : ROBOT_FMIN(size, -force*reached));
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const robot_real damped = region->damping*ROBOT_SQRT(impact->mobility/region->stiffness);
     impact->smooth = ROBOT_FMAX(ROBOT_R(1.0)/(ROBOT_R(1.0) + ROBOT_R(4.0)*damped), LEAST_SMOOTH);
