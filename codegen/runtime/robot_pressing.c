@@ -69,7 +69,8 @@ static bool keeps(robot_pressing *k, const robot_region *region, robot_real spee
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = robot_impact_prepare(region, &k->p, motors, limit, &k->impact) == ROBOT_OK;
         const robot_real late = kept ? pressed_by(k, speed, CALM*limit) : ROBOT_REAL_MAX;
-        kept = late <= ROBOT_KEPT*limit - OF_PEAK*k->peak;
+        const robot_real counts = k->impact.smooth > ROBOT_HARDLY ? ROBOT_COUNTS_ELSEWHERE : ROBOT_R(1.0);
+        kept = late <= ROBOT_KEPT*counts*limit - OF_PEAK*k->peak;
         k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;

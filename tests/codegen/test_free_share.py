@@ -30,8 +30,10 @@ def constant(name: str, path: Path = RUNTIME / "robot_safe_speed.c") -> float:
     return float(found[1])
 
 
-KEPT = constant("ROBOT_KEPT", RUNTIME / "robot_impact.h")
-NEAR, ELSEWHERE = constant("NEAR_ENOUGH"), constant("COUNTS_ELSEWHERE")
+IMPACT = RUNTIME / "robot_impact.h"
+
+KEPT, ELSEWHERE = constant("ROBOT_KEPT", IMPACT), constant("ROBOT_COUNTS_ELSEWHERE", IMPACT)
+NEAR = constant("NEAR_ENOUGH")
 
 
 def per_cent(share: float) -> str:
