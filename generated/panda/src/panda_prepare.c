@@ -203,7 +203,8 @@ int panda_impact_prepare(const panda_region *region, const panda_params *p, int 
     }
     const panda_real size =
         force > PANDA_R(0.0) ? force : panda_two_body_force(region, impact->mobility, -force);
-    impact->scale = PANDA_R(0.5)*size;
+    const panda_real reached = region->stiffness*PANDA_HORIZON(p) + region->damping; /* by the horizon, at 1 m/s */
+    impact->scale = PANDA_R(0.5)*(force > PANDA_R(0.0) ? size : PANDA_FMIN(size, -force*reached));
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const panda_real damped = region->damping*PANDA_SQRT(impact->mobility/region->stiffness);
     impact->smooth = PANDA_FMAX(PANDA_R(1.0)/(PANDA_R(1.0) + PANDA_R(4.0)*damped), LEAST_SMOOTH);

@@ -69,7 +69,8 @@ static bool keeps(panda_pressing *k, const panda_region *region, panda_real spee
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = panda_impact_prepare(region, &k->p, motors, limit, &k->impact) == PANDA_OK;
         const panda_real late = kept ? pressed_by(k, speed, CALM*limit) : PANDA_REAL_MAX;
-        kept = late <= PANDA_KEPT*limit - OF_PEAK*k->peak;
+        const panda_real counts = k->impact.smooth > PANDA_HARDLY ? PANDA_COUNTS_ELSEWHERE : PANDA_R(1.0);
+        kept = late <= PANDA_KEPT*counts*limit - OF_PEAK*k->peak;
         k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;

@@ -118,6 +118,15 @@ typedef struct {
 /* Smoothness below which a body's damper makes forces ripple with modes that steps pass over. */
 #define RMIN_HARD RMIN_R(0.4)
 
+/*
+ * Smoothness above which a body hardly damps, so that errors grow from contact to contact, and the share of the limit
+ * that counts there and before a hard damper: forces on such bodies were up to 2e-2 and 1.5e-2 (1.4e-2 at 0.26) too low
+ * in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors hold the contact
+ * point, and the body is held, too.
+ */
+#define RMIN_HARDLY RMIN_R(0.99)
+#define RMIN_COUNTS_ELSEWHERE RMIN_R(0.985)
+
 /* Everything that does not depend on the speed. */
 typedef struct {
     rmin_arrival arrival;

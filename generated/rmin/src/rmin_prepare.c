@@ -203,7 +203,8 @@ int rmin_impact_prepare(const rmin_region *region, const rmin_params *p, int mot
     }
     const rmin_real size =
         force > RMIN_R(0.0) ? force : rmin_two_body_force(region, impact->mobility, -force);
-    impact->scale = RMIN_R(0.5)*size;
+    const rmin_real reached = region->stiffness*RMIN_HORIZON(p) + region->damping; /* by the horizon, at 1 m/s */
+    impact->scale = RMIN_R(0.5)*(force > RMIN_R(0.0) ? size : RMIN_FMIN(size, -force*reached));
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rmin_real damped = region->damping*RMIN_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RMIN_FMAX(RMIN_R(1.0)/(RMIN_R(1.0) + RMIN_R(4.0)*damped), LEAST_SMOOTH);

@@ -69,7 +69,8 @@ static bool keeps(rmin_pressing *k, const rmin_region *region, rmin_real speed, 
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = rmin_impact_prepare(region, &k->p, motors, limit, &k->impact) == RMIN_OK;
         const rmin_real late = kept ? pressed_by(k, speed, CALM*limit) : RMIN_REAL_MAX;
-        kept = late <= RMIN_KEPT*limit - OF_PEAK*k->peak;
+        const rmin_real counts = k->impact.smooth > RMIN_HARDLY ? RMIN_COUNTS_ELSEWHERE : RMIN_R(1.0);
+        kept = late <= RMIN_KEPT*counts*limit - OF_PEAK*k->peak;
         k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;

@@ -203,7 +203,8 @@ int rr_impact_prepare(const rr_region *region, const rr_params *p, int motors,
     }
     const rr_real size =
         force > RR_R(0.0) ? force : rr_two_body_force(region, impact->mobility, -force);
-    impact->scale = RR_R(0.5)*size;
+    const rr_real reached = region->stiffness*RR_HORIZON(p) + region->damping; /* by the horizon, at 1 m/s */
+    impact->scale = RR_R(0.5)*(force > RR_R(0.0) ? size : RR_FMIN(size, -force*reached));
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const rr_real damped = region->damping*RR_SQRT(impact->mobility/region->stiffness);
     impact->smooth = RR_FMAX(RR_R(1.0)/(RR_R(1.0) + RR_R(4.0)*damped), LEAST_SMOOTH);

@@ -69,7 +69,8 @@ static bool keeps(rr_pressing *k, const rr_region *region, rr_real speed, rr_rea
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = rr_impact_prepare(region, &k->p, motors, limit, &k->impact) == RR_OK;
         const rr_real late = kept ? pressed_by(k, speed, CALM*limit) : RR_REAL_MAX;
-        kept = late <= RR_KEPT*limit - OF_PEAK*k->peak;
+        const rr_real counts = k->impact.smooth > RR_HARDLY ? RR_COUNTS_ELSEWHERE : RR_R(1.0);
+        kept = late <= RR_KEPT*counts*limit - OF_PEAK*k->peak;
         k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;

@@ -5,14 +5,6 @@
 /* Share of the limit at which trials aim, below RR_KEPT, and from which on one is near enough. */
 #define AIM RR_R(0.9825)
 #define NEAR_ENOUGH RR_R(0.977)
-/*
- * Smoothness above which a body hardly damps, so that errors grow from contact to contact, and the share of the limit
- * that counts there and before a hard damper: forces on such bodies were up to 2e-2 and 1.5e-2 (1.4e-2 at 0.26) too low
- * in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors hold the contact
- * point, and the body is held, too.
- */
-#define HARDLY RR_R(0.99)
-#define COUNTS_ELSEWHERE RR_R(0.985)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 32
 #define APART RR_R(4e-3)
@@ -178,8 +170,8 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
             return status;
         }
         const bool is_held = !RR_STRUCTURED && !(impact->mobility > RR_LEAST_MOBILITY);
-        const bool hardly_damps = impact->smooth > HARDLY && !is_held;
-        const rr_real counts = impact->smooth < RR_HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
+        const bool hardly_damps = impact->smooth > RR_HARDLY && !is_held;
+        const rr_real counts = impact->smooth < RR_HARD || hardly_damps ? RR_COUNTS_ELSEWHERE*limit : limit;
         const rr_real guess = rr_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, RR_R(0.0), RR_R(0.0), RR_R(0.0), RR_R(0.0)};
         budget.fine = false;

@@ -203,7 +203,8 @@ int ur5e_impact_prepare(const ur5e_region *region, const ur5e_params *p, int mot
     }
     const ur5e_real size =
         force > UR5E_R(0.0) ? force : ur5e_two_body_force(region, impact->mobility, -force);
-    impact->scale = UR5E_R(0.5)*size;
+    const ur5e_real reached = region->stiffness*UR5E_HORIZON(p) + region->damping; /* by the horizon, at 1 m/s */
+    impact->scale = UR5E_R(0.5)*(force > UR5E_R(0.0) ? size : UR5E_FMIN(size, -force*reached));
     impact->hold = region->stiffness + region->damping*region->damping*impact->mobility;
     const ur5e_real damped = region->damping*UR5E_SQRT(impact->mobility/region->stiffness);
     impact->smooth = UR5E_FMAX(UR5E_R(1.0)/(UR5E_R(1.0) + UR5E_R(4.0)*damped), LEAST_SMOOTH);

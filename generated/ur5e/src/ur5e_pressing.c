@@ -69,7 +69,8 @@ static bool keeps(ur5e_pressing *k, const ur5e_region *region, ur5e_real speed, 
     for (int motors = first; motors <= last && kept; ++motors) {
         kept = ur5e_impact_prepare(region, &k->p, motors, limit, &k->impact) == UR5E_OK;
         const ur5e_real late = kept ? pressed_by(k, speed, CALM*limit) : UR5E_REAL_MAX;
-        kept = late <= UR5E_KEPT*limit - OF_PEAK*k->peak;
+        const ur5e_real counts = k->impact.smooth > UR5E_HARDLY ? UR5E_COUNTS_ELSEWHERE : UR5E_R(1.0);
+        kept = late <= UR5E_KEPT*counts*limit - OF_PEAK*k->peak;
         k->calm = kept && k->calm && k->watch.settled && k->watch.late <= CALM*limit;
     }
     return kept;

@@ -5,14 +5,6 @@
 /* Share of the limit at which trials aim, below UR5E_KEPT, and from which on one is near enough. */
 #define AIM UR5E_R(0.9825)
 #define NEAR_ENOUGH UR5E_R(0.977)
-/*
- * Smoothness above which a body hardly damps, so that errors grow from contact to contact, and the share of the limit
- * that counts there and before a hard damper: forces on such bodies were up to 2e-2 and 1.5e-2 (1.4e-2 at 0.26) too low
- * in inputs that a search climbed to. Parts of the human body are between. Nothing swings where motors hold the contact
- * point, and the body is held, too.
- */
-#define HARDLY UR5E_R(0.99)
-#define COUNTS_ELSEWHERE UR5E_R(0.985)
 /* Most trials, and how near two speeds must be between which the force jumps over the limit. */
 #define TRIALS 32
 #define APART UR5E_R(4e-3)
@@ -178,8 +170,8 @@ int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real l
             return status;
         }
         const bool is_held = !UR5E_STRUCTURED && !(impact->mobility > UR5E_LEAST_MOBILITY);
-        const bool hardly_damps = impact->smooth > HARDLY && !is_held;
-        const ur5e_real counts = impact->smooth < UR5E_HARD || hardly_damps ? COUNTS_ELSEWHERE*limit : limit;
+        const bool hardly_damps = impact->smooth > UR5E_HARDLY && !is_held;
+        const ur5e_real counts = impact->smooth < UR5E_HARD || hardly_damps ? UR5E_COUNTS_ELSEWHERE*limit : limit;
         const ur5e_real guess = ur5e_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
         budget.fine = false;
