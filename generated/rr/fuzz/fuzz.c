@@ -242,6 +242,7 @@ static void draw(void)
     const unsigned int flags = next(0);
     const bool far = (flags & 8u) != 0u;
     any_bits = (flags & 7u) == 7u;
+    is_odd = false;
     draw_params();
     draw_region();
     point = (flags & 192u) != 0u ? 0 : (int)(next(1) % (RR_POINTS + 2u)) - 1;
