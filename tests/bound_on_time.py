@@ -26,7 +26,7 @@ LIBRARY = {"memcpy": 60, "memset": 60, "cbrtf": 45, "expf": 80, "sinf": 600, "co
 
 NEVER = (
     *("damp", "damp_ahead", "damping_rate", "servo_modes", "pass", "two_body_force", "law_press"),
-    *("force_between", "slip_off", "owed_slip", "slow_contact"),
+    *("force_between", "slip_off", "owed_slip", "slowing"),
 )
 """Functions of servos, of what presses late, of peak forces and of other laws than Hertz's."""
 
@@ -49,7 +49,7 @@ def bound_of_driven_safe_speed(package: Generated, image: Path, steps: int) -> i
     known = {f"{name}_{function}": 0 for function in NEVER}
     known |= {f"{name}_law_twice_work": 80, f"{name}_law_stiffness": 75, f"{name}_law_is_one": 12}
     # no square root is of a negative number, for which the library is asked
-    known |= LIBRARY | {"piece_of": 0, "piece_of.isra.0": 0, "sqrtf": 0, "blur_of_spring": 0}
+    known |= LIBRARY | {"piece_of": 0, "piece_of.isra.0": 0, "sqrtf": 0}
     once = (f"{name}_impact_let_go",)
     paths = LongestPath(image, lambda file, line: rounds(f"{file} {line}", name, n), once, known)
     whole, loose = paths.of(f"{name}_safe_speed"), paths.of(once[0])
@@ -59,7 +59,7 @@ def bound_of_driven_safe_speed(package: Generated, image: Path, steps: int) -> i
 def rounds(line: str, name: str, n: int) -> Rounds:
     """Return the rounds of a loop by its source and line."""
     rows, squares = sum(range(2, n)), sum(m * m for m in range(2, n))
-    qr_steps, qr_turns = 2 * n + 2, n * (n + 2)  # MOST_STEPS, MOST_TURNS
+    qr_steps, qr_turns = 2 * n + 2, n * (n + 2)  # MOST_QR, MOST_ROTATIONS
     N, modes = name.upper(), n + 2  # one of links and rotors together, one of the body
     table: list[tuple[str, Rounds]] = [
         (r"ticks > 0", Budget()),

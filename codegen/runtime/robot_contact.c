@@ -30,8 +30,8 @@ void robot_feel(robot_state *s)
     const robot_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
         const robot_mode_step *const step = &level->mode[i];
-        motion->place[i] -= step->push*s->due.mean + step->late*s->due.rise;
-        motion->rate[i] -= step->kick*s->due.mean + step->push*slope;
+        motion->place[i] = robot_felt_place(step, motion->place[i], s->due.mean, s->due.rise);
+        motion->rate[i] = robot_felt_rate(step, motion->rate[i], s->due.mean, slope);
     }
     s->due.mean = ROBOT_R(0.0);
     s->due.rise = ROBOT_R(0.0);
@@ -58,8 +58,8 @@ void robot_glide(robot_state *s, robot_trial *t)
     for (int i = 0; i < phase->active; ++i) {
         const robot_mode_step *const due = &felt->mode[i];
         const robot_mode_step *const step = &level->mode[i];
-        const robot_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const robot_real b = rate[i] - due->kick*kicked - due->push*slope;
+        const robot_real a = robot_felt_place(due, motion->place[i], mean, rise);
+        const robot_real b = robot_felt_rate(due, rate[i], kicked, slope);
         const robot_real place = step->cosine*a + step->sine*b;
         const robot_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;

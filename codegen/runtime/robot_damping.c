@@ -26,7 +26,7 @@ robot_real robot_damping_rate(robot_phase *phase)
     return rate;
 }
 
-void robot_slow_contact(robot_phase *phase)
+void robot_slowing(robot_phase *phase)
 {
     const robot_modes *const modes = &phase->modes;
     robot_real held[ROBOT_DAMPERS];
@@ -96,7 +96,7 @@ void robot_damp_ahead(const robot_state *s, robot_real *rate)
     const robot_level *const level = s->due.level;
     const robot_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
+        rate[i] = robot_felt_rate(&level->mode[i], s->motion->rate[i], s->due.mean, slope);
     }
     robot_damp(s->phase, s->speed, s->owed + ROBOT_R(0.5)*s->step->h, rate);
 }

@@ -43,15 +43,15 @@ typedef struct {
  * Steps and rotations that find eigenvalues of N rows to four digits: of 110,000 compliances of seven joints none
  * took more than 14 and 54. What is not done by then fails.
  */
-#define ROBOT_MOST_STEPS (2*ROBOT_N + 2)
-#define ROBOT_MOST_TURNS (ROBOT_N*(ROBOT_N + 2))
+#define ROBOT_MOST_QR (2*ROBOT_N + 2)
+#define ROBOT_MOST_ROTATIONS (ROBOT_N*(ROBOT_N + 2))
 
 /* Q of Q diag(values) Q', of N rows: reflections I - scale v v', and then rotations of steps. */
 typedef struct {
     robot_real v[ROBOT_N][ROBOT_N], scale[ROBOT_N];
     int steps, count;
-    unsigned char first[ROBOT_MOST_STEPS], last[ROBOT_MOST_STEPS]; /* rows of each */
-    robot_rotation by[ROBOT_MOST_TURNS];
+    unsigned char first[ROBOT_MOST_QR], last[ROBOT_MOST_QR]; /* rows of each */
+    robot_rotation by[ROBOT_MOST_ROTATIONS];
 } robot_turns;
 
 /*
@@ -287,7 +287,7 @@ robot_real robot_together(const robot_arrival *arrival, const robot_params *p);
 /* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
 robot_real robot_damping_rate(robot_phase *phase);
 /* Takes from the contact point's velocity after steps what is damped in their other half. */
-void robot_slow_contact(robot_phase *phase);
+void robot_slowing(robot_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void robot_phase_steps(const robot_impact *impact, robot_real time, robot_phase *phase);
 
@@ -315,8 +315,8 @@ bool robot_spectrum(int size, robot_real small, robot_matrix A, robot_real *valu
     robot_turns *turns);
 #if ROBOT_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void robot_to_modes(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N]);
-void robot_from_modes(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N]);
+void robot_turn_forth(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N]);
+void robot_turn_back(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N]);
 #endif
 
 #endif

@@ -59,7 +59,7 @@ static void bend(const robot_state *s, robot_real a[ROBOT_MODES], robot_real b[R
             a[from] *= fast;
             b[from] *= fast;
         }
-        robot_from_modes(&modes->turns, a, b);
+        robot_turn_back(&modes->turns, a, b);
     }
 }
 #endif
@@ -109,7 +109,7 @@ void robot_release(robot_state *s)
         x += motion->place[i];
         v += motion->rate[i];
     }
-    robot_to_modes(&modes->turns, place, rate);
+    robot_turn_forth(&modes->turns, place, rate);
     for (int i = 1; i < modes->count; ++i) {
         const int from = modes->from[i];
         if (from < ROBOT_N) {
@@ -175,4 +175,3 @@ void robot_release(robot_state *s)
     s->past = s->past > 1 ? 1 : s->past;
     robot_phase_begin(next, s->touching ? LET_GO : 0, s);
 }
-

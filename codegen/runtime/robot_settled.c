@@ -18,14 +18,13 @@
 /* Place and velocity of the contact point by a mode, after the force that is due. */
 static robot_real place_of(const robot_state *s, int mode)
 {
-    const robot_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->place[mode] - step->push*s->due.mean - step->late*s->due.rise;
+    return robot_felt_place(&s->due.level->mode[mode], s->motion->place[mode], s->due.mean, s->due.rise);
 }
 
 static robot_real rate_of(const robot_state *s, int mode)
 {
-    const robot_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->rate[mode] - step->kick*s->due.mean - step->push*s->due.rise*s->due.level->per;
+    const robot_level *const level = s->due.level;
+    return robot_felt_rate(&level->mode[mode], s->motion->rate[mode], s->due.mean, s->due.rise*level->per);
 }
 
 bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, robot_real share)
@@ -53,9 +52,10 @@ bool robot_is_settled(const robot_state *s, robot_real force, robot_real depth, 
     robot_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
         + (is_hertz ? ROBOT_R(0.8) : ROBOT_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
-        const robot_real place = place_of(s, i);
-        const robot_real rate = rate_of(s, i);
-        twice += (rate*rate + modes->squared[i]*place*place)/(modes->row[i]*modes->row[i]);
+        const robot_real per = ROBOT_R(1.0)/modes->row[i];
+        const robot_real amplitude = per*place_of(s, i);
+        const robot_real rate = per*rate_of(s, i);
+        twice += rate*rate + modes->squared[i]*amplitude*amplitude;
     }
     if (phase == &impact->phase[ROBOT_LED] && impact->last == ROBOT_LOOSE
         && (!ROBOT_STRUCTURED || !(away*away > twice*impact->rotors))) {

@@ -152,7 +152,7 @@ bool robot_spectrum(int size, robot_real small, robot_matrix A, robot_real *valu
     }
     const robot_real noise = ROBOT_EPSILON*ROBOT_EPSILON*all*all;
     int last = size - 1;
-    const int most = turns != NULL ? ROBOT_MOST_STEPS : MOST_STEPS(size);
+    const int most = turns != NULL ? ROBOT_MOST_QR : MOST_STEPS(size);
     for (int step = 0; step <= most; ++step) {
         while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
@@ -170,7 +170,7 @@ bool robot_spectrum(int size, robot_real small, robot_matrix A, robot_real *valu
         }
         robot_rotation *by = passing;
         if (turns != NULL) {
-            if (step == most || kept + last - first > ROBOT_MOST_TURNS) {
+            if (step == most || kept + last - first > ROBOT_MOST_ROTATIONS) {
                 return false;
             }
             by = &turns->by[kept];
@@ -206,7 +206,7 @@ static void mirror_both(int first, const robot_real *v, robot_real scale, robot_
     }
 }
 
-void robot_to_modes(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N])
+void robot_turn_forth(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N])
 {
     const robot_rotation *by = turns->by;
     for (int k = 0; k + 2 < ROBOT_N; ++k) {
@@ -233,7 +233,7 @@ void robot_to_modes(const robot_turns *turns, robot_real x[ROBOT_N], robot_real 
     }
 }
 
-void robot_from_modes(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N])
+void robot_turn_back(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N])
 {
     const robot_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {

@@ -26,6 +26,19 @@ typedef struct {
     robot_real mean, rise;
 } robot_due;
 
+/* A mode's place after the force of a step, and its velocity; slope is the force's rise over the step's length. */
+static inline robot_real robot_felt_place(
+    const robot_mode_step *step, robot_real place, robot_real mean, robot_real rise)
+{
+    return place - step->push*mean - step->late*rise;
+}
+
+static inline robot_real robot_felt_rate(
+    const robot_mode_step *step, robot_real rate, robot_real mean, robot_real slope)
+{
+    return rate - step->kick*mean - step->push*slope;
+}
+
 typedef struct {
     robot_impact *impact;
     const robot_region *region;
