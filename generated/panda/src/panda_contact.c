@@ -30,8 +30,8 @@ void panda_feel(panda_state *s)
     const panda_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
         const panda_mode_step *const step = &level->mode[i];
-        motion->place[i] -= step->push*s->due.mean + step->late*s->due.rise;
-        motion->rate[i] -= step->kick*s->due.mean + step->push*slope;
+        motion->place[i] = panda_felt_place(step, motion->place[i], s->due.mean, s->due.rise);
+        motion->rate[i] = panda_felt_rate(step, motion->rate[i], s->due.mean, slope);
     }
     s->due.mean = PANDA_R(0.0);
     s->due.rise = PANDA_R(0.0);
@@ -58,8 +58,8 @@ void panda_glide(panda_state *s, panda_trial *t)
     for (int i = 0; i < phase->active; ++i) {
         const panda_mode_step *const due = &felt->mode[i];
         const panda_mode_step *const step = &level->mode[i];
-        const panda_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const panda_real b = rate[i] - due->kick*kicked - due->push*slope;
+        const panda_real a = panda_felt_place(due, motion->place[i], mean, rise);
+        const panda_real b = panda_felt_rate(due, rate[i], kicked, slope);
         const panda_real place = step->cosine*a + step->sine*b;
         const panda_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;

@@ -26,7 +26,7 @@ panda_real panda_damping_rate(panda_phase *phase)
     return rate;
 }
 
-void panda_slow_contact(panda_phase *phase)
+void panda_slowing(panda_phase *phase)
 {
     const panda_modes *const modes = &phase->modes;
     panda_real held[PANDA_DAMPERS];
@@ -96,7 +96,7 @@ void panda_damp_ahead(const panda_state *s, panda_real *rate)
     const panda_level *const level = s->due.level;
     const panda_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
+        rate[i] = panda_felt_rate(&level->mode[i], s->motion->rate[i], s->due.mean, slope);
     }
     panda_damp(s->phase, s->speed, s->owed + PANDA_R(0.5)*s->step->h, rate);
 }

@@ -43,15 +43,15 @@ typedef struct {
  * Steps and rotations that find eigenvalues of N rows to four digits: of 110,000 compliances of seven joints none
  * took more than 14 and 54. What is not done by then fails.
  */
-#define PANDA_MOST_STEPS (2*PANDA_N + 2)
-#define PANDA_MOST_TURNS (PANDA_N*(PANDA_N + 2))
+#define PANDA_MOST_QR (2*PANDA_N + 2)
+#define PANDA_MOST_ROTATIONS (PANDA_N*(PANDA_N + 2))
 
 /* Q of Q diag(values) Q', of N rows: reflections I - scale v v', and then rotations of steps. */
 typedef struct {
     panda_real v[PANDA_N][PANDA_N], scale[PANDA_N];
     int steps, count;
-    unsigned char first[PANDA_MOST_STEPS], last[PANDA_MOST_STEPS]; /* rows of each */
-    panda_rotation by[PANDA_MOST_TURNS];
+    unsigned char first[PANDA_MOST_QR], last[PANDA_MOST_QR]; /* rows of each */
+    panda_rotation by[PANDA_MOST_ROTATIONS];
 } panda_turns;
 
 /*
@@ -287,7 +287,7 @@ panda_real panda_together(const panda_arrival *arrival, const panda_params *p);
 /* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
 panda_real panda_damping_rate(panda_phase *phase);
 /* Takes from the contact point's velocity after steps what is damped in their other half. */
-void panda_slow_contact(panda_phase *phase);
+void panda_slowing(panda_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void panda_phase_steps(const panda_impact *impact, panda_real time, panda_phase *phase);
 
@@ -315,8 +315,8 @@ bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *valu
     panda_turns *turns);
 #if PANDA_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void panda_to_modes(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N]);
-void panda_from_modes(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N]);
+void panda_turn_forth(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N]);
+void panda_turn_back(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N]);
 #endif
 
 #endif

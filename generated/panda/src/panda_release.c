@@ -59,7 +59,7 @@ static void bend(const panda_state *s, panda_real a[PANDA_MODES], panda_real b[P
             a[from] *= fast;
             b[from] *= fast;
         }
-        panda_from_modes(&modes->turns, a, b);
+        panda_turn_back(&modes->turns, a, b);
     }
 }
 #endif
@@ -109,7 +109,7 @@ void panda_release(panda_state *s)
         x += motion->place[i];
         v += motion->rate[i];
     }
-    panda_to_modes(&modes->turns, place, rate);
+    panda_turn_forth(&modes->turns, place, rate);
     for (int i = 1; i < modes->count; ++i) {
         const int from = modes->from[i];
         if (from < PANDA_N) {
@@ -175,4 +175,3 @@ void panda_release(panda_state *s)
     s->past = s->past > 1 ? 1 : s->past;
     panda_phase_begin(next, s->touching ? LET_GO : 0, s);
 }
-

@@ -18,14 +18,13 @@
 /* Place and velocity of the contact point by a mode, after the force that is due. */
 static panda_real place_of(const panda_state *s, int mode)
 {
-    const panda_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->place[mode] - step->push*s->due.mean - step->late*s->due.rise;
+    return panda_felt_place(&s->due.level->mode[mode], s->motion->place[mode], s->due.mean, s->due.rise);
 }
 
 static panda_real rate_of(const panda_state *s, int mode)
 {
-    const panda_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->rate[mode] - step->kick*s->due.mean - step->push*s->due.rise*s->due.level->per;
+    const panda_level *const level = s->due.level;
+    return panda_felt_rate(&level->mode[mode], s->motion->rate[mode], s->due.mean, s->due.rise*level->per);
 }
 
 bool panda_is_settled(const panda_state *s, panda_real force, panda_real depth, panda_real share)
@@ -53,9 +52,10 @@ bool panda_is_settled(const panda_state *s, panda_real force, panda_real depth, 
     panda_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
         + (is_hertz ? PANDA_R(0.8) : PANDA_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
-        const panda_real place = place_of(s, i);
-        const panda_real rate = rate_of(s, i);
-        twice += (rate*rate + modes->squared[i]*place*place)/(modes->row[i]*modes->row[i]);
+        const panda_real per = PANDA_R(1.0)/modes->row[i];
+        const panda_real amplitude = per*place_of(s, i);
+        const panda_real rate = per*rate_of(s, i);
+        twice += rate*rate + modes->squared[i]*amplitude*amplitude;
     }
     if (phase == &impact->phase[PANDA_LED] && impact->last == PANDA_LOOSE
         && (!PANDA_STRUCTURED || !(away*away > twice*impact->rotors))) {

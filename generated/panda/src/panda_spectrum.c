@@ -152,7 +152,7 @@ bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *valu
     }
     const panda_real noise = PANDA_EPSILON*PANDA_EPSILON*all*all;
     int last = size - 1;
-    const int most = turns != NULL ? PANDA_MOST_STEPS : MOST_STEPS(size);
+    const int most = turns != NULL ? PANDA_MOST_QR : MOST_STEPS(size);
     for (int step = 0; step <= most; ++step) {
         while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
@@ -170,7 +170,7 @@ bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *valu
         }
         panda_rotation *by = passing;
         if (turns != NULL) {
-            if (step == most || kept + last - first > PANDA_MOST_TURNS) {
+            if (step == most || kept + last - first > PANDA_MOST_ROTATIONS) {
                 return false;
             }
             by = &turns->by[kept];
@@ -206,7 +206,7 @@ static void mirror_both(int first, const panda_real *v, panda_real scale, panda_
     }
 }
 
-void panda_to_modes(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
+void panda_turn_forth(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
 {
     const panda_rotation *by = turns->by;
     for (int k = 0; k + 2 < PANDA_N; ++k) {
@@ -233,7 +233,7 @@ void panda_to_modes(const panda_turns *turns, panda_real x[PANDA_N], panda_real 
     }
 }
 
-void panda_from_modes(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
+void panda_turn_back(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
 {
     const panda_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {

@@ -26,6 +26,19 @@ typedef struct {
     panda_real mean, rise;
 } panda_due;
 
+/* A mode's place after the force of a step, and its velocity; slope is the force's rise over the step's length. */
+static inline panda_real panda_felt_place(
+    const panda_mode_step *step, panda_real place, panda_real mean, panda_real rise)
+{
+    return place - step->push*mean - step->late*rise;
+}
+
+static inline panda_real panda_felt_rate(
+    const panda_mode_step *step, panda_real rate, panda_real mean, panda_real slope)
+{
+    return rate - step->kick*mean - step->push*slope;
+}
+
 typedef struct {
     panda_impact *impact;
     const panda_region *region;

@@ -30,8 +30,8 @@ void rmin_feel(rmin_state *s)
     const rmin_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
         const rmin_mode_step *const step = &level->mode[i];
-        motion->place[i] -= step->push*s->due.mean + step->late*s->due.rise;
-        motion->rate[i] -= step->kick*s->due.mean + step->push*slope;
+        motion->place[i] = rmin_felt_place(step, motion->place[i], s->due.mean, s->due.rise);
+        motion->rate[i] = rmin_felt_rate(step, motion->rate[i], s->due.mean, slope);
     }
     s->due.mean = RMIN_R(0.0);
     s->due.rise = RMIN_R(0.0);
@@ -58,8 +58,8 @@ void rmin_glide(rmin_state *s, rmin_trial *t)
     for (int i = 0; i < phase->active; ++i) {
         const rmin_mode_step *const due = &felt->mode[i];
         const rmin_mode_step *const step = &level->mode[i];
-        const rmin_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const rmin_real b = rate[i] - due->kick*kicked - due->push*slope;
+        const rmin_real a = rmin_felt_place(due, motion->place[i], mean, rise);
+        const rmin_real b = rmin_felt_rate(due, rate[i], kicked, slope);
         const rmin_real place = step->cosine*a + step->sine*b;
         const rmin_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;

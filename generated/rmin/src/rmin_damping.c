@@ -26,7 +26,7 @@ rmin_real rmin_damping_rate(rmin_phase *phase)
     return rate;
 }
 
-void rmin_slow_contact(rmin_phase *phase)
+void rmin_slowing(rmin_phase *phase)
 {
     const rmin_modes *const modes = &phase->modes;
     rmin_real held[RMIN_DAMPERS];
@@ -96,7 +96,7 @@ void rmin_damp_ahead(const rmin_state *s, rmin_real *rate)
     const rmin_level *const level = s->due.level;
     const rmin_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
+        rate[i] = rmin_felt_rate(&level->mode[i], s->motion->rate[i], s->due.mean, slope);
     }
     rmin_damp(s->phase, s->speed, s->owed + RMIN_R(0.5)*s->step->h, rate);
 }

@@ -43,15 +43,15 @@ typedef struct {
  * Steps and rotations that find eigenvalues of N rows to four digits: of 110,000 compliances of seven joints none
  * took more than 14 and 54. What is not done by then fails.
  */
-#define RMIN_MOST_STEPS (2*RMIN_N + 2)
-#define RMIN_MOST_TURNS (RMIN_N*(RMIN_N + 2))
+#define RMIN_MOST_QR (2*RMIN_N + 2)
+#define RMIN_MOST_ROTATIONS (RMIN_N*(RMIN_N + 2))
 
 /* Q of Q diag(values) Q', of N rows: reflections I - scale v v', and then rotations of steps. */
 typedef struct {
     rmin_real v[RMIN_N][RMIN_N], scale[RMIN_N];
     int steps, count;
-    unsigned char first[RMIN_MOST_STEPS], last[RMIN_MOST_STEPS]; /* rows of each */
-    rmin_rotation by[RMIN_MOST_TURNS];
+    unsigned char first[RMIN_MOST_QR], last[RMIN_MOST_QR]; /* rows of each */
+    rmin_rotation by[RMIN_MOST_ROTATIONS];
 } rmin_turns;
 
 /*
@@ -287,7 +287,7 @@ rmin_real rmin_together(const rmin_arrival *arrival, const rmin_params *p);
 /* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
 rmin_real rmin_damping_rate(rmin_phase *phase);
 /* Takes from the contact point's velocity after steps what is damped in their other half. */
-void rmin_slow_contact(rmin_phase *phase);
+void rmin_slowing(rmin_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *phase);
 
@@ -315,8 +315,8 @@ bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, 
     rmin_turns *turns);
 #if RMIN_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void rmin_to_modes(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N]);
-void rmin_from_modes(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N]);
+void rmin_turn_forth(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N]);
+void rmin_turn_back(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N]);
 #endif
 
 #endif

@@ -59,7 +59,7 @@ static void bend(const rmin_state *s, rmin_real a[RMIN_MODES], rmin_real b[RMIN_
             a[from] *= fast;
             b[from] *= fast;
         }
-        rmin_from_modes(&modes->turns, a, b);
+        rmin_turn_back(&modes->turns, a, b);
     }
 }
 #endif
@@ -109,7 +109,7 @@ void rmin_release(rmin_state *s)
         x += motion->place[i];
         v += motion->rate[i];
     }
-    rmin_to_modes(&modes->turns, place, rate);
+    rmin_turn_forth(&modes->turns, place, rate);
     for (int i = 1; i < modes->count; ++i) {
         const int from = modes->from[i];
         if (from < RMIN_N) {
@@ -175,4 +175,3 @@ void rmin_release(rmin_state *s)
     s->past = s->past > 1 ? 1 : s->past;
     rmin_phase_begin(next, s->touching ? LET_GO : 0, s);
 }
-

@@ -18,14 +18,13 @@
 /* Place and velocity of the contact point by a mode, after the force that is due. */
 static rmin_real place_of(const rmin_state *s, int mode)
 {
-    const rmin_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->place[mode] - step->push*s->due.mean - step->late*s->due.rise;
+    return rmin_felt_place(&s->due.level->mode[mode], s->motion->place[mode], s->due.mean, s->due.rise);
 }
 
 static rmin_real rate_of(const rmin_state *s, int mode)
 {
-    const rmin_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->rate[mode] - step->kick*s->due.mean - step->push*s->due.rise*s->due.level->per;
+    const rmin_level *const level = s->due.level;
+    return rmin_felt_rate(&level->mode[mode], s->motion->rate[mode], s->due.mean, s->due.rise*level->per);
 }
 
 bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real depth, rmin_real share)
@@ -53,9 +52,10 @@ bool rmin_is_settled(const rmin_state *s, rmin_real force, rmin_real depth, rmin
     rmin_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
         + (is_hertz ? RMIN_R(0.8) : RMIN_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
-        const rmin_real place = place_of(s, i);
-        const rmin_real rate = rate_of(s, i);
-        twice += (rate*rate + modes->squared[i]*place*place)/(modes->row[i]*modes->row[i]);
+        const rmin_real per = RMIN_R(1.0)/modes->row[i];
+        const rmin_real amplitude = per*place_of(s, i);
+        const rmin_real rate = per*rate_of(s, i);
+        twice += rate*rate + modes->squared[i]*amplitude*amplitude;
     }
     if (phase == &impact->phase[RMIN_LED] && impact->last == RMIN_LOOSE
         && (!RMIN_STRUCTURED || !(away*away > twice*impact->rotors))) {

@@ -152,7 +152,7 @@ bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, 
     }
     const rmin_real noise = RMIN_EPSILON*RMIN_EPSILON*all*all;
     int last = size - 1;
-    const int most = turns != NULL ? RMIN_MOST_STEPS : MOST_STEPS(size);
+    const int most = turns != NULL ? RMIN_MOST_QR : MOST_STEPS(size);
     for (int step = 0; step <= most; ++step) {
         while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
@@ -170,7 +170,7 @@ bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, 
         }
         rmin_rotation *by = passing;
         if (turns != NULL) {
-            if (step == most || kept + last - first > RMIN_MOST_TURNS) {
+            if (step == most || kept + last - first > RMIN_MOST_ROTATIONS) {
                 return false;
             }
             by = &turns->by[kept];
@@ -206,7 +206,7 @@ static void mirror_both(int first, const rmin_real *v, rmin_real scale, rmin_rea
     }
 }
 
-void rmin_to_modes(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N])
+void rmin_turn_forth(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N])
 {
     const rmin_rotation *by = turns->by;
     for (int k = 0; k + 2 < RMIN_N; ++k) {
@@ -233,7 +233,7 @@ void rmin_to_modes(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMI
     }
 }
 
-void rmin_from_modes(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N])
+void rmin_turn_back(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N])
 {
     const rmin_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {

@@ -26,6 +26,19 @@ typedef struct {
     rmin_real mean, rise;
 } rmin_due;
 
+/* A mode's place after the force of a step, and its velocity; slope is the force's rise over the step's length. */
+static inline rmin_real rmin_felt_place(
+    const rmin_mode_step *step, rmin_real place, rmin_real mean, rmin_real rise)
+{
+    return place - step->push*mean - step->late*rise;
+}
+
+static inline rmin_real rmin_felt_rate(
+    const rmin_mode_step *step, rmin_real rate, rmin_real mean, rmin_real slope)
+{
+    return rate - step->kick*mean - step->push*slope;
+}
+
 typedef struct {
     rmin_impact *impact;
     const rmin_region *region;

@@ -30,10 +30,10 @@
 #define JUMPS RMIN_R(0.1)
 #define JUMP_STEP RMIN_R(24.0)
 /*
- * Least that a mode moves the contact point by, as a share of all that moves it: modes are followed by that, and what
- * they do themselves is told from it. Near singular poses joints turn fast that hardly move the point: 1e-6 was felt.
+ * Least that a mode moves the contact point by, 1/sqrt(kg): modes are followed by that, and what they do themselves is
+ * told from it. It must not be felt: rotors of 1e30 kg m^2 turn with amplitudes of 1e15 m sqrt(kg).
  */
-#define LEAST_ROW RMIN_R(1e-12)
+#define LEAST_ROW RMIN_R(1e-25)
 /* Steps counted; more than any budget has. */
 #define MOST RMIN_R(1e6)
 
@@ -165,9 +165,8 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
         modes->count = body + 1;
     }
     phase->has_body = impact->gives_way;
-    const rmin_real least = LEAST_ROW*RMIN_SQRT(impact->mobility);
     for (int i = 0; i < modes->count; ++i) {
-        modes->row[i] = RMIN_FABS(modes->row[i]) > least ? modes->row[i] : least;
+        modes->row[i] = RMIN_FABS(modes->row[i]) > LEAST_ROW ? modes->row[i] : LEAST_ROW;
     }
     const rmin_real end = RMIN_R(1.0)/RMIN_HORIZON(impact->p);
     let_stand(impact, RMIN_FMAX(contact, end*end), released, phase);
@@ -209,7 +208,7 @@ void rmin_phase_steps(const rmin_impact *impact, rmin_real time, rmin_phase *pha
     }
     mode_steps(phase);
     if (phase->damped) {
-        rmin_slow_contact(phase);
+        rmin_slowing(phase);
     }
     phase->ready = true;
 }

@@ -30,8 +30,8 @@ void rr_feel(rr_state *s)
     const rr_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
         const rr_mode_step *const step = &level->mode[i];
-        motion->place[i] -= step->push*s->due.mean + step->late*s->due.rise;
-        motion->rate[i] -= step->kick*s->due.mean + step->push*slope;
+        motion->place[i] = rr_felt_place(step, motion->place[i], s->due.mean, s->due.rise);
+        motion->rate[i] = rr_felt_rate(step, motion->rate[i], s->due.mean, slope);
     }
     s->due.mean = RR_R(0.0);
     s->due.rise = RR_R(0.0);
@@ -58,8 +58,8 @@ void rr_glide(rr_state *s, rr_trial *t)
     for (int i = 0; i < phase->active; ++i) {
         const rr_mode_step *const due = &felt->mode[i];
         const rr_mode_step *const step = &level->mode[i];
-        const rr_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const rr_real b = rate[i] - due->kick*kicked - due->push*slope;
+        const rr_real a = rr_felt_place(due, motion->place[i], mean, rise);
+        const rr_real b = rr_felt_rate(due, rate[i], kicked, slope);
         const rr_real place = step->cosine*a + step->sine*b;
         const rr_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;

@@ -26,7 +26,7 @@ rr_real rr_damping_rate(rr_phase *phase)
     return rate;
 }
 
-void rr_slow_contact(rr_phase *phase)
+void rr_slowing(rr_phase *phase)
 {
     const rr_modes *const modes = &phase->modes;
     rr_real held[RR_DAMPERS];
@@ -96,7 +96,7 @@ void rr_damp_ahead(const rr_state *s, rr_real *rate)
     const rr_level *const level = s->due.level;
     const rr_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
+        rate[i] = rr_felt_rate(&level->mode[i], s->motion->rate[i], s->due.mean, slope);
     }
     rr_damp(s->phase, s->speed, s->owed + RR_R(0.5)*s->step->h, rate);
 }

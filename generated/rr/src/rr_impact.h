@@ -43,15 +43,15 @@ typedef struct {
  * Steps and rotations that find eigenvalues of N rows to four digits: of 110,000 compliances of seven joints none
  * took more than 14 and 54. What is not done by then fails.
  */
-#define RR_MOST_STEPS (2*RR_N + 2)
-#define RR_MOST_TURNS (RR_N*(RR_N + 2))
+#define RR_MOST_QR (2*RR_N + 2)
+#define RR_MOST_ROTATIONS (RR_N*(RR_N + 2))
 
 /* Q of Q diag(values) Q', of N rows: reflections I - scale v v', and then rotations of steps. */
 typedef struct {
     rr_real v[RR_N][RR_N], scale[RR_N];
     int steps, count;
-    unsigned char first[RR_MOST_STEPS], last[RR_MOST_STEPS]; /* rows of each */
-    rr_rotation by[RR_MOST_TURNS];
+    unsigned char first[RR_MOST_QR], last[RR_MOST_QR]; /* rows of each */
+    rr_rotation by[RR_MOST_ROTATIONS];
 } rr_turns;
 
 /*
@@ -287,7 +287,7 @@ rr_real rr_together(const rr_arrival *arrival, const rr_params *p);
 /* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
 rr_real rr_damping_rate(rr_phase *phase);
 /* Takes from the contact point's velocity after steps what is damped in their other half. */
-void rr_slow_contact(rr_phase *phase);
+void rr_slowing(rr_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void rr_phase_steps(const rr_impact *impact, rr_real time, rr_phase *phase);
 
@@ -315,8 +315,8 @@ bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, int coun
     rr_turns *turns);
 #if RR_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void rr_to_modes(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N]);
-void rr_from_modes(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N]);
+void rr_turn_forth(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N]);
+void rr_turn_back(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N]);
 #endif
 
 #endif

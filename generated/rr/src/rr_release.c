@@ -59,7 +59,7 @@ static void bend(const rr_state *s, rr_real a[RR_MODES], rr_real b[RR_MODES])
             a[from] *= fast;
             b[from] *= fast;
         }
-        rr_from_modes(&modes->turns, a, b);
+        rr_turn_back(&modes->turns, a, b);
     }
 }
 #endif
@@ -109,7 +109,7 @@ void rr_release(rr_state *s)
         x += motion->place[i];
         v += motion->rate[i];
     }
-    rr_to_modes(&modes->turns, place, rate);
+    rr_turn_forth(&modes->turns, place, rate);
     for (int i = 1; i < modes->count; ++i) {
         const int from = modes->from[i];
         if (from < RR_N) {
@@ -175,4 +175,3 @@ void rr_release(rr_state *s)
     s->past = s->past > 1 ? 1 : s->past;
     rr_phase_begin(next, s->touching ? LET_GO : 0, s);
 }
-

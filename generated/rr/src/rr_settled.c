@@ -18,14 +18,13 @@
 /* Place and velocity of the contact point by a mode, after the force that is due. */
 static rr_real place_of(const rr_state *s, int mode)
 {
-    const rr_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->place[mode] - step->push*s->due.mean - step->late*s->due.rise;
+    return rr_felt_place(&s->due.level->mode[mode], s->motion->place[mode], s->due.mean, s->due.rise);
 }
 
 static rr_real rate_of(const rr_state *s, int mode)
 {
-    const rr_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->rate[mode] - step->kick*s->due.mean - step->push*s->due.rise*s->due.level->per;
+    const rr_level *const level = s->due.level;
+    return rr_felt_rate(&level->mode[mode], s->motion->rate[mode], s->due.mean, s->due.rise*level->per);
 }
 
 bool rr_is_settled(const rr_state *s, rr_real force, rr_real depth, rr_real share)
@@ -53,9 +52,10 @@ bool rr_is_settled(const rr_state *s, rr_real force, rr_real depth, rr_real shar
     rr_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
         + (is_hertz ? RR_R(0.8) : RR_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
-        const rr_real place = place_of(s, i);
-        const rr_real rate = rate_of(s, i);
-        twice += (rate*rate + modes->squared[i]*place*place)/(modes->row[i]*modes->row[i]);
+        const rr_real per = RR_R(1.0)/modes->row[i];
+        const rr_real amplitude = per*place_of(s, i);
+        const rr_real rate = per*rate_of(s, i);
+        twice += rate*rate + modes->squared[i]*amplitude*amplitude;
     }
     if (phase == &impact->phase[RR_LED] && impact->last == RR_LOOSE
         && (!RR_STRUCTURED || !(away*away > twice*impact->rotors))) {

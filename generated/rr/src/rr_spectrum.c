@@ -152,7 +152,7 @@ bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, int coun
     }
     const rr_real noise = RR_EPSILON*RR_EPSILON*all*all;
     int last = size - 1;
-    const int most = turns != NULL ? RR_MOST_STEPS : MOST_STEPS(size);
+    const int most = turns != NULL ? RR_MOST_QR : MOST_STEPS(size);
     for (int step = 0; step <= most; ++step) {
         while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
@@ -170,7 +170,7 @@ bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, int coun
         }
         rr_rotation *by = passing;
         if (turns != NULL) {
-            if (step == most || kept + last - first > RR_MOST_TURNS) {
+            if (step == most || kept + last - first > RR_MOST_ROTATIONS) {
                 return false;
             }
             by = &turns->by[kept];
@@ -206,7 +206,7 @@ static void mirror_both(int first, const rr_real *v, rr_real scale, rr_real *x, 
     }
 }
 
-void rr_to_modes(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
+void rr_turn_forth(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
 {
     const rr_rotation *by = turns->by;
     for (int k = 0; k + 2 < RR_N; ++k) {
@@ -233,7 +233,7 @@ void rr_to_modes(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
     }
 }
 
-void rr_from_modes(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
+void rr_turn_back(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
 {
     const rr_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {

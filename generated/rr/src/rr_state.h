@@ -26,6 +26,19 @@ typedef struct {
     rr_real mean, rise;
 } rr_due;
 
+/* A mode's place after the force of a step, and its velocity; slope is the force's rise over the step's length. */
+static inline rr_real rr_felt_place(
+    const rr_mode_step *step, rr_real place, rr_real mean, rr_real rise)
+{
+    return place - step->push*mean - step->late*rise;
+}
+
+static inline rr_real rr_felt_rate(
+    const rr_mode_step *step, rr_real rate, rr_real mean, rr_real slope)
+{
+    return rate - step->kick*mean - step->push*slope;
+}
+
 typedef struct {
     rr_impact *impact;
     const rr_region *region;

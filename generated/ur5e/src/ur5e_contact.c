@@ -30,8 +30,8 @@ void ur5e_feel(ur5e_state *s)
     const ur5e_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
         const ur5e_mode_step *const step = &level->mode[i];
-        motion->place[i] -= step->push*s->due.mean + step->late*s->due.rise;
-        motion->rate[i] -= step->kick*s->due.mean + step->push*slope;
+        motion->place[i] = ur5e_felt_place(step, motion->place[i], s->due.mean, s->due.rise);
+        motion->rate[i] = ur5e_felt_rate(step, motion->rate[i], s->due.mean, slope);
     }
     s->due.mean = UR5E_R(0.0);
     s->due.rise = UR5E_R(0.0);
@@ -58,8 +58,8 @@ void ur5e_glide(ur5e_state *s, ur5e_trial *t)
     for (int i = 0; i < phase->active; ++i) {
         const ur5e_mode_step *const due = &felt->mode[i];
         const ur5e_mode_step *const step = &level->mode[i];
-        const ur5e_real a = motion->place[i] - due->push*mean - due->late*rise;
-        const ur5e_real b = rate[i] - due->kick*kicked - due->push*slope;
+        const ur5e_real a = ur5e_felt_place(due, motion->place[i], mean, rise);
+        const ur5e_real b = ur5e_felt_rate(due, rate[i], kicked, slope);
         const ur5e_real place = step->cosine*a + step->sine*b;
         const ur5e_real velocity = step->back*a + step->cosine*b;
         next->place[i] = place;

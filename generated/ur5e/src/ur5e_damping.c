@@ -26,7 +26,7 @@ ur5e_real ur5e_damping_rate(ur5e_phase *phase)
     return rate;
 }
 
-void ur5e_slow_contact(ur5e_phase *phase)
+void ur5e_slowing(ur5e_phase *phase)
 {
     const ur5e_modes *const modes = &phase->modes;
     ur5e_real held[UR5E_DAMPERS];
@@ -96,7 +96,7 @@ void ur5e_damp_ahead(const ur5e_state *s, ur5e_real *rate)
     const ur5e_level *const level = s->due.level;
     const ur5e_real slope = s->due.rise*level->per;
     for (int i = 0; i < s->phase->active; ++i) {
-        rate[i] = s->motion->rate[i] - level->mode[i].kick*s->due.mean - level->mode[i].push*slope;
+        rate[i] = ur5e_felt_rate(&level->mode[i], s->motion->rate[i], s->due.mean, slope);
     }
     ur5e_damp(s->phase, s->speed, s->owed + UR5E_R(0.5)*s->step->h, rate);
 }

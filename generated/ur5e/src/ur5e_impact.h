@@ -43,15 +43,15 @@ typedef struct {
  * Steps and rotations that find eigenvalues of N rows to four digits: of 110,000 compliances of seven joints none
  * took more than 14 and 54. What is not done by then fails.
  */
-#define UR5E_MOST_STEPS (2*UR5E_N + 2)
-#define UR5E_MOST_TURNS (UR5E_N*(UR5E_N + 2))
+#define UR5E_MOST_QR (2*UR5E_N + 2)
+#define UR5E_MOST_ROTATIONS (UR5E_N*(UR5E_N + 2))
 
 /* Q of Q diag(values) Q', of N rows: reflections I - scale v v', and then rotations of steps. */
 typedef struct {
     ur5e_real v[UR5E_N][UR5E_N], scale[UR5E_N];
     int steps, count;
-    unsigned char first[UR5E_MOST_STEPS], last[UR5E_MOST_STEPS]; /* rows of each */
-    ur5e_rotation by[UR5E_MOST_TURNS];
+    unsigned char first[UR5E_MOST_QR], last[UR5E_MOST_QR]; /* rows of each */
+    ur5e_rotation by[UR5E_MOST_ROTATIONS];
 } ur5e_turns;
 
 /*
@@ -287,7 +287,7 @@ ur5e_real ur5e_together(const ur5e_arrival *arrival, const ur5e_params *p);
 /* How a phase's dampers act on each other; returns the most that they damp, 1/s. */
 ur5e_real ur5e_damping_rate(ur5e_phase *phase);
 /* Takes from the contact point's velocity after steps what is damped in their other half. */
-void ur5e_slow_contact(ur5e_phase *phase);
+void ur5e_slowing(ur5e_phase *phase);
 /* Lets fast modes stand, adds the body, and makes the steps of a phase that lasts `time`. */
 void ur5e_phase_steps(const ur5e_impact *impact, ur5e_real time, ur5e_phase *phase);
 
@@ -315,8 +315,8 @@ bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, 
     ur5e_turns *turns);
 #if UR5E_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void ur5e_to_modes(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N]);
-void ur5e_from_modes(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N]);
+void ur5e_turn_forth(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N]);
+void ur5e_turn_back(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N]);
 #endif
 
 #endif

@@ -18,14 +18,13 @@
 /* Place and velocity of the contact point by a mode, after the force that is due. */
 static ur5e_real place_of(const ur5e_state *s, int mode)
 {
-    const ur5e_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->place[mode] - step->push*s->due.mean - step->late*s->due.rise;
+    return ur5e_felt_place(&s->due.level->mode[mode], s->motion->place[mode], s->due.mean, s->due.rise);
 }
 
 static ur5e_real rate_of(const ur5e_state *s, int mode)
 {
-    const ur5e_mode_step *const step = &s->due.level->mode[mode];
-    return s->motion->rate[mode] - step->kick*s->due.mean - step->push*s->due.rise*s->due.level->per;
+    const ur5e_level *const level = s->due.level;
+    return ur5e_felt_rate(&level->mode[mode], s->motion->rate[mode], s->due.mean, s->due.rise*level->per);
 }
 
 bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real depth, ur5e_real share)
@@ -53,9 +52,10 @@ bool ur5e_is_settled(const ur5e_state *s, ur5e_real force, ur5e_real depth, ur5e
     ur5e_real twice = region->stiffness*bent*bent + phase->compliance*s->f*s->f
         + (is_hertz ? UR5E_R(0.8) : UR5E_R(2.0))*s->f*s->now; /* no law that rises takes more */
     for (int i = modes->rigid; i < body; ++i) {
-        const ur5e_real place = place_of(s, i);
-        const ur5e_real rate = rate_of(s, i);
-        twice += (rate*rate + modes->squared[i]*place*place)/(modes->row[i]*modes->row[i]);
+        const ur5e_real per = UR5E_R(1.0)/modes->row[i];
+        const ur5e_real amplitude = per*place_of(s, i);
+        const ur5e_real rate = per*rate_of(s, i);
+        twice += rate*rate + modes->squared[i]*amplitude*amplitude;
     }
     if (phase == &impact->phase[UR5E_LED] && impact->last == UR5E_LOOSE
         && (!UR5E_STRUCTURED || !(away*away > twice*impact->rotors))) {

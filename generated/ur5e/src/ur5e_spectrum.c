@@ -152,7 +152,7 @@ bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, 
     }
     const ur5e_real noise = UR5E_EPSILON*UR5E_EPSILON*all*all;
     int last = size - 1;
-    const int most = turns != NULL ? UR5E_MOST_STEPS : MOST_STEPS(size);
+    const int most = turns != NULL ? UR5E_MOST_QR : MOST_STEPS(size);
     for (int step = 0; step <= most; ++step) {
         while (last > 0 && !counts(last - 1, values, e, small, noise)) {
             --last;
@@ -170,7 +170,7 @@ bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, 
         }
         ur5e_rotation *by = passing;
         if (turns != NULL) {
-            if (step == most || kept + last - first > UR5E_MOST_TURNS) {
+            if (step == most || kept + last - first > UR5E_MOST_ROTATIONS) {
                 return false;
             }
             by = &turns->by[kept];
@@ -206,7 +206,7 @@ static void mirror_both(int first, const ur5e_real *v, ur5e_real scale, ur5e_rea
     }
 }
 
-void ur5e_to_modes(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
+void ur5e_turn_forth(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
 {
     const ur5e_rotation *by = turns->by;
     for (int k = 0; k + 2 < UR5E_N; ++k) {
@@ -233,7 +233,7 @@ void ur5e_to_modes(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5
     }
 }
 
-void ur5e_from_modes(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
+void ur5e_turn_back(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
 {
     const ur5e_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {

@@ -26,6 +26,19 @@ typedef struct {
     ur5e_real mean, rise;
 } ur5e_due;
 
+/* A mode's place after the force of a step, and its velocity; slope is the force's rise over the step's length. */
+static inline ur5e_real ur5e_felt_place(
+    const ur5e_mode_step *step, ur5e_real place, ur5e_real mean, ur5e_real rise)
+{
+    return place - step->push*mean - step->late*rise;
+}
+
+static inline ur5e_real ur5e_felt_rate(
+    const ur5e_mode_step *step, ur5e_real rate, ur5e_real mean, ur5e_real slope)
+{
+    return rate - step->kick*mean - step->push*slope;
+}
+
 typedef struct {
     ur5e_impact *impact;
     const ur5e_region *region;
