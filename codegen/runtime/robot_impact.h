@@ -315,8 +315,8 @@ bool robot_spectrum(int size, robot_real small, robot_matrix A, robot_real *valu
     robot_turns *turns);
 #if ROBOT_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void robot_turn_forth(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N]);
-void robot_turn_back(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N]);
+void robot_decompose(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N]);
+void robot_compose(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N]);
 #endif
 
 #endif

@@ -59,7 +59,7 @@ static void bend(const robot_state *s, robot_real a[ROBOT_MODES], robot_real b[R
             a[from] *= fast;
             b[from] *= fast;
         }
-        robot_turn_back(&modes->turns, a, b);
+        robot_compose(&modes->turns, a, b);
     }
 }
 #endif
@@ -109,7 +109,7 @@ void robot_release(robot_state *s)
         x += motion->place[i];
         v += motion->rate[i];
     }
-    robot_turn_forth(&modes->turns, place, rate);
+    robot_decompose(&modes->turns, place, rate);
     for (int i = 1; i < modes->count; ++i) {
         const int from = modes->from[i];
         if (from < ROBOT_N) {

@@ -206,7 +206,7 @@ static void mirror_both(int first, const robot_real *v, robot_real scale, robot_
     }
 }
 
-void robot_turn_forth(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N])
+void robot_decompose(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N])
 {
     const robot_rotation *by = turns->by;
     for (int k = 0; k + 2 < ROBOT_N; ++k) {
@@ -233,7 +233,7 @@ void robot_turn_forth(const robot_turns *turns, robot_real x[ROBOT_N], robot_rea
     }
 }
 
-void robot_turn_back(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N])
+void robot_compose(const robot_turns *turns, robot_real x[ROBOT_N], robot_real y[ROBOT_N])
 {
     const robot_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {
