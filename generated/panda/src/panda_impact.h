@@ -315,8 +315,8 @@ bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *valu
     panda_turns *turns);
 #if PANDA_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void panda_turn_forth(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N]);
-void panda_turn_back(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N]);
+void panda_decompose(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N]);
+void panda_compose(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N]);
 #endif
 
 #endif

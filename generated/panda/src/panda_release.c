@@ -59,7 +59,7 @@ static void bend(const panda_state *s, panda_real a[PANDA_MODES], panda_real b[P
             a[from] *= fast;
             b[from] *= fast;
         }
-        panda_turn_back(&modes->turns, a, b);
+        panda_compose(&modes->turns, a, b);
     }
 }
 #endif
@@ -109,7 +109,7 @@ void panda_release(panda_state *s)
         x += motion->place[i];
         v += motion->rate[i];
     }
-    panda_turn_forth(&modes->turns, place, rate);
+    panda_decompose(&modes->turns, place, rate);
     for (int i = 1; i < modes->count; ++i) {
         const int from = modes->from[i];
         if (from < PANDA_N) {

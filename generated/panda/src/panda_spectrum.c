@@ -206,7 +206,7 @@ static void mirror_both(int first, const panda_real *v, panda_real scale, panda_
     }
 }
 
-void panda_turn_forth(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
+void panda_decompose(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
 {
     const panda_rotation *by = turns->by;
     for (int k = 0; k + 2 < PANDA_N; ++k) {
@@ -233,7 +233,7 @@ void panda_turn_forth(const panda_turns *turns, panda_real x[PANDA_N], panda_rea
     }
 }
 
-void panda_turn_back(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
+void panda_compose(const panda_turns *turns, panda_real x[PANDA_N], panda_real y[PANDA_N])
 {
     const panda_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {

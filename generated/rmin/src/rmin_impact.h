@@ -315,8 +315,8 @@ bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, 
     rmin_turns *turns);
 #if RMIN_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void rmin_turn_forth(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N]);
-void rmin_turn_back(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N]);
+void rmin_decompose(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N]);
+void rmin_compose(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N]);
 #endif
 
 #endif

@@ -59,7 +59,7 @@ static void bend(const rmin_state *s, rmin_real a[RMIN_MODES], rmin_real b[RMIN_
             a[from] *= fast;
             b[from] *= fast;
         }
-        rmin_turn_back(&modes->turns, a, b);
+        rmin_compose(&modes->turns, a, b);
     }
 }
 #endif
@@ -109,7 +109,7 @@ void rmin_release(rmin_state *s)
         x += motion->place[i];
         v += motion->rate[i];
     }
-    rmin_turn_forth(&modes->turns, place, rate);
+    rmin_decompose(&modes->turns, place, rate);
     for (int i = 1; i < modes->count; ++i) {
         const int from = modes->from[i];
         if (from < RMIN_N) {

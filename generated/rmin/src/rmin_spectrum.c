@@ -206,7 +206,7 @@ static void mirror_both(int first, const rmin_real *v, rmin_real scale, rmin_rea
     }
 }
 
-void rmin_turn_forth(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N])
+void rmin_decompose(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N])
 {
     const rmin_rotation *by = turns->by;
     for (int k = 0; k + 2 < RMIN_N; ++k) {
@@ -233,7 +233,7 @@ void rmin_turn_forth(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[R
     }
 }
 
-void rmin_turn_back(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N])
+void rmin_compose(const rmin_turns *turns, rmin_real x[RMIN_N], rmin_real y[RMIN_N])
 {
     const rmin_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {

@@ -315,8 +315,8 @@ bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, int coun
     rr_turns *turns);
 #if RR_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void rr_turn_forth(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N]);
-void rr_turn_back(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N]);
+void rr_decompose(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N]);
+void rr_compose(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N]);
 #endif
 
 #endif

@@ -59,7 +59,7 @@ static void bend(const rr_state *s, rr_real a[RR_MODES], rr_real b[RR_MODES])
             a[from] *= fast;
             b[from] *= fast;
         }
-        rr_turn_back(&modes->turns, a, b);
+        rr_compose(&modes->turns, a, b);
     }
 }
 #endif
@@ -109,7 +109,7 @@ void rr_release(rr_state *s)
         x += motion->place[i];
         v += motion->rate[i];
     }
-    rr_turn_forth(&modes->turns, place, rate);
+    rr_decompose(&modes->turns, place, rate);
     for (int i = 1; i < modes->count; ++i) {
         const int from = modes->from[i];
         if (from < RR_N) {

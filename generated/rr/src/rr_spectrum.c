@@ -206,7 +206,7 @@ static void mirror_both(int first, const rr_real *v, rr_real scale, rr_real *x, 
     }
 }
 
-void rr_turn_forth(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
+void rr_decompose(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
 {
     const rr_rotation *by = turns->by;
     for (int k = 0; k + 2 < RR_N; ++k) {
@@ -233,7 +233,7 @@ void rr_turn_forth(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
     }
 }
 
-void rr_turn_back(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
+void rr_compose(const rr_turns *turns, rr_real x[RR_N], rr_real y[RR_N])
 {
     const rr_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {

@@ -315,8 +315,8 @@ bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, 
     ur5e_turns *turns);
 #if UR5E_STRUCTURED
 /* Q'x and Qx of two vectors. */
-void ur5e_turn_forth(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N]);
-void ur5e_turn_back(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N]);
+void ur5e_decompose(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N]);
+void ur5e_compose(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N]);
 #endif
 
 #endif

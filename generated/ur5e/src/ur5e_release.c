@@ -59,7 +59,7 @@ static void bend(const ur5e_state *s, ur5e_real a[UR5E_MODES], ur5e_real b[UR5E_
             a[from] *= fast;
             b[from] *= fast;
         }
-        ur5e_turn_back(&modes->turns, a, b);
+        ur5e_compose(&modes->turns, a, b);
     }
 }
 #endif
@@ -109,7 +109,7 @@ void ur5e_release(ur5e_state *s)
         x += motion->place[i];
         v += motion->rate[i];
     }
-    ur5e_turn_forth(&modes->turns, place, rate);
+    ur5e_decompose(&modes->turns, place, rate);
     for (int i = 1; i < modes->count; ++i) {
         const int from = modes->from[i];
         if (from < UR5E_N) {

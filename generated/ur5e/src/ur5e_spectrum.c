@@ -206,7 +206,7 @@ static void mirror_both(int first, const ur5e_real *v, ur5e_real scale, ur5e_rea
     }
 }
 
-void ur5e_turn_forth(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
+void ur5e_decompose(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
 {
     const ur5e_rotation *by = turns->by;
     for (int k = 0; k + 2 < UR5E_N; ++k) {
@@ -233,7 +233,7 @@ void ur5e_turn_forth(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[U
     }
 }
 
-void ur5e_turn_back(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
+void ur5e_compose(const ur5e_turns *turns, ur5e_real x[UR5E_N], ur5e_real y[UR5E_N])
 {
     const ur5e_rotation *by = &turns->by[turns->count];
     for (int step = turns->steps - 1; step >= 0; --step) {
