@@ -9,8 +9,8 @@
 #define BENDS_FINE ROBOT_R(0.1)
 /*
  * Below the largest force so far mostly only what comes later counts: these shares of half the second difference, and
- * of half the third, stand for the former from the fourth node of a contact on. With half of each a Panda's second
- * contact was 0.7 % too weak.
+ * of half the third, stand for the former from the fourth node of a contact on, where they are less. With half of each
+ * a Panda's second contact was 0.7 % too weak.
  */
 #define BENDS_BELOW ROBOT_R(0.6)
 #define TWISTS_BELOW ROBOT_R(1.6)
@@ -146,7 +146,7 @@ static robot_real bend_of(const robot_state *s, const robot_trial *t, const robo
     }
     const robot_real ratio = s->pace.ratio;
     const robot_real twisted = ROBOT_R(6.0)*ROBOT_FABS(t->bump - ratio*ratio*s->bump);
-    return ROBOT_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted);
+    return ROBOT_FMIN(bent, ROBOT_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted));
 }
 
 /* A step in contact. */
