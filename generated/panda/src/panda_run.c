@@ -9,8 +9,8 @@
 #define BENDS_FINE PANDA_R(0.1)
 /*
  * Below the largest force so far mostly only what comes later counts: these shares of half the second difference, and
- * of half the third, stand for the former from the fourth node of a contact on. With half of each a Panda's second
- * contact was 0.7 % too weak.
+ * of half the third, stand for the former from the fourth node of a contact on, where they are less. With half of each
+ * a Panda's second contact was 0.7 % too weak.
  */
 #define BENDS_BELOW PANDA_R(0.6)
 #define TWISTS_BELOW PANDA_R(1.6)
@@ -146,7 +146,7 @@ static panda_real bend_of(const panda_state *s, const panda_trial *t, const pand
     }
     const panda_real ratio = s->pace.ratio;
     const panda_real twisted = PANDA_R(6.0)*PANDA_FABS(t->bump - ratio*ratio*s->bump);
-    return PANDA_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted);
+    return PANDA_FMIN(bent, PANDA_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted));
 }
 
 /* A step in contact. */

@@ -9,8 +9,8 @@
 #define BENDS_FINE RMIN_R(0.1)
 /*
  * Below the largest force so far mostly only what comes later counts: these shares of half the second difference, and
- * of half the third, stand for the former from the fourth node of a contact on. With half of each a Panda's second
- * contact was 0.7 % too weak.
+ * of half the third, stand for the former from the fourth node of a contact on, where they are less. With half of each
+ * a Panda's second contact was 0.7 % too weak.
  */
 #define BENDS_BELOW RMIN_R(0.6)
 #define TWISTS_BELOW RMIN_R(1.6)
@@ -146,7 +146,7 @@ static rmin_real bend_of(const rmin_state *s, const rmin_trial *t, const rmin_pe
     }
     const rmin_real ratio = s->pace.ratio;
     const rmin_real twisted = RMIN_R(6.0)*RMIN_FABS(t->bump - ratio*ratio*s->bump);
-    return RMIN_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted);
+    return RMIN_FMIN(bent, RMIN_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted));
 }
 
 /* A step in contact. */

@@ -9,8 +9,8 @@
 #define BENDS_FINE RR_R(0.1)
 /*
  * Below the largest force so far mostly only what comes later counts: these shares of half the second difference, and
- * of half the third, stand for the former from the fourth node of a contact on. With half of each a Panda's second
- * contact was 0.7 % too weak.
+ * of half the third, stand for the former from the fourth node of a contact on, where they are less. With half of each
+ * a Panda's second contact was 0.7 % too weak.
  */
 #define BENDS_BELOW RR_R(0.6)
 #define TWISTS_BELOW RR_R(1.6)
@@ -146,7 +146,7 @@ static rr_real bend_of(const rr_state *s, const rr_trial *t, const rr_peak *peak
     }
     const rr_real ratio = s->pace.ratio;
     const rr_real twisted = RR_R(6.0)*RR_FABS(t->bump - ratio*ratio*s->bump);
-    return RR_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted);
+    return RR_FMIN(bent, RR_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted));
 }
 
 /* A step in contact. */

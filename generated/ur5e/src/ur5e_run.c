@@ -9,8 +9,8 @@
 #define BENDS_FINE UR5E_R(0.1)
 /*
  * Below the largest force so far mostly only what comes later counts: these shares of half the second difference, and
- * of half the third, stand for the former from the fourth node of a contact on. With half of each a Panda's second
- * contact was 0.7 % too weak.
+ * of half the third, stand for the former from the fourth node of a contact on, where they are less. With half of each
+ * a Panda's second contact was 0.7 % too weak.
  */
 #define BENDS_BELOW UR5E_R(0.6)
 #define TWISTS_BELOW UR5E_R(1.6)
@@ -146,7 +146,7 @@ static ur5e_real bend_of(const ur5e_state *s, const ur5e_trial *t, const ur5e_pe
     }
     const ur5e_real ratio = s->pace.ratio;
     const ur5e_real twisted = UR5E_R(6.0)*UR5E_FABS(t->bump - ratio*ratio*s->bump);
-    return UR5E_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted);
+    return UR5E_FMIN(bent, UR5E_FMAX(BENDS_BELOW*bent, TWISTS_BELOW*twisted));
 }
 
 /* A step in contact. */
