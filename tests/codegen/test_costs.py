@@ -115,13 +115,13 @@ def test_a_safe_speed_is_bounded_as_the_design_asks(
     assert driven.bound is not None
     assert driven.m7.most <= driven.bound <= 240_000  # found, and proven of any input
     assert driven.stack <= 13_000  # bytes
-    assert panda_costs(package)["safe_speed"].m7.mean <= 150_000  # servos and free motors, too
+    assert panda_costs(package)["safe_speed"].m7.mean <= 155_000  # servos and free motors, too
 
 
 @pytest.mark.xfail(
     strict=True,
     reason="with all modes, all contacts and a release a safe speed of driven motors takes some "
-    "63,000 instructions: 29,000 to prepare and release, the rest for 60 steps of 7 modes",
+    "65,000 instructions: 29,000 to prepare and release, the rest for 62 steps of 7 modes",
 )
 def test_a_safe_speed_costs_what_the_design_allows(package: Callable[[str], Generated]) -> None:
     found = panda_costs(package)
