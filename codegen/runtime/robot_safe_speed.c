@@ -175,11 +175,17 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
         const robot_real guess = robot_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
         budget.fine = false;
-        bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
+        const robot_real share = region->law == NULL ? ROBOT_R(1.0) : SHORT_OF_JUMP;
+        const robot_real most = found->speed/share;
+        bool is_known = find(impact, motors == last ? guess : most, most, &s, &budget);
+        if (most > ROBOT_R(0.0) && s.low >= most) {
+            s.low = found->speed;
+        } else {
+            s.low *= share;
+        }
         const bool all_slower = region->law != NULL || hardly_damps;
         if (all_slower || budget.fine) {
-            const robot_real share = region->law == NULL ? ROBOT_R(1.0) : SHORT_OF_JUMP;
-            s.low = is_known ? share*s.low : ROBOT_R(0.0); /* slower speeds than what was tried are not known */
+            s.low = is_known ? s.low : ROBOT_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, all_slower ? 0 : NEAREST, &s, &budget);
         }
         if (!is_known) {

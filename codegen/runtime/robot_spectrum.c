@@ -54,13 +54,13 @@ static void mirror(int first, int size, const robot_real *v, robot_real scale, r
     }
 }
 
-/* Turns a vector by the rotations of one step. */
+/* Turns a vector by the rotations of one step, of each row. */
 static void turn_on(int first, int last, const robot_rotation *by, robot_real *x)
 {
     robot_real here = x[first];
     for (int k = first; k < last; ++k) {
-        const robot_real c = by[k - first].c;
-        const robot_real s = by[k - first].s;
+        const robot_real c = by[k].c;
+        const robot_real s = by[k].s;
         const robot_real next = x[k + 1];
         x[k] = c*here + s*next;
         here = c*next - s*here;
@@ -102,7 +102,7 @@ static void reflect(int size, robot_matrix A, robot_real *d, robot_real *e, int 
     d[size - 1] = A[size - 1][size - 1];
 }
 
-/* One QR step on rows first to last; writes its rotations. */
+/* One QR step on rows first to last; writes the rotation of each. */
 static void chase(int first, int last, robot_real *d, robot_real *e, robot_rotation *by)
 {
     const robot_real end = e[last - 1];
@@ -128,8 +128,8 @@ static void chase(int first, int last, robot_real *d, robot_real *e, robot_rotat
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        by[k - first].c = c;
-        by[k - first].s = s;
+        by[k].c = c;
+        by[k].s = s;
     }
 }
 
@@ -143,7 +143,7 @@ bool robot_spectrum(int size, robot_real small, robot_matrix A, robot_real *valu
     robot_turns *turns)
 {
     robot_real e[ROBOT_SYSTEM];
-    robot_rotation passing[ROBOT_SYSTEM]; /* of a step, where they are not kept */
+    robot_rotation by[ROBOT_SYSTEM];
     int kept = 0;
     robot_real all = ROBOT_R(0.0);
     reflect(size, A, values, e, count, x, turns);
@@ -168,17 +168,21 @@ bool robot_spectrum(int size, robot_real small, robot_matrix A, robot_real *valu
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
-        robot_rotation *by = passing;
+        chase(first, last, values, e, by);
         if (turns != NULL) {
-            if (step == most || kept + last - first > ROBOT_MOST_ROTATIONS) {
+            if (step == most) {
                 return false;
             }
-            by = &turns->by[kept];
             turns->first[step] = (unsigned char)first;
             turns->last[step] = (unsigned char)last;
-            kept += last - first;
+            for (int k = first; k < last; ++k) {
+                if (kept == ROBOT_MOST_ROTATIONS) {
+                    return false;
+                }
+                turns->by[kept] = by[k];
+                ++kept;
+            }
         }
-        chase(first, last, values, e, by);
         for (int m = 0; m < count; ++m) {
             turn_on(first, last, by, x[m]);
         }

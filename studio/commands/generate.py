@@ -13,6 +13,8 @@ from ..typed import options as o
 from ..typed.groups import But, TypedArm, TypedDrives
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softimpact.codegen import Manifest, Payload
     from softimpact.symbolic import Contact, Robot
 
@@ -124,8 +126,14 @@ def generate(
     number: Real = one_of("number type", real, Real)
     if floating and arm.hold_base:
         raise InvalidValue("hold_base", "excludes floating; give one of them")
-    robot, warnings = _robot(arm, floating=floating)
-    print_warnings([*warnings, *_left_out(robot)])
+    warnings: list[str] = []
+
+    def warn(*lines: str) -> None:
+        warnings.extend(lines)
+        print_warnings(lines)
+
+    robot, ignored = _robot(arm, floating=floating)
+    warn(*ignored, *_left_out(robot))
     known = drives_of(robot, drives)
     write = partial(
         generate_package,
@@ -142,7 +150,7 @@ def generate(
         poses=pose_table(poses, robot) if poses else None,
         points=_points(point or []),
         contacts=_contacts(contact or []),
-        compiler=_compiler(),
+        compiler=_compiler(warn),
     )
     if robot.n >= MANY_JOINTS:
         say_beside(early_word(robot.n))
@@ -154,13 +162,13 @@ def generate(
 
         manifest = write(on_step=show)
     if drives.joint_stiffness is not None and not all(known.elastic):
-        print_warnings(["rigid joints have no default stiffness: joint_stiffness must be set"])
+        warn("rigid joints have no default stiffness: joint_stiffness must be set")
     if manifest.impact is None:
-        print_warnings([NO_IMPACTS])
+        warn(NO_IMPACTS)
     if name is not None and name != manifest.name:
-        print_warnings([f"'{name}' cannot begin C names; they begin with '{manifest.name}'"])
+        warn(f"'{name}' cannot begin C names; they begin with '{manifest.name}'")
     if json:
-        print_json({"out": out, **vars(manifest)})
+        print_json({"out": out, **vars(manifest), "warnings": warnings})
     else:
         _print_table(manifest, out)
 
@@ -181,18 +189,16 @@ def early_word(joints: int) -> str:
     )
 
 
-def _compiler() -> tuple[str, ...] | None:
-    """Return the C compiler that a package's own test is run with; say so if there is none."""
+def _compiler(warn: Callable[[str], None]) -> tuple[str, ...] | None:
+    """Return the C compiler that a package's own test is run with; warn if there is none."""
     from softimpact.codegen.verification.replay import works
     from softimpact.toolchain import c_compiler
 
     found = c_compiler()
     if found is not None and works(found):
         return found
-    from ..output.printed import print_warnings
-
     what = "there is no C compiler" if found is None else f"'{' '.join(found)}' makes no programs"
-    print_warnings([f"{what}, so the package's own test was not run"])
+    warn(f"{what}, so the package's own test was not run")
     return None
 
 

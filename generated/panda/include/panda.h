@@ -344,7 +344,8 @@ typedef struct {
 
 /*
  * What an impact hits: a law of contact in series with a spring and damper (MSM 3.1). The law is Hertz's,
- * or what softimpact.codegen.region_parameters makes of skin, pad and cover.
+ * or what softimpact.codegen.region_parameters makes of skin, pad and cover. Of a body and of the drives impacts
+ * refuse numbers above 1e30.
  */
 typedef struct {
     panda_real stiffness; /* k_h of the body, N/m, > 0 */

@@ -15,6 +15,18 @@
 #define ROUNDING (PANDA_R(8.0)*PANDA_EPSILON)
 #define MOST_STEPS 1000000
 
+/* Largest number of a body or a drive: with larger ones products are not finite in float. */
+#define LARGEST PANDA_R(1e30)
+
+static bool are_huge(const panda_real *x, int count)
+{
+    bool huge = false;
+    for (int i = 0; i < count; ++i) {
+        huge = huge || x[i] > LARGEST;
+    }
+    return huge;
+}
+
 int panda_check_impact(const panda_region *region, const panda_params *p)
 {
     if (p->layout != PANDA_LAYOUT) {
@@ -26,10 +38,11 @@ int panda_check_impact(const panda_region *region, const panda_params *p)
     if (!panda_all_finite(numbers, 4)) {
         return PANDA_NOT_FINITE;
     }
-    const bool body = region->stiffness > PANDA_R(0.0) && region->damping >= PANDA_R(0.0)
+    const bool body = !are_huge(numbers, 4) && region->stiffness > PANDA_R(0.0) && region->damping >= PANDA_R(0.0)
         && numbers[3] > PANDA_R(0.0) && panda_law_is_one(region);
     const panda_real horizon = PANDA_HORIZON(p);
     const panda_real reaction = PANDA_REACTION_TIME(p);
+    bool huge = false;
     int status = panda_check_positive(&horizon, 1);
     if (status == PANDA_OK) {
         status = panda_check_not_negative(&reaction, 1);
@@ -40,14 +53,16 @@ int panda_check_impact(const panda_region *region, const panda_params *p)
 #if PANDA_ELASTIC
         const panda_real drive[2] = {PANDA_SPRING(p, i), PANDA_ROTOR(p, i)};
         status = status == PANDA_OK ? panda_check_positive(drive, 2) : status;
+        huge = huge || are_huge(drive, 2);
 #endif
+        huge = huge || are_huge(gains, 2);
     }
     if (status != PANDA_OK) {
         return status;
     }
     const bool motion = p->motors >= PANDA_MOTORS_FREE_OR_DRIVEN && p->motors <= PANDA_MOTORS_SERVO
         && p->steps > 0 && p->steps <= MOST_STEPS;
-    return body && motion ? PANDA_OK : PANDA_OUT_OF_RANGE;
+    return body && motion && !huge ? PANDA_OK : PANDA_OUT_OF_RANGE;
 }
 
 int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)

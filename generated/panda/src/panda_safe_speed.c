@@ -175,11 +175,17 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
         const panda_real guess = panda_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)};
         budget.fine = false;
-        bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
+        const panda_real share = region->law == NULL ? PANDA_R(1.0) : SHORT_OF_JUMP;
+        const panda_real most = found->speed/share;
+        bool is_known = find(impact, motors == last ? guess : most, most, &s, &budget);
+        if (most > PANDA_R(0.0) && s.low >= most) {
+            s.low = found->speed;
+        } else {
+            s.low *= share;
+        }
         const bool all_slower = region->law != NULL || hardly_damps;
         if (all_slower || budget.fine) {
-            const panda_real share = region->law == NULL ? PANDA_R(1.0) : SHORT_OF_JUMP;
-            s.low = is_known ? share*s.low : PANDA_R(0.0); /* slower speeds than what was tried are not known */
+            s.low = is_known ? s.low : PANDA_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, all_slower ? 0 : NEAREST, &s, &budget);
         }
         if (!is_known) {

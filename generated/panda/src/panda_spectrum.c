@@ -54,13 +54,13 @@ static void mirror(int first, int size, const panda_real *v, panda_real scale, p
     }
 }
 
-/* Turns a vector by the rotations of one step. */
+/* Turns a vector by the rotations of one step, of each row. */
 static void turn_on(int first, int last, const panda_rotation *by, panda_real *x)
 {
     panda_real here = x[first];
     for (int k = first; k < last; ++k) {
-        const panda_real c = by[k - first].c;
-        const panda_real s = by[k - first].s;
+        const panda_real c = by[k].c;
+        const panda_real s = by[k].s;
         const panda_real next = x[k + 1];
         x[k] = c*here + s*next;
         here = c*next - s*here;
@@ -102,7 +102,7 @@ static void reflect(int size, panda_matrix A, panda_real *d, panda_real *e, int 
     d[size - 1] = A[size - 1][size - 1];
 }
 
-/* One QR step on rows first to last; writes its rotations. */
+/* One QR step on rows first to last; writes the rotation of each. */
 static void chase(int first, int last, panda_real *d, panda_real *e, panda_rotation *by)
 {
     const panda_real end = e[last - 1];
@@ -128,8 +128,8 @@ static void chase(int first, int last, panda_real *d, panda_real *e, panda_rotat
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        by[k - first].c = c;
-        by[k - first].s = s;
+        by[k].c = c;
+        by[k].s = s;
     }
 }
 
@@ -143,7 +143,7 @@ bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *valu
     panda_turns *turns)
 {
     panda_real e[PANDA_SYSTEM];
-    panda_rotation passing[PANDA_SYSTEM]; /* of a step, where they are not kept */
+    panda_rotation by[PANDA_SYSTEM];
     int kept = 0;
     panda_real all = PANDA_R(0.0);
     reflect(size, A, values, e, count, x, turns);
@@ -168,17 +168,21 @@ bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *valu
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
-        panda_rotation *by = passing;
+        chase(first, last, values, e, by);
         if (turns != NULL) {
-            if (step == most || kept + last - first > PANDA_MOST_ROTATIONS) {
+            if (step == most) {
                 return false;
             }
-            by = &turns->by[kept];
             turns->first[step] = (unsigned char)first;
             turns->last[step] = (unsigned char)last;
-            kept += last - first;
+            for (int k = first; k < last; ++k) {
+                if (kept == PANDA_MOST_ROTATIONS) {
+                    return false;
+                }
+                turns->by[kept] = by[k];
+                ++kept;
+            }
         }
-        chase(first, last, values, e, by);
         for (int m = 0; m < count; ++m) {
             turn_on(first, last, by, x[m]);
         }

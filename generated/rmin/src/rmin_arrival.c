@@ -15,6 +15,18 @@
 #define ROUNDING (RMIN_R(8.0)*RMIN_EPSILON)
 #define MOST_STEPS 1000000
 
+/* Largest number of a body or a drive: with larger ones products are not finite in float. */
+#define LARGEST RMIN_R(1e30)
+
+static bool are_huge(const rmin_real *x, int count)
+{
+    bool huge = false;
+    for (int i = 0; i < count; ++i) {
+        huge = huge || x[i] > LARGEST;
+    }
+    return huge;
+}
+
 int rmin_check_impact(const rmin_region *region, const rmin_params *p)
 {
     if (p->layout != RMIN_LAYOUT) {
@@ -26,10 +38,11 @@ int rmin_check_impact(const rmin_region *region, const rmin_params *p)
     if (!rmin_all_finite(numbers, 4)) {
         return RMIN_NOT_FINITE;
     }
-    const bool body = region->stiffness > RMIN_R(0.0) && region->damping >= RMIN_R(0.0)
+    const bool body = !are_huge(numbers, 4) && region->stiffness > RMIN_R(0.0) && region->damping >= RMIN_R(0.0)
         && numbers[3] > RMIN_R(0.0) && rmin_law_is_one(region);
     const rmin_real horizon = RMIN_HORIZON(p);
     const rmin_real reaction = RMIN_REACTION_TIME(p);
+    bool huge = false;
     int status = rmin_check_positive(&horizon, 1);
     if (status == RMIN_OK) {
         status = rmin_check_not_negative(&reaction, 1);
@@ -40,14 +53,16 @@ int rmin_check_impact(const rmin_region *region, const rmin_params *p)
 #if RMIN_ELASTIC
         const rmin_real drive[2] = {RMIN_SPRING(p, i), RMIN_ROTOR(p, i)};
         status = status == RMIN_OK ? rmin_check_positive(drive, 2) : status;
+        huge = huge || are_huge(drive, 2);
 #endif
+        huge = huge || are_huge(gains, 2);
     }
     if (status != RMIN_OK) {
         return status;
     }
     const bool motion = p->motors >= RMIN_MOTORS_FREE_OR_DRIVEN && p->motors <= RMIN_MOTORS_SERVO
         && p->steps > 0 && p->steps <= MOST_STEPS;
-    return body && motion ? RMIN_OK : RMIN_OUT_OF_RANGE;
+    return body && motion && !huge ? RMIN_OK : RMIN_OUT_OF_RANGE;
 }
 
 int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)

@@ -54,13 +54,13 @@ static void mirror(int first, int size, const rmin_real *v, rmin_real scale, rmi
     }
 }
 
-/* Turns a vector by the rotations of one step. */
+/* Turns a vector by the rotations of one step, of each row. */
 static void turn_on(int first, int last, const rmin_rotation *by, rmin_real *x)
 {
     rmin_real here = x[first];
     for (int k = first; k < last; ++k) {
-        const rmin_real c = by[k - first].c;
-        const rmin_real s = by[k - first].s;
+        const rmin_real c = by[k].c;
+        const rmin_real s = by[k].s;
         const rmin_real next = x[k + 1];
         x[k] = c*here + s*next;
         here = c*next - s*here;
@@ -102,7 +102,7 @@ static void reflect(int size, rmin_matrix A, rmin_real *d, rmin_real *e, int cou
     d[size - 1] = A[size - 1][size - 1];
 }
 
-/* One QR step on rows first to last; writes its rotations. */
+/* One QR step on rows first to last; writes the rotation of each. */
 static void chase(int first, int last, rmin_real *d, rmin_real *e, rmin_rotation *by)
 {
     const rmin_real end = e[last - 1];
@@ -128,8 +128,8 @@ static void chase(int first, int last, rmin_real *d, rmin_real *e, rmin_rotation
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        by[k - first].c = c;
-        by[k - first].s = s;
+        by[k].c = c;
+        by[k].s = s;
     }
 }
 
@@ -143,7 +143,7 @@ bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, 
     rmin_turns *turns)
 {
     rmin_real e[RMIN_SYSTEM];
-    rmin_rotation passing[RMIN_SYSTEM]; /* of a step, where they are not kept */
+    rmin_rotation by[RMIN_SYSTEM];
     int kept = 0;
     rmin_real all = RMIN_R(0.0);
     reflect(size, A, values, e, count, x, turns);
@@ -168,17 +168,21 @@ bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, 
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
-        rmin_rotation *by = passing;
+        chase(first, last, values, e, by);
         if (turns != NULL) {
-            if (step == most || kept + last - first > RMIN_MOST_ROTATIONS) {
+            if (step == most) {
                 return false;
             }
-            by = &turns->by[kept];
             turns->first[step] = (unsigned char)first;
             turns->last[step] = (unsigned char)last;
-            kept += last - first;
+            for (int k = first; k < last; ++k) {
+                if (kept == RMIN_MOST_ROTATIONS) {
+                    return false;
+                }
+                turns->by[kept] = by[k];
+                ++kept;
+            }
         }
-        chase(first, last, values, e, by);
         for (int m = 0; m < count; ++m) {
             turn_on(first, last, by, x[m]);
         }

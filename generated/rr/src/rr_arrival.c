@@ -15,6 +15,18 @@
 #define ROUNDING (RR_R(8.0)*RR_EPSILON)
 #define MOST_STEPS 1000000
 
+/* Largest number of a body or a drive: with larger ones products are not finite in float. */
+#define LARGEST RR_R(1e30)
+
+static bool are_huge(const rr_real *x, int count)
+{
+    bool huge = false;
+    for (int i = 0; i < count; ++i) {
+        huge = huge || x[i] > LARGEST;
+    }
+    return huge;
+}
+
 int rr_check_impact(const rr_region *region, const rr_params *p)
 {
     if (p->layout != RR_LAYOUT) {
@@ -26,10 +38,11 @@ int rr_check_impact(const rr_region *region, const rr_params *p)
     if (!rr_all_finite(numbers, 4)) {
         return RR_NOT_FINITE;
     }
-    const bool body = region->stiffness > RR_R(0.0) && region->damping >= RR_R(0.0)
+    const bool body = !are_huge(numbers, 4) && region->stiffness > RR_R(0.0) && region->damping >= RR_R(0.0)
         && numbers[3] > RR_R(0.0) && rr_law_is_one(region);
     const rr_real horizon = RR_HORIZON(p);
     const rr_real reaction = RR_REACTION_TIME(p);
+    bool huge = false;
     int status = rr_check_positive(&horizon, 1);
     if (status == RR_OK) {
         status = rr_check_not_negative(&reaction, 1);
@@ -40,14 +53,16 @@ int rr_check_impact(const rr_region *region, const rr_params *p)
 #if RR_ELASTIC
         const rr_real drive[2] = {RR_SPRING(p, i), RR_ROTOR(p, i)};
         status = status == RR_OK ? rr_check_positive(drive, 2) : status;
+        huge = huge || are_huge(drive, 2);
 #endif
+        huge = huge || are_huge(gains, 2);
     }
     if (status != RR_OK) {
         return status;
     }
     const bool motion = p->motors >= RR_MOTORS_FREE_OR_DRIVEN && p->motors <= RR_MOTORS_SERVO
         && p->steps > 0 && p->steps <= MOST_STEPS;
-    return body && motion ? RR_OK : RR_OUT_OF_RANGE;
+    return body && motion && !huge ? RR_OK : RR_OUT_OF_RANGE;
 }
 
 int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)

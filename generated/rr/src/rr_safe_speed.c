@@ -175,11 +175,17 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
         const rr_real guess = rr_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, RR_R(0.0), RR_R(0.0), RR_R(0.0), RR_R(0.0)};
         budget.fine = false;
-        bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
+        const rr_real share = region->law == NULL ? RR_R(1.0) : SHORT_OF_JUMP;
+        const rr_real most = found->speed/share;
+        bool is_known = find(impact, motors == last ? guess : most, most, &s, &budget);
+        if (most > RR_R(0.0) && s.low >= most) {
+            s.low = found->speed;
+        } else {
+            s.low *= share;
+        }
         const bool all_slower = region->law != NULL || hardly_damps;
         if (all_slower || budget.fine) {
-            const rr_real share = region->law == NULL ? RR_R(1.0) : SHORT_OF_JUMP;
-            s.low = is_known ? share*s.low : RR_R(0.0); /* slower speeds than what was tried are not known */
+            s.low = is_known ? s.low : RR_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, all_slower ? 0 : NEAREST, &s, &budget);
         }
         if (!is_known) {

@@ -54,13 +54,13 @@ static void mirror(int first, int size, const rr_real *v, rr_real scale, rr_real
     }
 }
 
-/* Turns a vector by the rotations of one step. */
+/* Turns a vector by the rotations of one step, of each row. */
 static void turn_on(int first, int last, const rr_rotation *by, rr_real *x)
 {
     rr_real here = x[first];
     for (int k = first; k < last; ++k) {
-        const rr_real c = by[k - first].c;
-        const rr_real s = by[k - first].s;
+        const rr_real c = by[k].c;
+        const rr_real s = by[k].s;
         const rr_real next = x[k + 1];
         x[k] = c*here + s*next;
         here = c*next - s*here;
@@ -102,7 +102,7 @@ static void reflect(int size, rr_matrix A, rr_real *d, rr_real *e, int count, rr
     d[size - 1] = A[size - 1][size - 1];
 }
 
-/* One QR step on rows first to last; writes its rotations. */
+/* One QR step on rows first to last; writes the rotation of each. */
 static void chase(int first, int last, rr_real *d, rr_real *e, rr_rotation *by)
 {
     const rr_real end = e[last - 1];
@@ -128,8 +128,8 @@ static void chase(int first, int last, rr_real *d, rr_real *e, rr_rotation *by)
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        by[k - first].c = c;
-        by[k - first].s = s;
+        by[k].c = c;
+        by[k].s = s;
     }
 }
 
@@ -143,7 +143,7 @@ bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, int coun
     rr_turns *turns)
 {
     rr_real e[RR_SYSTEM];
-    rr_rotation passing[RR_SYSTEM]; /* of a step, where they are not kept */
+    rr_rotation by[RR_SYSTEM];
     int kept = 0;
     rr_real all = RR_R(0.0);
     reflect(size, A, values, e, count, x, turns);
@@ -168,17 +168,21 @@ bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, int coun
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
-        rr_rotation *by = passing;
+        chase(first, last, values, e, by);
         if (turns != NULL) {
-            if (step == most || kept + last - first > RR_MOST_ROTATIONS) {
+            if (step == most) {
                 return false;
             }
-            by = &turns->by[kept];
             turns->first[step] = (unsigned char)first;
             turns->last[step] = (unsigned char)last;
-            kept += last - first;
+            for (int k = first; k < last; ++k) {
+                if (kept == RR_MOST_ROTATIONS) {
+                    return false;
+                }
+                turns->by[kept] = by[k];
+                ++kept;
+            }
         }
-        chase(first, last, values, e, by);
         for (int m = 0; m < count; ++m) {
             turn_on(first, last, by, x[m]);
         }

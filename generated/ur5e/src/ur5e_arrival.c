@@ -15,6 +15,18 @@
 #define ROUNDING (UR5E_R(8.0)*UR5E_EPSILON)
 #define MOST_STEPS 1000000
 
+/* Largest number of a body or a drive: with larger ones products are not finite in float. */
+#define LARGEST UR5E_R(1e30)
+
+static bool are_huge(const ur5e_real *x, int count)
+{
+    bool huge = false;
+    for (int i = 0; i < count; ++i) {
+        huge = huge || x[i] > LARGEST;
+    }
+    return huge;
+}
+
 int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p)
 {
     if (p->layout != UR5E_LAYOUT) {
@@ -26,10 +38,11 @@ int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p)
     if (!ur5e_all_finite(numbers, 4)) {
         return UR5E_NOT_FINITE;
     }
-    const bool body = region->stiffness > UR5E_R(0.0) && region->damping >= UR5E_R(0.0)
+    const bool body = !are_huge(numbers, 4) && region->stiffness > UR5E_R(0.0) && region->damping >= UR5E_R(0.0)
         && numbers[3] > UR5E_R(0.0) && ur5e_law_is_one(region);
     const ur5e_real horizon = UR5E_HORIZON(p);
     const ur5e_real reaction = UR5E_REACTION_TIME(p);
+    bool huge = false;
     int status = ur5e_check_positive(&horizon, 1);
     if (status == UR5E_OK) {
         status = ur5e_check_not_negative(&reaction, 1);
@@ -40,14 +53,16 @@ int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p)
 #if UR5E_ELASTIC
         const ur5e_real drive[2] = {UR5E_SPRING(p, i), UR5E_ROTOR(p, i)};
         status = status == UR5E_OK ? ur5e_check_positive(drive, 2) : status;
+        huge = huge || are_huge(drive, 2);
 #endif
+        huge = huge || are_huge(gains, 2);
     }
     if (status != UR5E_OK) {
         return status;
     }
     const bool motion = p->motors >= UR5E_MOTORS_FREE_OR_DRIVEN && p->motors <= UR5E_MOTORS_SERVO
         && p->steps > 0 && p->steps <= MOST_STEPS;
-    return body && motion ? UR5E_OK : UR5E_OUT_OF_RANGE;
+    return body && motion && !huge ? UR5E_OK : UR5E_OUT_OF_RANGE;
 }
 
 int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)

@@ -175,11 +175,17 @@ int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real l
         const ur5e_real guess = ur5e_two_body_speed(region, impact->mobility, AIM*counts);
         search s = {counts, UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
         budget.fine = false;
-        bool is_known = find(impact, motors == last ? guess : found->speed, found->speed, &s, &budget);
+        const ur5e_real share = region->law == NULL ? UR5E_R(1.0) : SHORT_OF_JUMP;
+        const ur5e_real most = found->speed/share;
+        bool is_known = find(impact, motors == last ? guess : most, most, &s, &budget);
+        if (most > UR5E_R(0.0) && s.low >= most) {
+            s.low = found->speed;
+        } else {
+            s.low *= share;
+        }
         const bool all_slower = region->law != NULL || hardly_damps;
         if (all_slower || budget.fine) {
-            const ur5e_real share = region->law == NULL ? UR5E_R(1.0) : SHORT_OF_JUMP;
-            s.low = is_known ? share*s.low : UR5E_R(0.0); /* slower speeds than what was tried are not known */
+            s.low = is_known ? s.low : UR5E_R(0.0); /* slower speeds than what was tried are not known */
             is_known = is_known && look_slower(impact, all_slower ? 0 : NEAREST, &s, &budget);
         }
         if (!is_known) {

@@ -54,13 +54,13 @@ static void mirror(int first, int size, const ur5e_real *v, ur5e_real scale, ur5
     }
 }
 
-/* Turns a vector by the rotations of one step. */
+/* Turns a vector by the rotations of one step, of each row. */
 static void turn_on(int first, int last, const ur5e_rotation *by, ur5e_real *x)
 {
     ur5e_real here = x[first];
     for (int k = first; k < last; ++k) {
-        const ur5e_real c = by[k - first].c;
-        const ur5e_real s = by[k - first].s;
+        const ur5e_real c = by[k].c;
+        const ur5e_real s = by[k].s;
         const ur5e_real next = x[k + 1];
         x[k] = c*here + s*next;
         here = c*next - s*here;
@@ -102,7 +102,7 @@ static void reflect(int size, ur5e_matrix A, ur5e_real *d, ur5e_real *e, int cou
     d[size - 1] = A[size - 1][size - 1];
 }
 
-/* One QR step on rows first to last; writes its rotations. */
+/* One QR step on rows first to last; writes the rotation of each. */
 static void chase(int first, int last, ur5e_real *d, ur5e_real *e, ur5e_rotation *by)
 {
     const ur5e_real end = e[last - 1];
@@ -128,8 +128,8 @@ static void chase(int first, int last, ur5e_real *d, ur5e_real *e, ur5e_rotation
             z = s*e[k + 1];
             e[k + 1] *= c;
         }
-        by[k - first].c = c;
-        by[k - first].s = s;
+        by[k].c = c;
+        by[k].s = s;
     }
 }
 
@@ -143,7 +143,7 @@ bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, 
     ur5e_turns *turns)
 {
     ur5e_real e[UR5E_SYSTEM];
-    ur5e_rotation passing[UR5E_SYSTEM]; /* of a step, where they are not kept */
+    ur5e_rotation by[UR5E_SYSTEM];
     int kept = 0;
     ur5e_real all = UR5E_R(0.0);
     reflect(size, A, values, e, count, x, turns);
@@ -168,17 +168,21 @@ bool ur5e_spectrum(int size, ur5e_real small, ur5e_matrix A, ur5e_real *values, 
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
-        ur5e_rotation *by = passing;
+        chase(first, last, values, e, by);
         if (turns != NULL) {
-            if (step == most || kept + last - first > UR5E_MOST_ROTATIONS) {
+            if (step == most) {
                 return false;
             }
-            by = &turns->by[kept];
             turns->first[step] = (unsigned char)first;
             turns->last[step] = (unsigned char)last;
-            kept += last - first;
+            for (int k = first; k < last; ++k) {
+                if (kept == UR5E_MOST_ROTATIONS) {
+                    return false;
+                }
+                turns->by[kept] = by[k];
+                ++kept;
+            }
         }
-        chase(first, last, values, e, by);
         for (int m = 0; m < count; ++m) {
             turn_on(first, last, by, x[m]);
         }

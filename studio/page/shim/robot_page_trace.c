@@ -57,7 +57,7 @@ static bool step_on(robot_state *s, int *left, robot_peak *peak)
 robot_real robot_run_seen(robot_impact *impact, robot_real speed, int steps, robot_peak *peak,
     robot_follow_t *out)
 {
-    static const robot_peak none = {ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0), 1, 1, false};
+    static const robot_peak none = {ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0), 1, 1, false, false};
     robot_state s;
     pace p = {1, 0};
     int left = steps;
