@@ -15,54 +15,39 @@
 #define ROUNDING (ROBOT_R(8.0)*ROBOT_EPSILON)
 #define MOST_STEPS 1000000
 
-/* Largest number of a body or a drive: with larger ones products are not finite in float. */
-#define LARGEST ROBOT_R(1e30)
-
-static bool are_huge(const robot_real *x, int count)
-{
-    bool huge = false;
-    for (int i = 0; i < count; ++i) {
-        huge = huge || x[i] > LARGEST;
-    }
-    return huge;
-}
-
 int robot_check_impact(const robot_region *region, const robot_params *p)
 {
     if (p->layout != ROBOT_LAYOUT) {
         return ROBOT_FOREIGN_PARAMS;
     }
-    const robot_real numbers[4] = {region->stiffness, region->damping,
-        region->law != NULL ? ROBOT_R(1.0) : region->hertz_stiffness,
-        region->clamped != 0 ? ROBOT_R(1.0) : region->effective_mass};
-    if (!robot_all_finite(numbers, 4)) {
-        return ROBOT_NOT_FINITE;
-    }
-    const bool body = !are_huge(numbers, 4) && region->stiffness > ROBOT_R(0.0) && region->damping >= ROBOT_R(0.0)
-        && numbers[3] > ROBOT_R(0.0) && robot_law_is_one(region);
-    const robot_real horizon = ROBOT_HORIZON(p);
-    const robot_real reaction = ROBOT_REACTION_TIME(p);
-    bool huge = false;
-    int status = robot_check_positive(&horizon, 1);
-    if (status == ROBOT_OK) {
-        status = robot_check_not_negative(&reaction, 1);
-    }
-    for (int i = 0; i < ROBOT_N && status == ROBOT_OK; ++i) {
-        const robot_real gains[2] = {ROBOT_GAIN(p, i), ROBOT_DAMPING_GAIN(p, i)};
-        status = robot_check_not_negative(gains, 2);
+    robot_real positive[4 + 2*ROBOT_N];
+    robot_real others[2 + 2*ROBOT_N]; /* not negative */
+    int count = 4;
+    positive[0] = region->stiffness;
+    positive[1] = region->law != NULL ? ROBOT_R(1.0) : region->hertz_stiffness;
+    positive[2] = region->clamped != 0 ? ROBOT_R(1.0) : region->effective_mass;
+    positive[3] = ROBOT_HORIZON(p);
+    others[0] = region->damping;
+    others[1] = ROBOT_REACTION_TIME(p);
+    for (int i = 0; i < ROBOT_N; ++i) {
+        others[2 + 2*i] = ROBOT_GAIN(p, i);
+        others[3 + 2*i] = ROBOT_DAMPING_GAIN(p, i);
 #if ROBOT_ELASTIC
-        const robot_real drive[2] = {ROBOT_SPRING(p, i), ROBOT_ROTOR(p, i)};
-        status = status == ROBOT_OK ? robot_check_positive(drive, 2) : status;
-        huge = huge || are_huge(drive, 2);
+        positive[count] = ROBOT_SPRING(p, i);
+        positive[count + 1] = ROBOT_ROTOR(p, i);
+        count += 2;
 #endif
-        huge = huge || are_huge(gains, 2);
+    }
+    int status = robot_check_positive(positive, count);
+    if (status == ROBOT_OK) {
+        status = robot_check_not_negative(others, 2 + 2*ROBOT_N);
     }
     if (status != ROBOT_OK) {
         return status;
     }
     const bool motion = p->motors >= ROBOT_MOTORS_FREE_OR_DRIVEN && p->motors <= ROBOT_MOTORS_SERVO
         && p->steps > 0 && p->steps <= MOST_STEPS;
-    return body && motion && !huge ? ROBOT_OK : ROBOT_OUT_OF_RANGE;
+    return motion && robot_law_is_one(region) ? ROBOT_OK : ROBOT_OUT_OF_RANGE;
 }
 
 int robot_arrive(const robot_real n[3], int point, robot_arrival *arrival)

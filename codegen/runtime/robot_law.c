@@ -134,7 +134,7 @@ static bool rises(robot_real before, robot_real between, robot_real after)
 bool robot_law_is_one(const robot_region *region)
 {
     if (region->law == NULL) {
-        return region->hertz_stiffness > ROBOT_R(0.0);
+        return true;
     }
     if (region->law_points < 1 || region->law_points > ROBOT_MOST_LAW_POINTS) {
         return false;

@@ -15,54 +15,39 @@
 #define ROUNDING (PANDA_R(8.0)*PANDA_EPSILON)
 #define MOST_STEPS 1000000
 
-/* Largest number of a body or a drive: with larger ones products are not finite in float. */
-#define LARGEST PANDA_R(1e30)
-
-static bool are_huge(const panda_real *x, int count)
-{
-    bool huge = false;
-    for (int i = 0; i < count; ++i) {
-        huge = huge || x[i] > LARGEST;
-    }
-    return huge;
-}
-
 int panda_check_impact(const panda_region *region, const panda_params *p)
 {
     if (p->layout != PANDA_LAYOUT) {
         return PANDA_FOREIGN_PARAMS;
     }
-    const panda_real numbers[4] = {region->stiffness, region->damping,
-        region->law != NULL ? PANDA_R(1.0) : region->hertz_stiffness,
-        region->clamped != 0 ? PANDA_R(1.0) : region->effective_mass};
-    if (!panda_all_finite(numbers, 4)) {
-        return PANDA_NOT_FINITE;
-    }
-    const bool body = !are_huge(numbers, 4) && region->stiffness > PANDA_R(0.0) && region->damping >= PANDA_R(0.0)
-        && numbers[3] > PANDA_R(0.0) && panda_law_is_one(region);
-    const panda_real horizon = PANDA_HORIZON(p);
-    const panda_real reaction = PANDA_REACTION_TIME(p);
-    bool huge = false;
-    int status = panda_check_positive(&horizon, 1);
-    if (status == PANDA_OK) {
-        status = panda_check_not_negative(&reaction, 1);
-    }
-    for (int i = 0; i < PANDA_N && status == PANDA_OK; ++i) {
-        const panda_real gains[2] = {PANDA_GAIN(p, i), PANDA_DAMPING_GAIN(p, i)};
-        status = panda_check_not_negative(gains, 2);
+    panda_real positive[4 + 2*PANDA_N];
+    panda_real others[2 + 2*PANDA_N]; /* not negative */
+    int count = 4;
+    positive[0] = region->stiffness;
+    positive[1] = region->law != NULL ? PANDA_R(1.0) : region->hertz_stiffness;
+    positive[2] = region->clamped != 0 ? PANDA_R(1.0) : region->effective_mass;
+    positive[3] = PANDA_HORIZON(p);
+    others[0] = region->damping;
+    others[1] = PANDA_REACTION_TIME(p);
+    for (int i = 0; i < PANDA_N; ++i) {
+        others[2 + 2*i] = PANDA_GAIN(p, i);
+        others[3 + 2*i] = PANDA_DAMPING_GAIN(p, i);
 #if PANDA_ELASTIC
-        const panda_real drive[2] = {PANDA_SPRING(p, i), PANDA_ROTOR(p, i)};
-        status = status == PANDA_OK ? panda_check_positive(drive, 2) : status;
-        huge = huge || are_huge(drive, 2);
+        positive[count] = PANDA_SPRING(p, i);
+        positive[count + 1] = PANDA_ROTOR(p, i);
+        count += 2;
 #endif
-        huge = huge || are_huge(gains, 2);
+    }
+    int status = panda_check_positive(positive, count);
+    if (status == PANDA_OK) {
+        status = panda_check_not_negative(others, 2 + 2*PANDA_N);
     }
     if (status != PANDA_OK) {
         return status;
     }
     const bool motion = p->motors >= PANDA_MOTORS_FREE_OR_DRIVEN && p->motors <= PANDA_MOTORS_SERVO
         && p->steps > 0 && p->steps <= MOST_STEPS;
-    return body && motion && !huge ? PANDA_OK : PANDA_OUT_OF_RANGE;
+    return motion && panda_law_is_one(region) ? PANDA_OK : PANDA_OUT_OF_RANGE;
 }
 
 int panda_arrive(const panda_real n[3], int point, panda_arrival *arrival)

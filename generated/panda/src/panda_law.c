@@ -134,7 +134,7 @@ static bool rises(panda_real before, panda_real between, panda_real after)
 bool panda_law_is_one(const panda_region *region)
 {
     if (region->law == NULL) {
-        return region->hertz_stiffness > PANDA_R(0.0);
+        return true;
     }
     if (region->law_points < 1 || region->law_points > PANDA_MOST_LAW_POINTS) {
         return false;

@@ -15,54 +15,39 @@
 #define ROUNDING (RMIN_R(8.0)*RMIN_EPSILON)
 #define MOST_STEPS 1000000
 
-/* Largest number of a body or a drive: with larger ones products are not finite in float. */
-#define LARGEST RMIN_R(1e30)
-
-static bool are_huge(const rmin_real *x, int count)
-{
-    bool huge = false;
-    for (int i = 0; i < count; ++i) {
-        huge = huge || x[i] > LARGEST;
-    }
-    return huge;
-}
-
 int rmin_check_impact(const rmin_region *region, const rmin_params *p)
 {
     if (p->layout != RMIN_LAYOUT) {
         return RMIN_FOREIGN_PARAMS;
     }
-    const rmin_real numbers[4] = {region->stiffness, region->damping,
-        region->law != NULL ? RMIN_R(1.0) : region->hertz_stiffness,
-        region->clamped != 0 ? RMIN_R(1.0) : region->effective_mass};
-    if (!rmin_all_finite(numbers, 4)) {
-        return RMIN_NOT_FINITE;
-    }
-    const bool body = !are_huge(numbers, 4) && region->stiffness > RMIN_R(0.0) && region->damping >= RMIN_R(0.0)
-        && numbers[3] > RMIN_R(0.0) && rmin_law_is_one(region);
-    const rmin_real horizon = RMIN_HORIZON(p);
-    const rmin_real reaction = RMIN_REACTION_TIME(p);
-    bool huge = false;
-    int status = rmin_check_positive(&horizon, 1);
-    if (status == RMIN_OK) {
-        status = rmin_check_not_negative(&reaction, 1);
-    }
-    for (int i = 0; i < RMIN_N && status == RMIN_OK; ++i) {
-        const rmin_real gains[2] = {RMIN_GAIN(p, i), RMIN_DAMPING_GAIN(p, i)};
-        status = rmin_check_not_negative(gains, 2);
+    rmin_real positive[4 + 2*RMIN_N];
+    rmin_real others[2 + 2*RMIN_N]; /* not negative */
+    int count = 4;
+    positive[0] = region->stiffness;
+    positive[1] = region->law != NULL ? RMIN_R(1.0) : region->hertz_stiffness;
+    positive[2] = region->clamped != 0 ? RMIN_R(1.0) : region->effective_mass;
+    positive[3] = RMIN_HORIZON(p);
+    others[0] = region->damping;
+    others[1] = RMIN_REACTION_TIME(p);
+    for (int i = 0; i < RMIN_N; ++i) {
+        others[2 + 2*i] = RMIN_GAIN(p, i);
+        others[3 + 2*i] = RMIN_DAMPING_GAIN(p, i);
 #if RMIN_ELASTIC
-        const rmin_real drive[2] = {RMIN_SPRING(p, i), RMIN_ROTOR(p, i)};
-        status = status == RMIN_OK ? rmin_check_positive(drive, 2) : status;
-        huge = huge || are_huge(drive, 2);
+        positive[count] = RMIN_SPRING(p, i);
+        positive[count + 1] = RMIN_ROTOR(p, i);
+        count += 2;
 #endif
-        huge = huge || are_huge(gains, 2);
+    }
+    int status = rmin_check_positive(positive, count);
+    if (status == RMIN_OK) {
+        status = rmin_check_not_negative(others, 2 + 2*RMIN_N);
     }
     if (status != RMIN_OK) {
         return status;
     }
     const bool motion = p->motors >= RMIN_MOTORS_FREE_OR_DRIVEN && p->motors <= RMIN_MOTORS_SERVO
         && p->steps > 0 && p->steps <= MOST_STEPS;
-    return body && motion && !huge ? RMIN_OK : RMIN_OUT_OF_RANGE;
+    return motion && rmin_law_is_one(region) ? RMIN_OK : RMIN_OUT_OF_RANGE;
 }
 
 int rmin_arrive(const rmin_real n[3], int point, rmin_arrival *arrival)

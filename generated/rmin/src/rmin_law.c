@@ -134,7 +134,7 @@ static bool rises(rmin_real before, rmin_real between, rmin_real after)
 bool rmin_law_is_one(const rmin_region *region)
 {
     if (region->law == NULL) {
-        return region->hertz_stiffness > RMIN_R(0.0);
+        return true;
     }
     if (region->law_points < 1 || region->law_points > RMIN_MOST_LAW_POINTS) {
         return false;

@@ -10,7 +10,8 @@
  *     q1, q2, q3, q4;
  *   - takes the direction of impact n at any length but zero, where it has one;
  *   - returns RR_OK or another status, and then has written nothing (but for RR_BOUNDED);
- *   - refuses inputs that are not finite or outside the ranges stated here, but knows no joint limits;
+ *   - refuses inputs that are not finite, above 1e30 where they may not be negative, or outside the ranges
+ *     stated here, but knows no joint limits;
  *   - never writes a number that is not finite;
  *   - holds no state, allocates nothing and may be called from any thread.
  *
@@ -214,8 +215,7 @@ typedef struct {
 
 /*
  * What an impact hits: a law of contact in series with a spring and damper (MSM 3.1). The law is Hertz's,
- * or what softimpact.codegen.region_parameters makes of skin, pad and cover. Of a body and of the drives impacts
- * refuse numbers above 1e30.
+ * or what softimpact.codegen.region_parameters makes of skin, pad and cover.
  */
 typedef struct {
     rr_real stiffness; /* k_h of the body, N/m, > 0 */

@@ -15,54 +15,39 @@
 #define ROUNDING (RR_R(8.0)*RR_EPSILON)
 #define MOST_STEPS 1000000
 
-/* Largest number of a body or a drive: with larger ones products are not finite in float. */
-#define LARGEST RR_R(1e30)
-
-static bool are_huge(const rr_real *x, int count)
-{
-    bool huge = false;
-    for (int i = 0; i < count; ++i) {
-        huge = huge || x[i] > LARGEST;
-    }
-    return huge;
-}
-
 int rr_check_impact(const rr_region *region, const rr_params *p)
 {
     if (p->layout != RR_LAYOUT) {
         return RR_FOREIGN_PARAMS;
     }
-    const rr_real numbers[4] = {region->stiffness, region->damping,
-        region->law != NULL ? RR_R(1.0) : region->hertz_stiffness,
-        region->clamped != 0 ? RR_R(1.0) : region->effective_mass};
-    if (!rr_all_finite(numbers, 4)) {
-        return RR_NOT_FINITE;
-    }
-    const bool body = !are_huge(numbers, 4) && region->stiffness > RR_R(0.0) && region->damping >= RR_R(0.0)
-        && numbers[3] > RR_R(0.0) && rr_law_is_one(region);
-    const rr_real horizon = RR_HORIZON(p);
-    const rr_real reaction = RR_REACTION_TIME(p);
-    bool huge = false;
-    int status = rr_check_positive(&horizon, 1);
-    if (status == RR_OK) {
-        status = rr_check_not_negative(&reaction, 1);
-    }
-    for (int i = 0; i < RR_N && status == RR_OK; ++i) {
-        const rr_real gains[2] = {RR_GAIN(p, i), RR_DAMPING_GAIN(p, i)};
-        status = rr_check_not_negative(gains, 2);
+    rr_real positive[4 + 2*RR_N];
+    rr_real others[2 + 2*RR_N]; /* not negative */
+    int count = 4;
+    positive[0] = region->stiffness;
+    positive[1] = region->law != NULL ? RR_R(1.0) : region->hertz_stiffness;
+    positive[2] = region->clamped != 0 ? RR_R(1.0) : region->effective_mass;
+    positive[3] = RR_HORIZON(p);
+    others[0] = region->damping;
+    others[1] = RR_REACTION_TIME(p);
+    for (int i = 0; i < RR_N; ++i) {
+        others[2 + 2*i] = RR_GAIN(p, i);
+        others[3 + 2*i] = RR_DAMPING_GAIN(p, i);
 #if RR_ELASTIC
-        const rr_real drive[2] = {RR_SPRING(p, i), RR_ROTOR(p, i)};
-        status = status == RR_OK ? rr_check_positive(drive, 2) : status;
-        huge = huge || are_huge(drive, 2);
+        positive[count] = RR_SPRING(p, i);
+        positive[count + 1] = RR_ROTOR(p, i);
+        count += 2;
 #endif
-        huge = huge || are_huge(gains, 2);
+    }
+    int status = rr_check_positive(positive, count);
+    if (status == RR_OK) {
+        status = rr_check_not_negative(others, 2 + 2*RR_N);
     }
     if (status != RR_OK) {
         return status;
     }
     const bool motion = p->motors >= RR_MOTORS_FREE_OR_DRIVEN && p->motors <= RR_MOTORS_SERVO
         && p->steps > 0 && p->steps <= MOST_STEPS;
-    return body && motion && !huge ? RR_OK : RR_OUT_OF_RANGE;
+    return motion && rr_law_is_one(region) ? RR_OK : RR_OUT_OF_RANGE;
 }
 
 int rr_arrive(const rr_real n[3], int point, rr_arrival *arrival)

@@ -134,7 +134,7 @@ static bool rises(rr_real before, rr_real between, rr_real after)
 bool rr_law_is_one(const rr_region *region)
 {
     if (region->law == NULL) {
-        return region->hertz_stiffness > RR_R(0.0);
+        return true;
     }
     if (region->law_points < 1 || region->law_points > RR_MOST_LAW_POINTS) {
         return false;

@@ -11,7 +11,8 @@
  *     wrist_3_joint;
  *   - takes the direction of impact n at any length but zero, where it has one;
  *   - returns UR5E_OK or another status, and then has written nothing (but for UR5E_BOUNDED);
- *   - refuses inputs that are not finite or outside the ranges stated here, but knows no joint limits;
+ *   - refuses inputs that are not finite, above 1e30 where they may not be negative, or outside the ranges
+ *     stated here, but knows no joint limits;
  *   - never writes a number that is not finite;
  *   - holds no state, allocates nothing and may be called from any thread.
  *
@@ -335,8 +336,7 @@ typedef struct {
 
 /*
  * What an impact hits: a law of contact in series with a spring and damper (MSM 3.1). The law is Hertz's,
- * or what softimpact.codegen.region_parameters makes of skin, pad and cover. Of a body and of the drives impacts
- * refuse numbers above 1e30.
+ * or what softimpact.codegen.region_parameters makes of skin, pad and cover.
  */
 typedef struct {
     ur5e_real stiffness; /* k_h of the body, N/m, > 0 */

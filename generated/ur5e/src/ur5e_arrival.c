@@ -15,54 +15,39 @@
 #define ROUNDING (UR5E_R(8.0)*UR5E_EPSILON)
 #define MOST_STEPS 1000000
 
-/* Largest number of a body or a drive: with larger ones products are not finite in float. */
-#define LARGEST UR5E_R(1e30)
-
-static bool are_huge(const ur5e_real *x, int count)
-{
-    bool huge = false;
-    for (int i = 0; i < count; ++i) {
-        huge = huge || x[i] > LARGEST;
-    }
-    return huge;
-}
-
 int ur5e_check_impact(const ur5e_region *region, const ur5e_params *p)
 {
     if (p->layout != UR5E_LAYOUT) {
         return UR5E_FOREIGN_PARAMS;
     }
-    const ur5e_real numbers[4] = {region->stiffness, region->damping,
-        region->law != NULL ? UR5E_R(1.0) : region->hertz_stiffness,
-        region->clamped != 0 ? UR5E_R(1.0) : region->effective_mass};
-    if (!ur5e_all_finite(numbers, 4)) {
-        return UR5E_NOT_FINITE;
-    }
-    const bool body = !are_huge(numbers, 4) && region->stiffness > UR5E_R(0.0) && region->damping >= UR5E_R(0.0)
-        && numbers[3] > UR5E_R(0.0) && ur5e_law_is_one(region);
-    const ur5e_real horizon = UR5E_HORIZON(p);
-    const ur5e_real reaction = UR5E_REACTION_TIME(p);
-    bool huge = false;
-    int status = ur5e_check_positive(&horizon, 1);
-    if (status == UR5E_OK) {
-        status = ur5e_check_not_negative(&reaction, 1);
-    }
-    for (int i = 0; i < UR5E_N && status == UR5E_OK; ++i) {
-        const ur5e_real gains[2] = {UR5E_GAIN(p, i), UR5E_DAMPING_GAIN(p, i)};
-        status = ur5e_check_not_negative(gains, 2);
+    ur5e_real positive[4 + 2*UR5E_N];
+    ur5e_real others[2 + 2*UR5E_N]; /* not negative */
+    int count = 4;
+    positive[0] = region->stiffness;
+    positive[1] = region->law != NULL ? UR5E_R(1.0) : region->hertz_stiffness;
+    positive[2] = region->clamped != 0 ? UR5E_R(1.0) : region->effective_mass;
+    positive[3] = UR5E_HORIZON(p);
+    others[0] = region->damping;
+    others[1] = UR5E_REACTION_TIME(p);
+    for (int i = 0; i < UR5E_N; ++i) {
+        others[2 + 2*i] = UR5E_GAIN(p, i);
+        others[3 + 2*i] = UR5E_DAMPING_GAIN(p, i);
 #if UR5E_ELASTIC
-        const ur5e_real drive[2] = {UR5E_SPRING(p, i), UR5E_ROTOR(p, i)};
-        status = status == UR5E_OK ? ur5e_check_positive(drive, 2) : status;
-        huge = huge || are_huge(drive, 2);
+        positive[count] = UR5E_SPRING(p, i);
+        positive[count + 1] = UR5E_ROTOR(p, i);
+        count += 2;
 #endif
-        huge = huge || are_huge(gains, 2);
+    }
+    int status = ur5e_check_positive(positive, count);
+    if (status == UR5E_OK) {
+        status = ur5e_check_not_negative(others, 2 + 2*UR5E_N);
     }
     if (status != UR5E_OK) {
         return status;
     }
     const bool motion = p->motors >= UR5E_MOTORS_FREE_OR_DRIVEN && p->motors <= UR5E_MOTORS_SERVO
         && p->steps > 0 && p->steps <= MOST_STEPS;
-    return body && motion && !huge ? UR5E_OK : UR5E_OUT_OF_RANGE;
+    return motion && ur5e_law_is_one(region) ? UR5E_OK : UR5E_OUT_OF_RANGE;
 }
 
 int ur5e_arrive(const ur5e_real n[3], int point, ur5e_arrival *arrival)

@@ -134,7 +134,7 @@ static bool rises(ur5e_real before, ur5e_real between, ur5e_real after)
 bool ur5e_law_is_one(const ur5e_region *region)
 {
     if (region->law == NULL) {
-        return region->hertz_stiffness > UR5E_R(0.0);
+        return true;
     }
     if (region->law_points < 1 || region->law_points > UR5E_MOST_LAW_POINTS) {
         return false;
