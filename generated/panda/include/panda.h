@@ -10,8 +10,7 @@
  *     joint1, joint2, joint3, joint4, joint5, joint6, joint7;
  *   - takes the direction of impact n at any length but zero, where it has one;
  *   - returns PANDA_OK or another status, and then has written nothing (but for PANDA_BOUNDED);
- *   - refuses inputs that are not finite, above 1e30 where they may not be negative, or outside the ranges
- *     stated here, but knows no joint limits;
+ *   - refuses inputs that are not finite or outside the ranges stated here, but knows no joint limits;
  *   - never writes a number that is not finite;
  *   - holds no state, allocates nothing and may be called from any thread.
  *

@@ -76,14 +76,11 @@ static inline bool panda_all_finite(const panda_real *x, int count)
     return PANDA_FABS(sum) <= PANDA_REAL_MAX;
 }
 
-/* Largest number that must be positive or none: products of larger ones are not finite in float. */
-#define PANDA_LARGEST PANDA_R(1e30)
-
 /* Status of inputs that must be greater than 0. */
 static inline int panda_check_positive(const panda_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
-        if (!(x[i] > PANDA_R(0.0) && x[i] <= PANDA_LARGEST)) {
+        if (!(x[i] > PANDA_R(0.0) && x[i] <= PANDA_REAL_MAX)) {
             return panda_all_finite(&x[i], 1) ? PANDA_OUT_OF_RANGE : PANDA_NOT_FINITE;
         }
     }
@@ -94,7 +91,7 @@ static inline int panda_check_positive(const panda_real *x, int count)
 static inline int panda_check_not_negative(const panda_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
-        if (!(x[i] >= PANDA_R(0.0) && x[i] <= PANDA_LARGEST)) {
+        if (!(x[i] >= PANDA_R(0.0) && x[i] <= PANDA_REAL_MAX)) {
             return panda_all_finite(&x[i], 1) ? PANDA_OUT_OF_RANGE : PANDA_NOT_FINITE;
         }
     }

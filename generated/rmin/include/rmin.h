@@ -10,8 +10,7 @@
  *     q11, q12, q13, q21, q22, q23;
  *   - takes the direction of impact n at any length but zero, where it has one;
  *   - returns RMIN_OK or another status, and then has written nothing (but for RMIN_BOUNDED);
- *   - refuses inputs that are not finite, above 1e30 where they may not be negative, or outside the ranges
- *     stated here, but knows no joint limits;
+ *   - refuses inputs that are not finite or outside the ranges stated here, but knows no joint limits;
  *   - never writes a number that is not finite;
  *   - holds no state, allocates nothing and may be called from any thread.
  *

@@ -54,14 +54,11 @@ static inline bool rmin_all_finite(const rmin_real *x, int count)
     return RMIN_FABS(sum) <= RMIN_REAL_MAX;
 }
 
-/* Largest number that must be positive or none: products of larger ones are not finite in float. */
-#define RMIN_LARGEST RMIN_R(1e30)
-
 /* Status of inputs that must be greater than 0. */
 static inline int rmin_check_positive(const rmin_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
-        if (!(x[i] > RMIN_R(0.0) && x[i] <= RMIN_LARGEST)) {
+        if (!(x[i] > RMIN_R(0.0) && x[i] <= RMIN_REAL_MAX)) {
             return rmin_all_finite(&x[i], 1) ? RMIN_OUT_OF_RANGE : RMIN_NOT_FINITE;
         }
     }
@@ -72,7 +69,7 @@ static inline int rmin_check_positive(const rmin_real *x, int count)
 static inline int rmin_check_not_negative(const rmin_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
-        if (!(x[i] >= RMIN_R(0.0) && x[i] <= RMIN_LARGEST)) {
+        if (!(x[i] >= RMIN_R(0.0) && x[i] <= RMIN_REAL_MAX)) {
             return rmin_all_finite(&x[i], 1) ? RMIN_OUT_OF_RANGE : RMIN_NOT_FINITE;
         }
     }

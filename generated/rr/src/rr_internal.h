@@ -57,14 +57,11 @@ static inline bool rr_all_finite(const rr_real *x, int count)
     return RR_FABS(sum) <= RR_REAL_MAX;
 }
 
-/* Largest number that must be positive or none: products of larger ones are not finite in float. */
-#define RR_LARGEST RR_R(1e30)
-
 /* Status of inputs that must be greater than 0. */
 static inline int rr_check_positive(const rr_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
-        if (!(x[i] > RR_R(0.0) && x[i] <= RR_LARGEST)) {
+        if (!(x[i] > RR_R(0.0) && x[i] <= RR_REAL_MAX)) {
             return rr_all_finite(&x[i], 1) ? RR_OUT_OF_RANGE : RR_NOT_FINITE;
         }
     }
@@ -75,7 +72,7 @@ static inline int rr_check_positive(const rr_real *x, int count)
 static inline int rr_check_not_negative(const rr_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
-        if (!(x[i] >= RR_R(0.0) && x[i] <= RR_LARGEST)) {
+        if (!(x[i] >= RR_R(0.0) && x[i] <= RR_REAL_MAX)) {
             return rr_all_finite(&x[i], 1) ? RR_OUT_OF_RANGE : RR_NOT_FINITE;
         }
     }
