@@ -11,8 +11,7 @@
  *     wrist_3_joint;
  *   - takes the direction of impact n at any length but zero, where it has one;
  *   - returns UR5E_OK or another status, and then has written nothing (but for UR5E_BOUNDED);
- *   - refuses inputs that are not finite, above 1e30 where they may not be negative, or outside the ranges
- *     stated here, but knows no joint limits;
+ *   - refuses inputs that are not finite or outside the ranges stated here, but knows no joint limits;
  *   - never writes a number that is not finite;
  *   - holds no state, allocates nothing and may be called from any thread.
  *

@@ -76,14 +76,11 @@ static inline bool ur5e_all_finite(const ur5e_real *x, int count)
     return UR5E_FABS(sum) <= UR5E_REAL_MAX;
 }
 
-/* Largest number that must be positive or none: products of larger ones are not finite in float. */
-#define UR5E_LARGEST UR5E_R(1e30)
-
 /* Status of inputs that must be greater than 0. */
 static inline int ur5e_check_positive(const ur5e_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
-        if (!(x[i] > UR5E_R(0.0) && x[i] <= UR5E_LARGEST)) {
+        if (!(x[i] > UR5E_R(0.0) && x[i] <= UR5E_REAL_MAX)) {
             return ur5e_all_finite(&x[i], 1) ? UR5E_OUT_OF_RANGE : UR5E_NOT_FINITE;
         }
     }
@@ -94,7 +91,7 @@ static inline int ur5e_check_positive(const ur5e_real *x, int count)
 static inline int ur5e_check_not_negative(const ur5e_real *x, int count)
 {
     for (int i = 0; i < count; ++i) {
-        if (!(x[i] >= UR5E_R(0.0) && x[i] <= UR5E_LARGEST)) {
+        if (!(x[i] >= UR5E_R(0.0) && x[i] <= UR5E_REAL_MAX)) {
             return ur5e_all_finite(&x[i], 1) ? UR5E_OUT_OF_RANGE : UR5E_NOT_FINITE;
         }
     }
