@@ -60,6 +60,8 @@ def rounds(line: str, name: str, n: int) -> Rounds:
     """Return the rounds of a loop by its source and line."""
     rows, squares = sum(range(2, n)), sum(m * m for m in range(2, n))
     qr_steps, qr_turns = 2 * n + 2, n * (n + 2)  # MOST_QR, MOST_ROTATIONS
+    # the step whose rotations have no room is done before it fails
+    turned = (qr_turns + n - 1) / (qr_steps + 1)
     N, modes = name.upper(), n + 2  # one of links and rotors together, one of the body
     table: list[tuple[str, Rounds]] = [
         (r"ticks > 0", Budget()),
@@ -70,7 +72,8 @@ def rounds(line: str, name: str, n: int) -> Rounds:
         (r"step <= most", qr_steps + 1),
         (r"spectrum.*last > 0", n / (qr_steps + 1)),
         (r"spectrum.*first > 0", n - 2),
-        (r"spectrum.*k = (first; k < last|last - 1; k >= first)", qr_turns / qr_steps),
+        (r"spectrum.*k = (first; k < last|last - 1; k >= first)", turned),
+        (r"internal\.h.*< count", 4 + 2 * n),  # numbers of a body and of drives
         (r"spectrum.*step (< turns->steps|>= 0)", qr_steps),
         (r"spectrum.*m < count", 1),
         (r"spectrum.*k \+ 1 < size", n - 1),

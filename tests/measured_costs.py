@@ -18,7 +18,7 @@ from softimpact.codegen.record.costs import Costs, FunctionCost, Instructions, S
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "[^"]*\\n(\d+) bytes \((.*?)\)')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
 
-FEW_STEPS = 190
+FEW_STEPS = 185
 """Budget of the safe speed that is counted apart: motors drive on, released after 20 ms, 0.1 s. The
 largest round number whose proven bound on time is within the design's 240,000 instructions."""
 

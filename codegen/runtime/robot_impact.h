@@ -232,7 +232,7 @@ robot_real robot_law_stiffness(const robot_region *region, robot_real force);
 robot_real robot_law_press(const robot_region *region, robot_real hold, robot_real soft, robot_real pressed,
     robot_real *depth);
 
-/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+/* Whether a law by table, if there is one, rises from 0 on, and its numbers are finite. */
 bool robot_law_is_one(const robot_region *region);
 
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */

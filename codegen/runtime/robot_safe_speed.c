@@ -176,7 +176,7 @@ int robot_find_speed(const robot_region *region, const robot_params *p, robot_re
         search s = {counts, ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0), ROBOT_R(0.0)};
         budget.fine = false;
         const robot_real share = region->law == NULL ? ROBOT_R(1.0) : SHORT_OF_JUMP;
-        const robot_real most = found->speed/share;
+        const robot_real most = found->speed/share; /* so that what is kept free counts once, not for each kind */
         bool is_known = find(impact, motors == last ? guess : most, most, &s, &budget);
         if (most > ROBOT_R(0.0) && s.low >= most) {
             s.low = found->speed;

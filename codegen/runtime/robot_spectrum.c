@@ -168,11 +168,11 @@ bool robot_spectrum(int size, robot_real small, robot_matrix A, robot_real *valu
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
+        if (step == most) {
+            return false;
+        }
         chase(first, last, values, e, by);
         if (turns != NULL) {
-            if (step == most) {
-                return false;
-            }
             turns->first[step] = (unsigned char)first;
             turns->last[step] = (unsigned char)last;
             for (int k = first; k < last; ++k) {

@@ -232,7 +232,7 @@ panda_real panda_law_stiffness(const panda_region *region, panda_real force);
 panda_real panda_law_press(const panda_region *region, panda_real hold, panda_real soft, panda_real pressed,
     panda_real *depth);
 
-/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+/* Whether a law by table, if there is one, rises from 0 on, and its numbers are finite. */
 bool panda_law_is_one(const panda_region *region);
 
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */

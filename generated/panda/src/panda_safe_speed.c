@@ -176,7 +176,7 @@ int panda_find_speed(const panda_region *region, const panda_params *p, panda_re
         search s = {counts, PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0), PANDA_R(0.0)};
         budget.fine = false;
         const panda_real share = region->law == NULL ? PANDA_R(1.0) : SHORT_OF_JUMP;
-        const panda_real most = found->speed/share;
+        const panda_real most = found->speed/share; /* so that what is kept free counts once, not for each kind */
         bool is_known = find(impact, motors == last ? guess : most, most, &s, &budget);
         if (most > PANDA_R(0.0) && s.low >= most) {
             s.low = found->speed;

@@ -168,11 +168,11 @@ bool panda_spectrum(int size, panda_real small, panda_matrix A, panda_real *valu
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
+        if (step == most) {
+            return false;
+        }
         chase(first, last, values, e, by);
         if (turns != NULL) {
-            if (step == most) {
-                return false;
-            }
             turns->first[step] = (unsigned char)first;
             turns->last[step] = (unsigned char)last;
             for (int k = first; k < last; ++k) {

@@ -232,7 +232,7 @@ rmin_real rmin_law_stiffness(const rmin_region *region, rmin_real force);
 rmin_real rmin_law_press(const rmin_region *region, rmin_real hold, rmin_real soft, rmin_real pressed,
     rmin_real *depth);
 
-/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+/* Whether a law by table, if there is one, rises from 0 on, and its numbers are finite. */
 bool rmin_law_is_one(const rmin_region *region);
 
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */

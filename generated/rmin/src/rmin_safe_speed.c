@@ -176,7 +176,7 @@ int rmin_find_speed(const rmin_region *region, const rmin_params *p, rmin_real l
         search s = {counts, RMIN_R(0.0), RMIN_R(0.0), RMIN_R(0.0), RMIN_R(0.0)};
         budget.fine = false;
         const rmin_real share = region->law == NULL ? RMIN_R(1.0) : SHORT_OF_JUMP;
-        const rmin_real most = found->speed/share;
+        const rmin_real most = found->speed/share; /* so that what is kept free counts once, not for each kind */
         bool is_known = find(impact, motors == last ? guess : most, most, &s, &budget);
         if (most > RMIN_R(0.0) && s.low >= most) {
             s.low = found->speed;

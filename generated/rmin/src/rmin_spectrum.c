@@ -168,11 +168,11 @@ bool rmin_spectrum(int size, rmin_real small, rmin_matrix A, rmin_real *values, 
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
+        if (step == most) {
+            return false;
+        }
         chase(first, last, values, e, by);
         if (turns != NULL) {
-            if (step == most) {
-                return false;
-            }
             turns->first[step] = (unsigned char)first;
             turns->last[step] = (unsigned char)last;
             for (int k = first; k < last; ++k) {

@@ -232,7 +232,7 @@ rr_real rr_law_stiffness(const rr_region *region, rr_real force);
 rr_real rr_law_press(const rr_region *region, rr_real hold, rr_real soft, rr_real pressed,
     rr_real *depth);
 
-/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+/* Whether a law by table, if there is one, rises from 0 on, and its numbers are finite. */
 bool rr_law_is_one(const rr_region *region);
 
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */

@@ -176,7 +176,7 @@ int rr_find_speed(const rr_region *region, const rr_params *p, rr_real limit,
         search s = {counts, RR_R(0.0), RR_R(0.0), RR_R(0.0), RR_R(0.0)};
         budget.fine = false;
         const rr_real share = region->law == NULL ? RR_R(1.0) : SHORT_OF_JUMP;
-        const rr_real most = found->speed/share;
+        const rr_real most = found->speed/share; /* so that what is kept free counts once, not for each kind */
         bool is_known = find(impact, motors == last ? guess : most, most, &s, &budget);
         if (most > RR_R(0.0) && s.low >= most) {
             s.low = found->speed;

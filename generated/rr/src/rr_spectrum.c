@@ -168,11 +168,11 @@ bool rr_spectrum(int size, rr_real small, rr_matrix A, rr_real *values, int coun
         while (first > 0 && counts(first - 1, values, e, small, noise)) {
             --first;
         }
+        if (step == most) {
+            return false;
+        }
         chase(first, last, values, e, by);
         if (turns != NULL) {
-            if (step == most) {
-                return false;
-            }
             turns->first[step] = (unsigned char)first;
             turns->last[step] = (unsigned char)last;
             for (int k = first; k < last; ++k) {

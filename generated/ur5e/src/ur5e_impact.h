@@ -232,7 +232,7 @@ ur5e_real ur5e_law_stiffness(const ur5e_region *region, ur5e_real force);
 ur5e_real ur5e_law_press(const ur5e_region *region, ur5e_real hold, ur5e_real soft, ur5e_real pressed,
     ur5e_real *depth);
 
-/* Whether it is a law: rises from 0 on, and its numbers are finite. */
+/* Whether a law by table, if there is one, rises from 0 on, and its numbers are finite. */
 bool ur5e_law_is_one(const ur5e_region *region);
 
 /* Force of two bodies that meet at 1 m/s times speed, and the speed of a force: first guesses. */

@@ -176,7 +176,7 @@ int ur5e_find_speed(const ur5e_region *region, const ur5e_params *p, ur5e_real l
         search s = {counts, UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0), UR5E_R(0.0)};
         budget.fine = false;
         const ur5e_real share = region->law == NULL ? UR5E_R(1.0) : SHORT_OF_JUMP;
-        const ur5e_real most = found->speed/share;
+        const ur5e_real most = found->speed/share; /* so that what is kept free counts once, not for each kind */
         bool is_known = find(impact, motors == last ? guess : most, most, &s, &budget);
         if (most > UR5E_R(0.0) && s.low >= most) {
             s.low = found->speed;
