@@ -13,14 +13,10 @@ from compiled_packages import Generated, run
 from cross_compiled import BOARD, CORES, GCC, OPTIMISE, build, compile_one, link, run_image
 
 from softimpact.codegen.record.cost_digests import cost_digests
-from softimpact.codegen.record.costs import Costs, FunctionCost, Instructions, SharedCost
+from softimpact.codegen.record.costs import FEW_STEPS, Costs, FunctionCost, Instructions, SharedCost
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "[^"]*\\n(\d+) bytes \((.*?)\)')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
-
-FEW_STEPS = 185
-"""Budget of the safe speed that is counted apart: motors drive on, released after 20 ms, 0.1 s. The
-largest round number whose proven bound on time is within the design's 240,000 instructions."""
 
 
 @dataclass(frozen=True)

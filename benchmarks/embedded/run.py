@@ -20,10 +20,10 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
 from compiled_packages import COMMITTED, Generated, candidate_poses  # noqa: E402
-from measured_costs import FEW_STEPS, compiler_version, measure  # noqa: E402
+from measured_costs import compiler_version, measure  # noqa: E402
 
 from softimpact.codegen import generate_package  # noqa: E402
-from softimpact.codegen.record.costs import COSTS, Costs, FunctionCost  # noqa: E402
+from softimpact.codegen.record.costs import COSTS, FEW_STEPS, Costs, FunctionCost  # noqa: E402
 from softimpact.symbolic import load_robot  # noqa: E402
 
 PAGE = ROOT / "docs/embedded.md"

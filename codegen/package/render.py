@@ -24,7 +24,7 @@ from ..inputs.law_points import MOST_POINTS
 from ..inputs.parameters import SCALARS, Parameter, is_elastic
 from ..inputs.regions import BuiltIn
 from ..inputs.samples import Sample
-from ..record.costs import Costs, stored_costs
+from ..record.costs import FEW_STEPS, Costs, stored_costs
 from ..record.manifest import Real
 from ..sources.configuration import ConfigurationSource
 from ..sources.function import CSource
@@ -157,7 +157,7 @@ def render(package: Package) -> tuple[dict[str, str], Costs | None]:
     compiled = sorted(path for path in rendered if path.startswith("src/") and path.endswith(".c"))
     rendered["CMakeLists.txt"] = show("CMakeLists.txt", sources=compiled)
     costs = stored_costs(name, rendered)
-    rendered["README.md"] = show("README.md", costs=costs)
+    rendered["README.md"] = show("README.md", costs=costs, few_steps=FEW_STEPS)
     return dict(sorted(rendered.items())), costs
 
 

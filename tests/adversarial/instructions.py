@@ -21,8 +21,9 @@ import numpy as np
 from compiled_impacts import DRIVEN
 from compiled_packages import Generated
 from cross_compiled import BOARD, build, compile_one, link, run_image
-from measured_costs import FEW_STEPS, Call
+from measured_costs import Call
 
+from softimpact.codegen.record.costs import FEW_STEPS
 from softimpact.symbolic.robot.rigid import Array
 
 from .cases import Cases

@@ -16,12 +16,13 @@ from adversarial.instructions import Counter
 from compiled_impacts import BOUNDED, DRIVEN
 from compiled_packages import COMMITTED, Generated, missing, run, tool
 from cross_compiled import GCC, flags, machine
-from measured_costs import FEW_STEPS, compiler_version, measure, stacks_of
+from measured_costs import compiler_version, measure, stacks_of
 
 from softimpact.codegen import generate_package
 from softimpact.codegen.record import costs as costs_module
 from softimpact.codegen.record.cost_digests import cost_digests
 from softimpact.codegen.record.costs import (
+    FEW_STEPS,
     Costs,
     FunctionCost,
     Instructions,
