@@ -87,8 +87,8 @@ void robot_release(robot_state *s)
     const robot_impact *const impact = s->impact;
     const robot_phase *const next = &impact->phase[ROBOT_LOOSE];
     const robot_modes *const modes = &next->modes;
-    robot_real place[ROBOT_MODES] = {ROBOT_R(0.0)}; /* of modes, and then of what they move */
-    robot_real rate[ROBOT_MODES] = {ROBOT_R(0.0)};
+    robot_real place[ROBOT_MODES] = {0}; /* of modes, and then of what they move */
+    robot_real rate[ROBOT_MODES] = {0};
     robot_real a[ROBOT_MODES]; /* amplitudes of the modes that follow */
     robot_real b[ROBOT_MODES];
     robot_feel(s);

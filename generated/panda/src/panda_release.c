@@ -87,8 +87,8 @@ void panda_release(panda_state *s)
     const panda_impact *const impact = s->impact;
     const panda_phase *const next = &impact->phase[PANDA_LOOSE];
     const panda_modes *const modes = &next->modes;
-    panda_real place[PANDA_MODES] = {PANDA_R(0.0)}; /* of modes, and then of what they move */
-    panda_real rate[PANDA_MODES] = {PANDA_R(0.0)};
+    panda_real place[PANDA_MODES] = {0}; /* of modes, and then of what they move */
+    panda_real rate[PANDA_MODES] = {0};
     panda_real a[PANDA_MODES]; /* amplitudes of the modes that follow */
     panda_real b[PANDA_MODES];
     panda_feel(s);

@@ -87,8 +87,8 @@ void rmin_release(rmin_state *s)
     const rmin_impact *const impact = s->impact;
     const rmin_phase *const next = &impact->phase[RMIN_LOOSE];
     const rmin_modes *const modes = &next->modes;
-    rmin_real place[RMIN_MODES] = {RMIN_R(0.0)}; /* of modes, and then of what they move */
-    rmin_real rate[RMIN_MODES] = {RMIN_R(0.0)};
+    rmin_real place[RMIN_MODES] = {0}; /* of modes, and then of what they move */
+    rmin_real rate[RMIN_MODES] = {0};
     rmin_real a[RMIN_MODES]; /* amplitudes of the modes that follow */
     rmin_real b[RMIN_MODES];
     rmin_feel(s);

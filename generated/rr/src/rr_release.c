@@ -87,8 +87,8 @@ void rr_release(rr_state *s)
     const rr_impact *const impact = s->impact;
     const rr_phase *const next = &impact->phase[RR_LOOSE];
     const rr_modes *const modes = &next->modes;
-    rr_real place[RR_MODES] = {RR_R(0.0)}; /* of modes, and then of what they move */
-    rr_real rate[RR_MODES] = {RR_R(0.0)};
+    rr_real place[RR_MODES] = {0}; /* of modes, and then of what they move */
+    rr_real rate[RR_MODES] = {0};
     rr_real a[RR_MODES]; /* amplitudes of the modes that follow */
     rr_real b[RR_MODES];
     rr_feel(s);

@@ -87,8 +87,8 @@ void ur5e_release(ur5e_state *s)
     const ur5e_impact *const impact = s->impact;
     const ur5e_phase *const next = &impact->phase[UR5E_LOOSE];
     const ur5e_modes *const modes = &next->modes;
-    ur5e_real place[UR5E_MODES] = {UR5E_R(0.0)}; /* of modes, and then of what they move */
-    ur5e_real rate[UR5E_MODES] = {UR5E_R(0.0)};
+    ur5e_real place[UR5E_MODES] = {0}; /* of modes, and then of what they move */
+    ur5e_real rate[UR5E_MODES] = {0};
     ur5e_real a[UR5E_MODES]; /* amplitudes of the modes that follow */
     ur5e_real b[UR5E_MODES];
     ur5e_feel(s);
