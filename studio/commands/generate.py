@@ -183,8 +183,8 @@ def early_word(joints: int) -> str:
     """Return what a package of many joints will take, before it takes it."""
     square = joints**2
     return (
-        f"{joints} joints: a large package. Expect some {0.05 * square:.0f} s, "
-        f"{0.1 + 0.0006 * square:.1f} GB of memory and up to {0.013 * square:.0f} MB of C, which "
+        f"{joints} joints: a large package. Expect some {0.15 * square:.0f} s, "
+        f"{0.1 + 0.0008 * square:.1f} GB of memory and up to {0.013 * square:.0f} MB of C, which "
         f"an optimising compiler takes {0.003 * square:.0f} min for"
     )
 

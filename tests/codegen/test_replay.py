@@ -89,9 +89,17 @@ def test_without_a_compiler_one_line_says_so(
 
 @pytest.mark.slow
 def test_what_many_joints_take_grows_with_their_square(tmp_path: Path) -> None:
-    """Twenty in half a minute and a gigabyte; the early word comes first."""
-    path = tmp_path / "arm.urdf"
-    path.write_text(many_joints(JOINTS))
+    """Time is compared with that of half the joints, as machines differ; the word comes early."""
+    half, _ = taken(JOINTS // 2, tmp_path)
+    seconds, megabytes = taken(JOINTS, tmp_path)
+    assert seconds < 2**2 * half
+    assert megabytes < 1000 * (JOINTS / 20) ** 2
+
+
+def taken(joints: int, folder: Path) -> tuple[float, float]:
+    """Return how long an arm's package keeps a core busy (s), and its most memory (MB)."""
+    path = folder / f"arm{joints}.urdf"
+    path.write_text(many_joints(joints))
     script = (
         "import resource, sys; from softimpact.cli import main; code = main();"
         "use = resource.getrusage(resource.RUSAGE_SELF);"
@@ -100,7 +108,7 @@ def test_what_many_joints_take_grows_with_their_square(tmp_path: Path) -> None:
     )
     arguments = ["generate", str(path), "--tip", "tool", "--rotor-inertia", "0.1"]
     done = subprocess.run(
-        [sys.executable, "-c", script, *arguments, "--out", str(tmp_path / "c"), "--json"],
+        [sys.executable, "-c", script, *arguments, "--out", str(path.with_suffix("")), "--json"],
         capture_output=True,
         text=True,
         check=True,
@@ -108,10 +116,10 @@ def test_what_many_joints_take_grows_with_their_square(tmp_path: Path) -> None:
     manifest, numbers = done.stdout.splitlines()
     code, seconds, megabytes = map(float, numbers.split())
     assert code == 0
-    assert len(json.loads(manifest)["joints"]) == JOINTS
-    assert done.stderr.startswith(f"{JOINTS} joints: a large package. Expect some 10 s, ")
-    assert seconds < 30 * (JOINTS / 20) ** 2
-    assert megabytes < 1000 * (JOINTS / 20) ** 2
+    assert len(json.loads(manifest)["joints"]) == joints
+    word = done.stderr.startswith(f"{joints} joints: a large package. Expect some ")
+    assert word == (joints == JOINTS)
+    return seconds, megabytes
 
 
 @pytest.mark.slow
