@@ -66,6 +66,7 @@ def test_cppcheck_finds_listed_deviations_only(
     assert broken_rules(package(robot)) <= DEVIATIONS
 
 
+@pytest.mark.long
 def test_every_listed_deviation_is_needed(package: Callable[[str], Generated]) -> None:
     assert set().union(*(broken_rules(package(name)) for name in IN_DOUBLE)) == DEVIATIONS
 
