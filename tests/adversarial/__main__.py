@@ -148,7 +148,10 @@ def main() -> int:
                 rest = (time.monotonic() - start) / n * (len(left) - n)
                 say(job, result, f"{n}/{len(left)}, {rest / 60:.0f} min left")
     if told.record:
-        write(of_now(found, digests))
+        rounds = of_now(found, digests)
+        if not rounds:
+            parser.error(f"{told.journal} holds no round of these packages and this search")
+        write(rounds)
     return conclude([(job, found[key(job)]) for job in asked])
 
 

@@ -49,7 +49,7 @@ def write(rows: Rows) -> None:
         for (question, width), total in sorted(summed(rows).items(), key=_order)
     ]
     seeds = [job["seed"] for job, _ in rows]
-    robots = tuple(dict.fromkeys(str(job["robot"]) for job, _ in rows))
+    robots = tuple(sorted({str(job["robot"]) for job, _ in rows}))
     told = Searched(sources_digest(), robots, min(seeds), max(seeds), tuple(sums))
     RECORD.write_text(json.dumps(asdict(told), indent=1) + "\n", encoding="utf-8")
     renew()
