@@ -31,7 +31,9 @@ from softimpact.symbolic import REGIONS, Contact, Drives, Motors, impact_model
 
 FOUND = json.loads((Path(__file__).parents[1] / "adversarial/found.json").read_text())
 """Inputs that once had safe speeds that were none (``was``: the force over its limit; ``why``), or
-that float cannot answer (``refused``)."""
+that float cannot answer (``refused``). Of those that are ``open`` the latest are none still."""
+
+OPEN = [row for row in FOUND if "open" in row]
 
 SINGULAR_ONCE = 3.0
 """What ``was`` exceeds where the contact point could not be moved along n at all."""
@@ -123,7 +125,7 @@ def test_what_was_found_once_keeps_its_limit(
     package: Callable[[str], Generated], name: str, tmp_path: Path
 ) -> None:
     robot = robot_of(package, name, tmp_path)
-    for row in (row for row in FOUND if row["robot"] == name):
+    for row in (row for row in FOUND if row["robot"] == name and row not in OPEN):
         cases, question = stacked([row]), QUESTIONS[row.get("question", "limit")]
         told = robot.answers(question, cases, row["real"])
         if row["was"] > SINGULAR_ONCE and not question.presses:
@@ -137,6 +139,44 @@ def test_what_was_found_once_keeps_its_limit(
         right, late = both_forces(robot, cases, told.speed * shares, 4.0, late=question.presses)
         assert (right / told.limit).max() <= 1, row
         assert (late / cases.pressing).max() <= 1, row
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("row", OPEN, ids=lambda row: row["robot"])
+@pytest.mark.xfail(strict=True, reason="second contacts after long flights are off by some percent")
+def test_what_was_found_last_keeps_its_limit(
+    package: Callable[[str], Generated], row: dict[str, Any], tmp_path: Path
+) -> None:
+    robot, cases = robot_of(package, row["robot"], tmp_path), stacked([row])
+    told = robot.answers(QUESTIONS["limit"], cases, row["real"])
+    assert forces(robot, cases, told.speed[:, None], 4.0)[0, 0] <= told.limit[0]
+
+
+@pytest.mark.slow
+def test_forces_hardly_overshoot_as_motors_are_let_go(
+    package: Callable[[str], Generated], tmp_path: Path
+) -> None:
+    """Up to 4 % with light rotors.
+
+    The top is that of a cubic through steps before and after the release, of different lengths;
+    where these differ by thousands, after 57 s, it was 140 times too high.
+    """
+    robot, count = robot_of(package, "panda", tmp_path), 200
+    numbers = {"reaction": 0.2, "horizon": 0.5, "mass": 0.0, "stiffness": 75e3, "damping": 10.0}
+    cases = replace(
+        Draw(robot, np.random.default_rng(5), wide=False).cases(count),
+        springs=np.full((count, robot.n), 3000.0),
+        rotors=np.full((count, robot.n), 0.01),
+        motors=np.full(count, DRIVEN, np.int32),
+        steps=np.full(count, 8000, np.int32),
+        **{name: np.full(count, number) for name, number in {**numbers, "skin": 1.9e7}.items()},
+    ).rounded()
+    speeds = np.full(count, 0.1)
+    status, found = robot.peaks(cases, speeds, "double")
+    right = forces(robot, cases, speeds[:, None], 2.0)[:, 0]
+    assert (status == OK).all()
+    assert (found >= 0.998 * right).all()
+    assert (found <= 1.05 * right).all()
 
 
 def test_float_finds_what_double_does_where_slow_modes_carry_the_motion(
