@@ -156,17 +156,17 @@ def test_what_was_found_last_keeps_its_limit(
 def test_forces_hardly_overshoot_as_motors_are_let_go(
     package: Callable[[str], Generated], tmp_path: Path
 ) -> None:
-    """Up to 4 % with light rotors.
+    """Up to 4.5 % where motors drove on for long and springs are stiff.
 
     The top is that of a cubic through steps before and after the release, of different lengths;
     where these differ by thousands, after 57 s, it was 140 times too high.
     """
     robot, count = robot_of(package, "panda", tmp_path), 200
-    numbers = {"reaction": 0.2, "horizon": 0.5, "mass": 0.0, "stiffness": 75e3, "damping": 10.0}
+    numbers = {"reaction": 0.45, "horizon": 0.5, "mass": 0.0, "stiffness": 75e3, "damping": 10.0}
     cases = replace(
         Draw(robot, np.random.default_rng(5), wide=False).cases(count),
-        springs=np.full((count, robot.n), 3000.0),
-        rotors=np.full((count, robot.n), 0.01),
+        springs=np.full((count, robot.n), 3e5),
+        rotors=np.full((count, robot.n), 1e-3),
         motors=np.full(count, DRIVEN, np.int32),
         steps=np.full(count, 8000, np.int32),
         **{name: np.full(count, number) for name, number in {**numbers, "skin": 1.9e7}.items()},
