@@ -28,10 +28,12 @@ from independent_impacts import arm_of, force_by_scipy
 from softimpact.codegen.record.searched import ASKED, record, searched
 from softimpact.simulate import Approach
 from softimpact.symbolic import REGIONS, Contact, Drives, Motors, impact_model
+from softimpact.symbolic.robot.rigid import Array
 
 FOUND = json.loads((Path(__file__).parents[1] / "adversarial/found.json").read_text())
 """Inputs that once had safe speeds that were none (``was``: the force over its limit; ``why``), or
-that float cannot answer (``refused``). Of those that are ``open`` the latest are none still."""
+that float cannot answer (``refused``). Those that are ``open`` exceed
+their limits still."""
 
 OPEN = [row for row in FOUND if "open" in row]
 
@@ -125,7 +127,7 @@ def test_what_was_found_once_keeps_its_limit(
     package: Callable[[str], Generated], name: str, tmp_path: Path
 ) -> None:
     robot = robot_of(package, name, tmp_path)
-    for row in (row for row in FOUND if row["robot"] == name and row not in OPEN):
+    for row in (row for row in FOUND if row["robot"] == name and "open" not in row):
         cases, question = stacked([row]), QUESTIONS[row.get("question", "limit")]
         told = robot.answers(question, cases, row["real"])
         if row["was"] > SINGULAR_ONCE and not question.presses:
@@ -144,7 +146,7 @@ def test_what_was_found_once_keeps_its_limit(
 @pytest.mark.slow
 @pytest.mark.parametrize("row", OPEN, ids=lambda row: row["robot"])
 @pytest.mark.xfail(strict=True, reason="second contacts after long flights are off by some percent")
-def test_what_was_found_last_keeps_its_limit(
+def test_what_is_open_keeps_its_limit(
     package: Callable[[str], Generated], row: dict[str, Any], tmp_path: Path
 ) -> None:
     robot, cases = robot_of(package, row["robot"], tmp_path), stacked([row])
@@ -152,16 +154,9 @@ def test_what_was_found_last_keeps_its_limit(
     assert forces(robot, cases, told.speed[:, None], 4.0)[0, 0] <= told.limit[0]
 
 
-@pytest.mark.slow
-def test_forces_hardly_overshoot_as_motors_are_let_go(
-    package: Callable[[str], Generated], tmp_path: Path
-) -> None:
-    """Up to 4.5 % where motors drove on for long and springs are stiff.
-
-    The top is that of a cubic through steps before and after the release, of different lengths;
-    where these differ by thousands, after 57 s, it was 140 times too high.
-    """
-    robot, count = robot_of(package, "panda", tmp_path), 200
+def let_go_late(package: Callable[[str], Generated], folder: Path) -> Array:
+    """Return forces over what they should be where motors drove stiff springs on for long."""
+    robot, count = robot_of(package, "panda", folder), 200
     numbers = {"reaction": 0.45, "horizon": 0.5, "mass": 0.0, "stiffness": 75e3, "damping": 10.0}
     cases = replace(
         Draw(robot, np.random.default_rng(5), wide=False).cases(count),
@@ -175,8 +170,23 @@ def test_forces_hardly_overshoot_as_motors_are_let_go(
     status, found = robot.peaks(cases, speeds, "double")
     right = forces(robot, cases, speeds[:, None], 2.0)[:, 0]
     assert (status == OK).all()
-    assert (found >= 0.998 * right).all()
-    assert (found <= 1.05 * right).all()
+    return found / right
+
+
+@pytest.mark.slow
+def test_forces_are_not_too_low_as_motors_are_let_go(
+    package: Callable[[str], Generated], tmp_path: Path
+) -> None:
+    assert let_go_late(package, tmp_path).min() >= 1 - 2e-3
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(strict=True, reason="a top is sought across steps of very different lengths")
+def test_forces_are_not_too_high_as_motors_are_let_go(
+    package: Callable[[str], Generated], tmp_path: Path
+) -> None:
+    """They are by up to 4.5 %; after 57 s they were by 140 times."""
+    assert let_go_late(package, tmp_path).max() <= 1 + 2e-3
 
 
 def test_float_finds_what_double_does_where_slow_modes_carry_the_motion(

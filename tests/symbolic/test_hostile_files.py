@@ -25,7 +25,7 @@ from softimpact.symbolic import (
 )
 
 SECONDS, BYTES = 2.0, 50e6
-"""What one file may cost; an order above what it does, for busy machines."""
+"""What one file may cost; several times what it does, for busy machines."""
 
 VISUAL = '<visual><geometry><mesh filename="package://nowhere/arm.dae"/></geometry></visual>'
 
